@@ -10,7 +10,10 @@
 //! 2021). D is the weighted mean, and its error includes the spread of the models: where local slopes drift,
 //! the mean lies beyond the last of them, and its error is large.
 
+use crate::saturating::{real, whole};
+
 use super::regression::{Estimate, Reading, line};
+use super::statistics::weighted_mean;
 
 /// Range of the exponents θ of a second power, and of the coefficients C at the largest size: those above
 /// zero, and the magnitudes of those below.
@@ -79,33 +82,23 @@ pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     let fits: Vec<Fit> = starts.collect();
     // Where no model fits as well as the errors imply, errors are too small.
     let reduced = fits.iter().filter(|fit| fit.from < last);
-    let reduced = reduced.map(|fit| fit.chi_squared / count(growths.len() - fit.from - 1));
+    let reduced = reduced.map(|fit| fit.chi_squared / real(growths.len() - fit.from - 1));
     let excess = reduced.fold(f64::INFINITY, f64::min);
     let excess = if excess.is_finite() {
         excess.max(1.0)
     } else {
         1.0
     };
-    let weight = |fit: &Fit| fit.prior - count(fit.from) - fit.chi_squared / (2.0 * excess);
+    let weight = |fit: &Fit| fit.prior - real(fit.from) - fit.chi_squared / (2.0 * excess);
     let best = fits.iter().map(weight).fold(f64::NEG_INFINITY, f64::max);
     let mean = |of: &dyn Fn(&Fit) -> f64| {
-        let (mut sum, mut all) = (0.0, 0.0);
-        for fit in &fits {
-            let weight = libm::exp(weight(fit) - best);
-            sum += weight * of(fit);
-            all += weight;
-        }
-        sum / all
+        let fits = fits.iter();
+        weighted_mean(fits.map(|fit| (of(fit), libm::exp(weight(fit) - best))))
     };
     let value = mean(&|fit| fit.slope);
     let away = |fit: &Fit| fit.variance * excess + (fit.slope - value) * (fit.slope - value);
-    let from = mean(&|fit| count(fit.from)).round();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of a size"
-    )]
-    let range = &readings[from as usize..];
+    let from = mean(&|fit| real(fit.from)).round();
+    let range = &readings[whole(from)..];
     let (r_squared, intercept) = line(range, value);
     Some(Estimate {
         value: value + 0.0,
@@ -158,7 +151,7 @@ fn corrections(readings: &[Reading]) -> Vec<Correction> {
     let parts =
         spread(MOST_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
     let parts: Vec<f64> = parts.collect();
-    let models = count(parts.len()) * f64::from(EXPONENT_STEPS);
+    let models = real(parts.len()) * f64::from(EXPONENT_STEPS);
     let correction = |log: &dyn Fn(f64) -> f64, prior: f64| {
         let at = |reading: &Reading| log(reading.size / readings[0].size);
         let pairs = readings.windows(2);
@@ -191,11 +184,6 @@ fn spread([least, most]: [f64; 2], steps: i32) -> impl Iterator<Item = f64> {
     let all = libm::log(most / least);
     let part = move |step| f64::from(step) / f64::from(steps - 1);
     (0..steps).map(move |step| least * libm::exp(all * part(step)))
-}
-
-#[expect(clippy::cast_precision_loss, reason = "sizes and models are few")]
-fn count(number: usize) -> f64 {
-    number as f64
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 mod dilation;
 
+use super::points::gathered;
+
 /// Boxes in rows, a bit for each: set where the box is occupied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
@@ -123,6 +125,12 @@ impl Bits {
         ones.sum()
     }
 
+    /// Returns the number of marked boxes, rounded.
+    #[expect(clippy::cast_precision_loss, reason = "counts that large are rounded")]
+    pub(super) fn area(&self) -> f64 {
+        self.count() as f64
+    }
+
     /// Returns the set in boxes twice as large. The first box of a row or column covers two smaller ones, or
     /// only one where the grid is shifted.
     #[must_use]
@@ -237,7 +245,7 @@ fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
         let word = upper | lower;
         let shifted = word << left | carried;
         carried = word >> 63 & left as u64;
-        halved(shifted | shifted >> 1)
+        u64::from(gathered(shifted | shifted >> 1))
     });
     for word in folded.iter_mut() {
         let low = both.next();
@@ -250,15 +258,4 @@ fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
         let words = upper.len();
         folded[words / 2] |= 1 << (32 * (words % 2));
     }
-}
-
-/// Gathers every other bit, from the lowest on, in the lower half.
-#[inline]
-fn halved(word: u64) -> u64 {
-    let mut word = word & 0x5555_5555_5555_5555;
-    word = (word | word >> 1) & 0x3333_3333_3333_3333;
-    word = (word | word >> 2) & 0x0f0f_0f0f_0f0f_0f0f;
-    word = (word | word >> 4) & 0x00ff_00ff_00ff_00ff;
-    word = (word | word >> 8) & 0x0000_ffff_0000_ffff;
-    (word | word >> 16) & 0x0000_0000_ffff_ffff
 }

@@ -2,6 +2,8 @@
 
 use std::num::NonZero;
 
+use crate::saturating::{real, whole};
+
 use super::averaging::averaged;
 use super::bits::Bits;
 use super::cover::{Grid, Scale};
@@ -10,6 +12,7 @@ use super::limit::LimitSet;
 use super::raster::{means, own_base, raster_scales, regular, thickness};
 use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
+use super::statistics::logarithm;
 use super::trend::Trend;
 
 /// Upper bound of the dimension of a set in the plane.
@@ -110,7 +113,7 @@ impl BoxCounting {
             least_boxes: LEAST_BOXES,
         };
         let base = base.unwrap_or_else(|| whole_power(set.period()));
-        let scales = whole(base).map(|base| set.sampled_scales(base, grids, threads));
+        let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
         let comes_far =
             |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < FINE * extent);
         match scales.filter(comes_far) {
@@ -144,8 +147,7 @@ impl BoxCounting {
         let base = base.or(own).unwrap_or(TWO);
         let scales = raster_scales(&pixels, base, grids, threads);
         let means = means(&pixels, threads);
-        #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
-        let (longest, base) = (longest as f64, base.get() as f64);
+        let (longest, base) = (real(longest), real(base.get()));
         let estimate = match regular(&scales) {
             Some((value, away)) => Some(Estimate {
                 value,
@@ -176,7 +178,7 @@ impl BoxCounting {
                 None => Trend::of(&of_means(&drifting)),
             },
             base: Some(base),
-            fitting_base: own.map(|own| own.get() as f64),
+            fitting_base: own.map(|own| real(own.get())),
             boxes: evidence(&scales, |scale| used(scale.size)),
             means: means.iter().map(|mean| (mean.size, mean.boxes)).collect(),
         }
@@ -245,7 +247,7 @@ impl BoxCounting {
 fn readings<'a>(scales: impl Iterator<Item = &'a Scale>) -> Vec<Reading> {
     let reading = |scale: &Scale| Reading {
         size: scale.size,
-        log: log(scale),
+        log: logarithm(scale.count),
         scatter: scale.scatter,
         growth: scale.growth,
         growth_error: scale.growth_error,
@@ -272,17 +274,10 @@ fn evidence(scales: &[Scale], used: impl Fn(&Scale) -> bool) -> Vec<Boxes> {
         count: scale.count,
         sampled: scale.sampled,
         scatter: scale.scatter,
-        local_slope: scales
-            .get(number + 1)
-            .map(|finer| (log(finer) - log(scale)) / libm::log(scale.size / finer.size)),
+        local_slope: scales.get(number + 1).map(|finer| scale.slope_to(finer)),
         used: used(scale),
     });
     boxes.collect()
-}
-
-#[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
-fn log(scale: &Scale) -> f64 {
-    libm::log(scale.count.max(1) as f64)
 }
 
 /// Returns the smallest integer up to 8 that is a power of the period, or 2 if there is none.
@@ -298,11 +293,6 @@ fn whole_power(period: Option<f64>) -> f64 {
 }
 
 /// Returns the base if it is an integer larger than 1.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "bases are small"
-)]
-fn whole(base: f64) -> Option<NonZero<usize>> {
-    NonZero::new(base as usize).filter(|whole| base.fract() == 0.0 && whole.get() > 1)
+fn whole_base(base: f64) -> Option<NonZero<usize>> {
+    NonZero::new(whole(base)).filter(|whole| base.fract() == 0.0 && whole.get() > 1)
 }

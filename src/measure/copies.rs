@@ -1,8 +1,8 @@
 //! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
-use crate::digraph::components;
+use crate::digraph::{components, count};
 use crate::geometry::{DAffine2, DMat2, stretch};
-use crate::graph::{Graph, Instance, Replacement};
+use crate::graph::{Graph, Instance};
 use crate::ifs::Ifs;
 use crate::rule::Placement;
 
@@ -191,7 +191,7 @@ impl Copies {
             targets[copy.from].push(copy.to);
         }
         let component = components(&targets);
-        let count = component.iter().max().map_or(0, |most| most + 1);
+        let count = count(&component);
         let mut components = vec![Component::default(); count];
         for (set, &number) in component.iter().enumerate() {
             components[number].sets.push(set);
@@ -306,17 +306,7 @@ impl Shared {
         let Some(edges) = ifs.edges() else {
             let all: f64 = ifs.weights().iter().sum();
             let copies = maps.iter().zip(ifs.weights());
-            let copies = copies.map(|(map, weight)| {
-                let map = map.affine;
-                (
-                    Copy {
-                        from: 0,
-                        to: 0,
-                        map,
-                    },
-                    weight / all,
-                )
-            });
+            let copies = copies.map(|(map, weight)| ((0, 0, map.affine), weight / all));
             let whole = vec![(0, DAffine2::IDENTITY)];
             return Some(Self::joined(1, copies, whole, vec![1.0]));
         };
@@ -338,7 +328,7 @@ impl Shared {
                 .iter()
                 .any(|&(from, to, _)| component[from] == part && component[to] != part)
         };
-        let count = component.iter().max().map_or(0, |most| most + 1);
+        let count = count(&component);
         if (1..count).any(|part| !is_left(part)) {
             return None;
         }
@@ -351,14 +341,7 @@ impl Shared {
         let often = perron(stay.len(), &steps, |_| false).vector;
         let copies = steps.iter().map(|&(to, from, probability)| {
             let map = maps[stay[to]].affine;
-            (
-                Copy {
-                    from: to,
-                    to: from,
-                    map,
-                },
-                often[from] * probability / often[to],
-            )
+            ((to, from, map), often[from] * probability / often[to])
         });
         let all: f64 = often.iter().sum();
         let start = (0..stay.len()).map(|set| (set, DAffine2::IDENTITY));
@@ -374,12 +357,13 @@ impl Shared {
     /// Joins equal copies, whose shares are added.
     fn joined(
         size: usize,
-        copies: impl Iterator<Item = (Copy, f64)>,
+        copies: impl Iterator<Item = ((usize, usize, DAffine2), f64)>,
         start: Vec<(usize, DAffine2)>,
         masses: Vec<f64>,
     ) -> Self {
         let (mut kept, mut shares): (Vec<Copy>, Vec<f64>) = (Vec::new(), Vec::new());
-        for (copy, share) in copies {
+        for ((from, to, map), share) in copies {
+            let copy = Copy { from, to, map };
             match kept.iter().position(|known| *known == copy) {
                 Some(known) => shares[known] += share,
                 None => {
@@ -409,12 +393,12 @@ pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)
     }
     let fertile = |instance: &Instance| {
         let object = &graph.objects()[instance.object];
-        !matches!(object.replacement, Replacement::Kept)
+        !object.is_kept()
     };
     let mut copies = Vec::new();
     // Objects of one behaviour are replaced alike.
     for object in graph.behaviours() {
-        let Replacement::Fixed(production) = &object.replacement else {
+        let Some(production) = object.successor() else {
             continue;
         };
         for (placement, instance) in production.placed_instances() {

@@ -1,11 +1,12 @@
 //! Covers by boxes of many sizes, on grids that are shifted and turned.
 
 use std::num::NonZero;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::saturating::whole;
+use crate::parallel::map;
+use crate::saturating::{real, whole};
+
+use super::statistics::{deviation, logarithm};
 
 /// Cover of a set by boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +24,13 @@ pub struct Scale {
     pub growth_error: f64,
     /// Whether the count is estimated from a sample of boxes.
     pub sampled: bool,
+}
+
+impl Scale {
+    /// Returns the local slope to a finer scale.
+    pub(super) fn slope_to(&self, finer: &Self) -> f64 {
+        (logarithm(finer.count) - logarithm(self.count)) / libm::log(self.size / finer.size)
+    }
 }
 
 /// Position of a grid relative to a set.
@@ -50,8 +58,7 @@ impl Grid {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         const PLASTIC: f64 = 0.754_877_666_246_692_7;
         let spread = (0..count.get()).map(|number| {
-            #[expect(clippy::cast_precision_loss, reason = "grids are few")]
-            let number = number as f64;
+            let number = real(number);
             Self {
                 angle: (number * GOLDEN).fract() * std::f64::consts::FRAC_PI_2,
                 shift: (DVec2::new(PLASTIC, PLASTIC * PLASTIC) * number).fract(),
@@ -86,40 +93,6 @@ fn boxes(extent: f64) -> usize {
     whole(extent.ceil()).max(1)
 }
 
-/// Returns the results of `count` for every grid, in the order of the grids.
-pub(super) fn on_all<G: Sync, T: Send>(
-    grids: &[G],
-    threads: NonZero<usize>,
-    count: impl Fn(usize, &G) -> T + Sync,
-) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut told = Vec::new();
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some(grid) = grids.get(number) else {
-                return told;
-            };
-            told.push((number, count(number, grid)));
-        }
-    };
-    let mut told = Vec::new();
-    thread::scope(|scope| {
-        let others: Vec<_> = (1..threads.get().min(grids.len()))
-            .map(|_| scope.spawn(work))
-            .collect();
-        told.extend(work());
-        for other in others {
-            match other.join() {
-                Ok(more) => told.extend(more),
-                Err(cause) => std::panic::resume_unwind(cause),
-            }
-        }
-    });
-    told.sort_by_key(|(number, _)| *number);
-    told.into_iter().map(|(_, told)| told).collect()
-}
-
 /// Counts the boxes of all sizes on all grids, and keeps the smallest count of every size.
 ///
 /// `count` returns the counts for the sizes on one grid; sizes beyond the shortest of these lists are
@@ -130,7 +103,7 @@ pub(super) fn least(
     threads: NonZero<usize>,
     count: impl Fn(&Grid) -> Vec<u64> + Sync,
 ) -> Vec<Scale> {
-    let counts = on_all(grids, threads, |_, grid| count(grid));
+    let counts = map(grids, threads.get(), |_, grid| count(grid));
     let logs = |number: usize| counts.iter().map(move |counts| logarithm(counts[number]));
     let least = |number: usize| {
         let counts = counts.iter().map(|counts| counts[number]);
@@ -151,28 +124,4 @@ pub(super) fn least(
     };
     let told = counts.iter().map(Vec::len).min().unwrap_or_default();
     sizes.iter().take(told).enumerate().map(scale).collect()
-}
-
-#[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
-fn logarithm(count: u64) -> f64 {
-    libm::log(count.max(1) as f64)
-}
-
-/// Returns the standard deviation of values; 0 for fewer than two.
-pub(super) fn deviation(values: impl Iterator<Item = f64>) -> f64 {
-    let values: Vec<f64> = values.collect();
-    if values.len() < 2 {
-        return 0.0;
-    }
-    let mean = mean(&values);
-    let squares = values.iter().map(|value| (value - mean) * (value - mean));
-    #[expect(clippy::cast_precision_loss, reason = "grids are few")]
-    let freedom = (values.len() - 1) as f64;
-    (squares.sum::<f64>() / freedom).sqrt()
-}
-
-/// Returns the mean of values.
-#[expect(clippy::cast_precision_loss, reason = "grids are few")]
-pub(super) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }

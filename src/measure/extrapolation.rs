@@ -19,6 +19,8 @@
 //! makes the range less likely. Neighbouring counts are correlated, and count in part only (averages over
 //! ranges: Jay & Neil 2021).
 
+use crate::saturating::{real, whole};
+
 use super::raster::Mean;
 use super::regression::Estimate;
 
@@ -166,8 +168,7 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
     let ranges: Vec<Range> = std::iter::zip(ends, &told)
         .filter_map(|(sizes, told)| Range::of(sizes, told, belief.whole))
         .collect();
-    #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
-    let sizes = |range: &Range| range.sizes as f64;
+    let sizes = |range: &Range| real(range.sizes);
     let log = |range: &Range| COUNTED * (range.log + sizes(range) * libm::log(LEFT_OUT));
     let best = ranges.iter().map(log).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = ranges.iter().map(|it| libm::exp(log(it) - best)).collect();
@@ -181,12 +182,7 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
     };
     let value = mean(&|range| range.mean);
     let spread = mean(&|range| range.variance + (range.mean - value) * (range.mean - value));
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of sizes"
-    )]
-    let sizes = mean(&sizes).round() as usize;
+    let sizes = whole(mean(&sizes).round());
     Some(Estimate {
         value: value + 0.0,
         std_error: libm::hypot(spread.sqrt(), LEAST_ERROR),
@@ -338,8 +334,7 @@ impl<'a> Models<'a> {
         let ranges: Vec<usize> = (0..RANGES)
             .filter(|&it| self.ends[it] >= LEAST_SIZES)
             .collect();
-        #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
-        let sizes = self.ends.map(|end| end as f64);
+        let sizes = self.ends.map(real);
         let volumes = self.ends.map(|end| self.whitened.volume(end));
         let log = |range: usize, rest: f64| {
             let left = rest.max(0.0) / sizes[range] + self.left * self.left;

@@ -4,8 +4,8 @@
 use std::convert::Infallible;
 
 use crate::geometry::DVec2;
-use crate::graph::{Graph, Replacement};
-use crate::grow::{Element, Enter, FractalInfo, Growth, Subtree, Visitor, WalkError, walk};
+use crate::graph::Graph;
+use crate::grow::{Element, Enter, Growth, Subtree, Visitor, WalkError, walk};
 
 /// Points near the limit set of one draw, and their resolution.
 #[derive(Clone, Debug)]
@@ -34,7 +34,6 @@ pub fn grown(
     let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
     let at = |detail: f64| {
         let mut tips = Tips {
-            graph,
             detail,
             most,
             points: Vec::new(),
@@ -45,10 +44,7 @@ pub fn grown(
                 detail,
             })),
             Err(WalkError::Visitor(Enough)) => Ok(None),
-            Err(WalkError::TooManyElements { limit }) => Err(WalkError::TooManyElements { limit }),
-            Err(WalkError::TooLong { limit }) => Err(WalkError::TooLong { limit }),
-            Err(WalkError::NotFinite(error)) => Err(WalkError::NotFinite(error)),
-            Err(WalkError::Cancelled) => Err(WalkError::Cancelled),
+            Err(error) => Err(error.map_visitor(|Enough| unreachable!("that is no error"))),
         }
     };
     const FINEST: f64 = 1.0 / 4096.0;
@@ -69,19 +65,14 @@ pub fn grown(
 /// Stops a walk that has found the maximum number of points.
 struct Enough;
 
-struct Tips<'g> {
-    graph: &'g Graph,
+struct Tips {
     detail: f64,
     most: usize,
     points: Vec<DVec2>,
 }
 
-impl Visitor for Tips<'_> {
+impl Visitor for Tips {
     type Error = Enough;
-
-    fn begin(&mut self, _: FractalInfo) -> Result<(), Enough> {
-        Ok(())
-    }
 
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         if subtree.frame.length() <= self.detail {
@@ -92,8 +83,7 @@ impl Visitor for Tips<'_> {
     }
 
     fn element(&mut self, element: &Element) -> Result<(), Enough> {
-        let object = &self.graph.objects()[element.object];
-        if matches!(object.replacement, Replacement::Kept) {
+        if !element.fertile {
             return Ok(());
         }
         if self.points.len() == self.most {
@@ -101,10 +91,6 @@ impl Visitor for Tips<'_> {
         }
         let [from, to] = element.frame.ends();
         self.points.push(from.midpoint(to));
-        Ok(())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), Enough> {
         Ok(())
     }
 }

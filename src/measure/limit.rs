@@ -6,10 +6,9 @@ mod moments;
 
 use std::num::NonZero;
 
-use crate::extent::NoLimit;
+use crate::extent::{NoLimit, settled};
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
-use crate::graph::{Graph, Instance, Replacement};
-use crate::rule::Placement;
+use crate::graph::{Graph, Instance};
 
 use super::bits::Bits;
 use super::cover::{Grid, Scale, least};
@@ -87,6 +86,18 @@ impl Placed {
             object: inner.object,
         }
     }
+
+    /// Enlarges the copy by a factor, about 0.
+    fn grow(&mut self, factor: f64) {
+        self.map.matrix2 *= factor;
+        self.map.translation *= factor;
+        self.scale *= factor;
+    }
+
+    fn moved(mut self, by: DVec2) -> Self {
+        self.map.translation += by;
+        self
+    }
 }
 
 /// Radius, in units of a box's side, of the copies that are not examined further: a box that the set enters
@@ -119,10 +130,15 @@ impl LimitSet {
         if !graph.shrinks() {
             return Err(NoLimit::DoesNotShrink);
         }
-        let lasting = lasting(graph);
+        let fertile = |object| graph.children(object).map(|(_, instance)| instance);
+        // Objects that are the start of an infinite fertile path.
+        let lasting = settled(vec![true; graph.objects().len()], |lasting| {
+            let goes_on = |object| fertile(object).any(|instance| lasting[instance.object]);
+            (0..lasting.len()).map(goes_on).collect()
+        });
         let kept = |instance: &&Instance| lasting[instance.object];
         let placed = |instance: &Instance| Placed::new(*instance.frame.map(), instance.object);
-        let children = |object| fertile(graph, object).filter(kept).map(placed).collect();
+        let children = |object| fertile(object).filter(kept).map(placed).collect();
         let children = (0..graph.objects().len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();
         let start: Vec<_> = start.filter(kept).map(placed).collect();
@@ -434,31 +450,27 @@ fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
     certain
 }
 
-/// Iterates over the fixed instances that replace an object or start its seeds.
-fn fertile(graph: &Graph, object: usize) -> impl Iterator<Item = &Instance> {
-    let production = match &graph.objects()[object].replacement {
-        Replacement::Fixed(production) => Some(production),
-        _ => None,
-    };
-    let placed = production
-        .into_iter()
-        .flat_map(|production| production.placed_instances());
-    placed
-        .filter(|(placement, _)| *placement != Placement::SeedsAsInitiator)
-        .map(|(_, instance)| instance)
-}
-
-/// Returns whether each object is the start of an infinite fertile path.
-fn lasting(graph: &Graph) -> Vec<bool> {
-    let mut lasting = vec![true; graph.objects().len()];
-    loop {
-        let goes_on = |object| fertile(graph, object).any(|instance| lasting[instance.object]);
-        let next: Vec<bool> = (0..lasting.len()).map(goes_on).collect();
-        if next == lasting {
-            return lasting;
+/// Merges items whose copies are of one object and have nearly equal maps: `join` adds the later item to the
+/// earlier one.
+fn merge<T>(items: &mut Vec<T>, copy: impl Fn(&T) -> &Placed, join: impl Fn(&mut T, T)) {
+    const SAME: f64 = 1e-5;
+    let x = |item: &T| copy(item).map.translation.x;
+    items.sort_by(|a, b| x(a).total_cmp(&x(b)));
+    let mut kept: Vec<T> = Vec::with_capacity(items.len());
+    for item in items.drain(..) {
+        let own = copy(&item);
+        let near = kept.iter_mut().rev();
+        let mut near = near.take_while(|it| x(&item) - x(it) <= SAME);
+        let is_same = |it: &&mut T| {
+            let it = copy(it);
+            it.object == own.object && it.map.abs_diff_eq(own.map, SAME)
+        };
+        match near.find(is_same) {
+            Some(same) => join(same, item),
+            None => kept.push(item),
         }
-        lasting = next;
     }
+    *items = kept;
 }
 
 /// Returns the box that a point lies in.

@@ -1,7 +1,7 @@
 //! The distribution of a set's mass over boxes, and its lacunarity.
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
 use super::bits::Bits;
 use super::cover::Grid;
@@ -51,8 +51,7 @@ impl Masses {
             (pixels.width() + before).div_ceil(side),
             (pixels.height() + above).div_ceil(side),
         );
-        #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
-        let mut grid = Self::empty(width, height, side as f64);
+        let mut grid = Self::empty(width, height, real(side));
         for row in 0..pixels.height() {
             let masses = &mut grid.masses[(row + above) / side * width..][..width];
             for (number, &word) in pixels.row(row).iter().enumerate() {
@@ -114,8 +113,7 @@ impl Masses {
     /// Creates an empty grid with `boxes` boxes along the longer side of a turned box, and the map to it.
     fn over(grid: &Grid, turned: &Bounds, boxes: usize) -> (DAffine2, Self) {
         let extent = turned.size().max_element();
-        #[expect(clippy::cast_precision_loss, reason = "grids are small")]
-        let size = extent * (1.0 + 4e-9) / boxes as f64;
+        let size = extent * (1.0 + 4e-9) / real(boxes);
         let (map, [width, height]) = grid.map(turned, size, extent * COARSEST);
         (map, Self::empty(width, height, size))
     }
@@ -200,13 +198,11 @@ impl Masses {
                     second += mass * mass;
                 }
             }
-            let places = (columns * rows) as u64;
-            #[expect(clippy::cast_precision_loss, reason = "grids are small")]
-            let (count, larger) = (places as f64, side as f64);
+            let places = columns * rows;
             Lacunarity {
-                size: larger * self.size,
-                value: second * count / (first * first),
-                places,
+                size: real(side) * self.size,
+                value: second * real(places) / (first * first),
+                places: places as u64,
             }
         };
         sides.take_while(|&side| side <= shortest).map(of).collect()

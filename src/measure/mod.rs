@@ -39,6 +39,7 @@ mod regression;
 mod sample;
 mod similarity;
 mod spectrum;
+mod statistics;
 mod trend;
 mod units;
 

@@ -4,6 +4,7 @@ use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
 
 use super::bits::Bits;
 use super::cover::Grid;
+use super::statistics::weighted_mean;
 
 /// Reason why points cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -137,13 +138,7 @@ impl Points {
     fn principal_axis(&self) -> f64 {
         const ROUND: f64 = 1e-9;
         let mean = |of: &dyn Fn(DVec2) -> f64| {
-            let (mut sum, mut all) = (0.0, 0.0);
-            for (at, points) in self.places() {
-                let weight = f64::from(points);
-                sum += weight * of(at);
-                all += weight;
-            }
-            sum / all
+            weighted_mean(self.places().map(|(at, points)| (of(at), points.into())))
         };
         let middle = DVec2::new(mean(&|at| at.x), mean(&|at| at.y));
         let xx = mean(&|at| (at.x - middle.x) * (at.x - middle.x));
@@ -262,7 +257,7 @@ fn spread(number: u32) -> u64 {
 /// Gathers the bits at even positions of a key.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are left")]
-fn gathered(key: u64) -> u32 {
+pub(super) fn gathered(key: u64) -> u32 {
     let mut bits = key & 0x5555_5555_5555_5555;
     for (step, mask) in GATHERED.iter().enumerate() {
         bits = (bits | bits >> (1 << step)) & mask;

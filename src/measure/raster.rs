@@ -7,7 +7,10 @@ use std::num::NonZero;
 pub(super) use sliding::{Mean, means, thickness};
 
 use super::bits::Bits;
-use super::cover::{Grid, Scale, least, mean};
+use super::cover::{Grid, Scale, least};
+use super::statistics::mean;
+use crate::geometry::DVec2;
+use crate::saturating::{real, whole};
 
 /// Covers the set pixels of a picture by boxes with sides of …, `base`², `base` and 1 pixels.
 ///
@@ -30,10 +33,9 @@ pub fn raster_scales(
     let sides = std::iter::successors(Some(1), |side: &usize| side.checked_mul(base));
     let sides: Vec<usize> = sides.take_while(|&side| side <= longest).collect();
     let largest = sides.last().copied().unwrap_or(1);
-    #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
-    let sizes: Vec<f64> = sides.iter().rev().map(|&side| side as f64).collect();
+    let sizes: Vec<f64> = sides.iter().rev().map(|&side| real(side)).collect();
     least(&sizes, grids, threads, |grid| {
-        let shift = whole(grid.shift, largest);
+        let shift = distance(grid.shift, largest);
         let mut counts = pyramid(pixels, shift, base, sides.len());
         counts.reverse();
         counts
@@ -41,16 +43,8 @@ pub fn raster_scales(
 }
 
 /// Returns the distance at which a grid begins before a picture, in pixels.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
-    clippy::cast_sign_loss,
-    reason = "the shift is below the largest box"
-)]
-pub(super) fn whole(shift: crate::geometry::DVec2, largest: usize) -> [usize; 2] {
-    (shift * largest as f64)
-        .to_array()
-        .map(|shift| shift as usize)
+pub(super) fn distance(shift: DVec2, largest: usize) -> [usize; 2] {
+    (shift * real(largest)).to_array().map(whole)
 }
 
 /// Counts the boxes of 1, `base`, base² … pixels on the grid that begins `shift` pixels before the picture.
@@ -97,9 +91,8 @@ pub(super) fn regular(scales: &[Scale]) -> Option<(f64, f64)> {
     const LEAST_SLOPES: usize = 4;
     const TOLERANCE: f64 = 0.004;
     let slopes = scales.windows(2).map(|pair| {
-        #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
-        let log = |scale: &Scale| libm::log(scale.count.max(1) as f64);
-        (log(&pair[1]) - log(&pair[0])) / libm::log(pair[0].size / pair[1].size)
+        let [coarse, fine] = [&pair[0], &pair[1]];
+        coarse.slope_to(fine)
     });
     // The largest box may reach beyond the picture.
     let slopes: Vec<f64> = slopes.skip(1).collect();

@@ -10,6 +10,8 @@
 //! their mean. Without a significant bend, the estimate is the first slope, and the second is that of all
 //! sizes without a correction. The difference between the second slope and the estimate is part of the error.
 
+use crate::saturating::real;
+
 /// Measurement at one size of boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reading {
@@ -186,7 +188,7 @@ impl Points {
         let residual = self.dot(&residuals, &residuals);
         // The exponent is fitted as well.
         let fitted = 2 + 2 * usize::from(bend.is_some());
-        let freedom = count(self.x.len().saturating_sub(fitted).max(1));
+        let freedom = real(self.x.len().saturating_sub(fitted).max(1));
         let factor = (residual / freedom).max(LEAST_FACTOR);
         let significance = bend.as_ref().map_or(0.0, |bend| {
             let rest = self.rest(bend, &[&ones, &x]);
@@ -269,11 +271,6 @@ impl Points {
         let correlation = (products / squares).clamp(0.0, MOST);
         (1.0 + correlation) / (1.0 - correlation)
     }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "sizes are few")]
-fn count(number: usize) -> f64 {
-    number as f64
 }
 
 #[cfg(test)]

@@ -8,8 +8,12 @@
 
 use std::num::NonZero;
 
-use super::cover::{Grid, Scale, deviation, mean, on_all};
+use crate::parallel::map;
+use crate::saturating::{real, whole};
+
+use super::cover::{Grid, Scale};
 use super::points::Points;
+use super::statistics::{deviation, mean};
 
 /// Maximum part of the boxes that half of the points may miss; beyond it, there are too few points.
 const MOST_MISSED: f64 = 0.08;
@@ -62,7 +66,7 @@ impl Points {
             .take_while(|power| *power <= finest)
             .map(|power| extent / power)
             .collect();
-        let tallies = on_all(grids, threads, |_, grid| match sizes.last() {
+        let tallies = map(grids, threads.get(), |_, grid| match sizes.last() {
             Some(&finest) => self.tallies(grid, finest, sizes[0], base, sizes.len()),
             None => Vec::new(),
         });
@@ -173,15 +177,9 @@ impl Met {
     fn scale(&self, size: f64, before: Option<&Self>) -> Scale {
         let (growth, growth_error) = before.map(|it| self.growth(it)).unwrap_or_default();
         let least = self.seen.iter().copied().fold(f64::INFINITY, f64::min);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number of boxes"
-        )]
-        let count = least as u64;
         Scale {
             size,
-            count,
+            count: whole(least) as u64,
             scatter: deviation(self.seen.iter().map(|&it| libm::log(it))),
             growth,
             growth_error,
@@ -196,7 +194,7 @@ impl Met {
             both.map(|(a, b)| libm::log(a / b)).collect()
         };
         let growth = by(&self.all, &before.all);
-        let of_grids = deviation(growth.iter().copied()) / count(growth.len()).sqrt();
+        let of_grids = deviation(growth.iter().copied()) / real(growth.len()).sqrt();
         // Half of the correction for missed boxes counts as an error.
         let of_missed = (mean(&growth) - mean(&by(&self.seen, &before.seen))) / 2.0;
         let of_chance = (self.chance + before.chance).sqrt();
@@ -235,7 +233,7 @@ impl Sample {
         Met {
             all: all.collect(),
             missed_by_half: second / sum(&seen),
-            chance: second * count(seen.len()) / (sum(&seen) * sum(&seen)),
+            chance: second * real(seen.len()) / (sum(&seen) * sum(&seen)),
             seen,
         }
     }
@@ -299,9 +297,4 @@ fn digamma(mut at: f64) -> f64 {
     let series =
         square * (1.0 / 12.0 - square * (1.0 / 120.0 - square * (1.0 / 252.0 - square / 240.0)));
     before + libm::log(at) - 0.5 / at - series
-}
-
-#[expect(clippy::cast_precision_loss, reason = "grids are few")]
-fn count(number: usize) -> f64 {
-    number as f64
 }

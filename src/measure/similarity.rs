@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::digraph::components;
+use crate::digraph::{self, parts};
 use crate::extent::NoLimit;
 use crate::graph::{Graph, Object};
 
@@ -44,8 +44,9 @@ pub fn similarity_dimension(graph: &Graph) -> Similarity {
         return Similarity::none(&"the maps are no similarities");
     }
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
-    let parts = parts(graph.behaviours().count(), &edges(graph));
-    // Where nothing stays fertile, maps need not contract.
+    let (_, parts) = parts(graph.behaviours().count(), &edges(graph));
+    let parts = parts.into_iter().filter(|(_, edges)| !edges.is_empty());
+    let parts: Vec<Part> = parts.map(|(size, edges)| Part { size, edges }).collect();
     if parts.is_empty() {
         return Similarity::none(&NoLimit::NothingFertile);
     }
@@ -74,10 +75,21 @@ pub(super) fn dimension_of_part(
     (part.dimension(), part.moran_ratios().is_some())
 }
 
+#[derive(Clone)]
 struct Edge {
     from: usize,
     to: usize,
     ratio: f64,
+}
+
+impl digraph::Edge for Edge {
+    fn ends(&self) -> [usize; 2] {
+        [self.from, self.to]
+    }
+
+    fn between(&self, [from, to]: [usize; 2]) -> Self {
+        Self { from, to, ..*self }
+    }
 }
 
 /// Returns the fertile instances of fertile objects as edges between behaviours: objects of one behaviour are
@@ -102,40 +114,6 @@ struct Part {
     size: usize,
     /// Edges between the part's objects, numbered from 0.
     edges: Vec<Edge>,
-}
-
-/// Returns the strongly connected parts that contain an edge.
-fn parts(size: usize, edges: &[Edge]) -> Vec<Part> {
-    let mut targets = vec![Vec::new(); size];
-    for edge in edges {
-        targets[edge.from].push(edge.to);
-    }
-    let component = components(&targets);
-    let mut numbers = vec![0; size];
-    let mut parts: Vec<Part> = Vec::new();
-    for object in 0..size {
-        let of = component[object];
-        if parts.len() <= of {
-            parts.resize_with(of + 1, || Part {
-                size: 0,
-                edges: Vec::new(),
-            });
-        }
-        numbers[object] = parts[of].size;
-        parts[of].size += 1;
-    }
-    for edge in edges
-        .iter()
-        .filter(|edge| component[edge.from] == component[edge.to])
-    {
-        parts[component[edge.from]].edges.push(Edge {
-            from: numbers[edge.from],
-            to: numbers[edge.to],
-            ratio: edge.ratio,
-        });
-    }
-    parts.retain(|part| !part.edges.is_empty());
-    parts
 }
 
 impl Part {

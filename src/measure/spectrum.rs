@@ -5,12 +5,15 @@ use std::num::NonZero;
 use super::averaging::averaged;
 use super::bits::Bits;
 use super::box_counting::{BoxCounting, Boxes, PLANE};
-use super::cover::{Grid, deviation, mean, on_all};
+use super::cover::Grid;
 use super::limit::{Cascade, Moments};
 use super::mass::Masses;
-use super::raster::whole;
+use super::raster::distance;
 use super::regression::{Estimate, Reading, estimate};
 use super::sample::Sample;
+use super::statistics::{logarithm, mean, readings};
+use crate::parallel::map;
+use crate::saturating::real;
 
 /// Generalised dimension D_q of a set (Hentschel & Procaccia 1983), and its evidence.
 #[derive(Clone, Debug)]
@@ -34,8 +37,7 @@ impl Generalised {
     /// Returns the dimension of order 0, from box counts.
     #[must_use]
     pub fn of_boxes(counting: &BoxCounting) -> Self {
-        #[expect(clippy::cast_precision_loss, reason = "a logarithm is rounded")]
-        let entropy = |it: &Boxes| (it.size, libm::log(it.count.max(1) as f64));
+        let entropy = |it: &Boxes| (it.size, logarithm(it.count));
         Self {
             order: 0.0,
             estimate: counting.estimate,
@@ -57,9 +59,8 @@ impl Generalised {
         threads: NonZero<usize>,
     ) -> Vec<Self> {
         let largest = pixels.width().max(pixels.height()) / 4;
-        let masses = |grid: &Grid| Some(Masses::of_pixels(pixels, whole(grid.shift, largest)));
-        #[expect(clippy::cast_precision_loss, reason = "pictures are smaller than that")]
-        let range = [COARSER, largest as f64];
+        let masses = |grid: &Grid| Some(Masses::of_pixels(pixels, distance(grid.shift, largest)));
+        let range = [COARSER, real(largest)];
         let orders = [orders, &[0.0]].concat();
         let mut spectrum = of_masses(&orders, grids, threads, range, masses).unwrap_or_default();
         let number = spectrum.pop().and_then(|it| it.estimate);
@@ -158,7 +159,7 @@ impl Generalised {
             let entropies = used.iter();
             let entropies =
                 entropies.map(|&(number, size)| (size, sample.entropies(number, order)));
-            fitted(order, &entropies.collect::<Vec<_>>(), true)
+            fitted(order, entropies, true)
         };
         orders.iter().map(of).collect()
     }
@@ -202,9 +203,7 @@ fn slope(readings: &[Reading]) -> (f64, f64) {
     };
     let (slopes, errors): (Vec<f64>, Vec<f64>) = pairs.map(of).unzip();
     let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
-    #[expect(clippy::cast_precision_loss, reason = "sizes are few")]
-    let count = slopes.len() as f64;
-    (mean(&slopes), (mean(&squares) / count).sqrt())
+    (mean(&slopes), (mean(&squares) / real(slopes.len())).sqrt())
 }
 
 /// Extrapolates an estimate where slopes still drift as balls get smaller: to the limit of the mean slopes of
@@ -260,7 +259,7 @@ fn of_masses(
     masses: impl Fn(&Grid) -> Option<Masses> + Sync,
 ) -> Option<Vec<Generalised>> {
     // Entropies by grid, size and order.
-    let entropies = on_all(grids, threads, |_, grid| {
+    let entropies = map(grids, threads.get(), |_, grid| {
         let mut masses = masses(grid)?;
         let mut entropies = Vec::new();
         while masses.size() <= coarsest * SLACK {
@@ -279,7 +278,7 @@ fn of_masses(
             let all = entropies.iter().map(|grid| grid[size].1[number]);
             (entropies[0][size].0, all.collect())
         });
-        fitted(order, &by_size.collect::<Vec<_>>(), false)
+        fitted(order, by_size, false)
     };
     Some(orders.iter().enumerate().map(of).collect())
 }
@@ -288,10 +287,11 @@ fn of_masses(
 ///
 /// For a set that is known, the smallest entropy of all grids is kept, as the smallest cover is; for a
 /// sample, their mean.
-fn fitted(order: f64, entropies: &[(f64, Vec<f64>)], is_sample: bool) -> Generalised {
-    let finite = |by_grid: &Vec<f64>| by_grid.iter().all(|entropy| entropy.is_finite());
-    let entropies = entropies.iter().filter(|(_, by_grid)| finite(by_grid));
-    let entropies: Vec<_> = entropies.collect();
+fn fitted(
+    order: f64,
+    entropies: impl Iterator<Item = (f64, Vec<f64>)>,
+    is_sample: bool,
+) -> Generalised {
     let kept = |by_grid: &[f64]| {
         if is_sample {
             mean(by_grid)
@@ -299,20 +299,9 @@ fn fitted(order: f64, entropies: &[(f64, Vec<f64>)], is_sample: bool) -> General
             by_grid.iter().copied().fold(f64::INFINITY, f64::min)
         }
     };
-    let reading = |(number, (size, by_grid)): (usize, &&(f64, Vec<f64>))| {
-        let last = &entropies[number.saturating_sub(1)].1;
-        let growth = by_grid.iter().zip(last).map(|(a, b)| a - b);
-        #[expect(clippy::cast_precision_loss, reason = "grids are few")]
-        let grids = by_grid.len() as f64;
-        Reading {
-            size: *size,
-            log: kept(by_grid),
-            scatter: deviation(by_grid.iter().copied()),
-            growth: kept(by_grid) - kept(last),
-            growth_error: deviation(growth) / grids.sqrt(),
-        }
-    };
-    let readings: Vec<Reading> = entropies.iter().enumerate().map(reading).collect();
+    let readings = readings(entropies, |by_grid, last| {
+        [kept(by_grid), kept(by_grid) - kept(last)]
+    });
     let averaged = is_sample
         .then(|| averaged(&readings, most(order)))
         .flatten();

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 use std::num::NonZero;
-use std::thread;
+
+use crate::parallel::for_each;
 
 use super::Bits;
 
@@ -80,15 +81,9 @@ impl Bits {
         let stride = dilated.width.div_ceil(64);
         let threads = threads.get().min(dilated.height.div_ceil(ROWS)).max(1);
         let band = dilated.height.div_ceil(threads).max(1);
-        thread::scope(|scope| {
-            let mut bands = dilated.words.chunks_mut(band * stride).enumerate();
-            let first = bands.next();
-            for (number, words) in bands {
-                scope.spawn(move || self.dilate(more, number * band, words, stride));
-            }
-            if let Some((_, words)) = first {
-                self.dilate(more, 0, words, stride);
-            }
+        let bands = dilated.words.chunks_mut(band * stride).enumerate();
+        for_each(bands, threads, |(number, words)| {
+            self.dilate(more, number * band, words, stride);
         });
         dilated
     }

@@ -4,7 +4,7 @@
 use crate::extent::{NoLimit, bounding_box};
 use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Replacement};
-use crate::grow::{Element, FractalInfo, Growth, Visitor, WalkError, walk};
+use crate::grow::{Element, Growth, Visitor, WalkError, walk};
 
 use super::region::{Region, TooMany, radius_of};
 use super::squares::Squares;
@@ -59,15 +59,8 @@ impl<'a> Subject<'a> {
                 limit.bounds().unwrap_or_else(|| discs(graph))
             }
             Subset::Approximant(growth) => {
-                bounding_box(graph, growth).map_err(|error| match error {
-                    WalkError::TooManyElements { limit } => {
-                        NoCover::Walk(WalkError::TooManyElements { limit })
-                    }
-                    WalkError::TooLong { limit } => NoCover::Walk(WalkError::TooLong { limit }),
-                    WalkError::NotFinite(error) => NoCover::Walk(WalkError::NotFinite(error)),
-                    WalkError::Cancelled => NoCover::Walk(WalkError::Cancelled),
-                    WalkError::Visitor(never) => match never {},
-                })?
+                let bounds = bounding_box(graph, growth);
+                bounds.map_err(|error| NoCover::Walk(error.map_visitor(|never| match never {})))?
             }
         };
         if bounds.is_empty() {
@@ -213,10 +206,6 @@ struct Approximant<'a, 'v> {
 impl Visitor for Approximant<'_, '_> {
     type Error = TooMany;
 
-    fn begin(&mut self, _: FractalInfo) -> Result<(), TooMany> {
-        Ok(())
-    }
-
     fn element(&mut self, element: &Element) -> Result<(), TooMany> {
         let object = &self.graph.objects()[element.object];
         if !object.visible {
@@ -224,9 +213,5 @@ impl Visitor for Approximant<'_, '_> {
         }
         let outline = &self.graph.base_elements()[object.base_element];
         self.region.add_outline(outline, element.frame.map())
-    }
-
-    fn end(&mut self, _: bool) -> Result<(), TooMany> {
-        Ok(())
     }
 }

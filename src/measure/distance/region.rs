@@ -2,7 +2,7 @@
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
 /// Error of a set whose cover takes more points than are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -99,8 +99,7 @@ impl Covered {
             within(middle.y + radius, self.rows),
         );
         for row in bottom..=top {
-            #[expect(clippy::cast_precision_loss, reason = "rows are few")]
-            let below = row as f64 - middle.y;
+            let below = real(row) - middle.y;
             let away = below.abs().max((below + 1.0).abs());
             let half = (radius * radius - away * away).sqrt();
             let (left, right) = ((middle.x - half).ceil(), (middle.x + half).floor());

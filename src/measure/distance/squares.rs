@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Replacement};
 use crate::rule::BaseElement;
-use crate::saturating::whole;
+use crate::saturating::{ones, real, whole};
 
 use super::cover::reaches;
 use super::region::{Region, TooMany};
@@ -161,7 +161,7 @@ impl<'g> Squares<'g> {
 
     fn grid_of(&self, object: usize) -> Option<usize> {
         let object = &self.graph.objects()[object];
-        let is_replaced = matches!(object.replacement, Replacement::Fixed(_));
+        let is_replaced = object.successor().is_some();
         self.of[object.behaviour].filter(|_| is_replaced)
     }
 
@@ -173,7 +173,7 @@ impl<'g> Squares<'g> {
         let mut open: Vec<usize> = start.map(|instance| instance.object).collect();
         while let Some(object) = open.pop() {
             let found = &graph.objects()[object];
-            let is_replaced = matches!(found.replacement, Replacement::Fixed(_));
+            let is_replaced = found.successor().is_some();
             if !self.alive[object] || !is_replaced || self.of[found.behaviour].is_some() {
                 continue;
             }
@@ -416,9 +416,8 @@ impl Grid {
 
 /// Returns the lower left corner of a square.
 #[inline]
-#[expect(clippy::cast_precision_loss, reason = "rows of squares are short")]
 fn place(x: usize, y: usize) -> DVec2 {
-    DVec2::new(x as f64, y as f64)
+    DVec2::new(real(x), real(y))
 }
 
 fn middle(x: usize, y: usize) -> DVec2 {
@@ -426,12 +425,8 @@ fn middle(x: usize, y: usize) -> DVec2 {
 }
 
 /// Iterates over the indices of the bits that are set.
-fn bits(mut word: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = (word != 0).then(|| word.trailing_zeros() as usize);
-        word &= word.wrapping_sub(1);
-        bit
-    })
+fn bits(word: u64) -> impl Iterator<Item = usize> {
+    ones(word).map(|bit| bit as usize)
 }
 
 /// Returns the square along a row of tiles that a coordinate lies in, or the nearest one.

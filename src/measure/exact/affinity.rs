@@ -9,6 +9,7 @@ use glam::DMat3;
 use super::Effort;
 use super::spectral::dense_radius;
 use super::system::GraphDirectedSystem;
+use crate::saturating::real;
 
 /// Affinity dimension, which bounds the dimension of the set from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,8 +142,7 @@ fn sum(products: &[Product], part: &GraphDirectedSystem, s: f64) -> f64 {
 /// fractional part of s as its exponent; beyond the dimension d of the space, the determinant to the power
 /// s/d.
 fn cost(logarithms: &[f64], s: f64) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
-    let space = logarithms.len() as f64;
+    let space = real(logarithms.len());
     if s >= space {
         return libm::exp(logarithms.iter().sum::<f64>() * s / space);
     }

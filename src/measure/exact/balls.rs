@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::system::ratio;
+use crate::saturating::real;
 
 /// A ball around each set of a system.
 #[derive(Clone, Debug)]
@@ -26,9 +27,7 @@ impl Balls {
                 let sum: DVec3 = moved
                     .map(|(to, map)| map.transform_point3(centres[*to]))
                     .sum();
-                #[expect(clippy::cast_precision_loss, reason = "a count of copies")]
-                let count = copies.len() as f64;
-                sum / count
+                sum / real(copies.len())
             };
             centres = copies.iter().map(mean).collect();
         }

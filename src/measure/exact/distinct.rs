@@ -5,6 +5,7 @@ use glam::DAffine3;
 use super::Effort;
 use super::neighbours::{Pair, Register};
 use super::sizes::{Generations, Piece};
+use crate::saturating::real;
 
 /// Maximum number of pieces, over all generations and sets.
 const MOST_PIECES: usize = 60_000;
@@ -19,13 +20,9 @@ pub(super) fn upper_bound(generations: &Generations, effort: Effort) -> Option<f
         .map(|set| counts(generations, set, most / generations.size()))
         .collect();
     let last = counts.iter().map(Vec::len).min()?;
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "counts of pieces and generations"
-    )]
     let bounds = (1..last).map(|generation| {
         let most = counts.iter().map(|counts| counts[generation]).max();
-        libm::log(most.unwrap_or(0) as f64) / (generation as f64 * generations.depth)
+        libm::log(real(most.unwrap_or(0))) / (real(generation) * generations.depth)
     });
     bounds.min_by(f64::total_cmp)
 }

@@ -1,14 +1,13 @@
 //! Exact dimensions of the limit of a graph.
 
 use crate::extent::NoLimit;
-use crate::graph::{Graph, Replacement};
+use crate::graph::Graph;
 use crate::measure::similarity_dimension;
 
 use super::closed_form::{plain, settled};
 use super::random::expected_dimension;
 use super::{
-    Dimensions, Effort, Equation, GraphDirectedSystem, Hausdorff, Overlap, Similar,
-    dimensions_within,
+    Dimensions, Effort, Equation, GraphDirectedSystem, Hausdorff, Similar, dimensions_within,
 };
 
 /// Exact dimensions of the limit of a graph, as far as they are known.
@@ -22,6 +21,17 @@ pub struct GraphDimensions {
     pub drawn: Option<f64>,
     /// Remarks on the dimensions.
     pub notes: Vec<String>,
+}
+
+impl GraphDimensions {
+    /// Returns dimensions of a limit set with a note, where nothing is known of what is drawn.
+    fn of(dimensions: Option<Dimensions>, note: String) -> Self {
+        Self {
+            dimensions,
+            drawn: None,
+            notes: vec![note],
+        }
+    }
 }
 
 /// Computes the exact dimensions of a graph's limit, as far as they are known.
@@ -41,11 +51,7 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensi
     let Some(dimensions) = dimensions else {
         let reason = similarity_dimension(graph).note;
         let reason = reason.unwrap_or_else(|| NoLimit::DoesNotShrink.to_string());
-        return GraphDimensions {
-            dimensions: None,
-            drawn: None,
-            notes: vec![reason],
-        };
+        return GraphDimensions::of(None, reason);
     };
     let mut notes = Vec::new();
     let own = dimensions.hausdorff.value;
@@ -79,11 +85,7 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensi
 
 fn at_random(graph: &Graph) -> GraphDimensions {
     match expected_dimension(graph) {
-        Err(reason) => GraphDimensions {
-            dimensions: None,
-            drawn: None,
-            notes: vec![format!("the ratios are drawn: {reason}")],
-        },
+        Err(reason) => GraphDimensions::of(None, format!("the ratios are drawn: {reason}")),
         Ok(value) => {
             let value = settled(value);
             let method = "for almost all draws, if copies do not overlap (Falconer 1986)";
@@ -94,21 +96,11 @@ fn at_random(graph: &Graph) -> GraphDimensions {
                     closed_form: plain(value),
                 }),
                 affinity: None,
-                hausdorff: Hausdorff {
-                    value: None,
-                    closed_form: None,
-                    upper_bound: Some(value.min(2.0)),
-                    overlap: Overlap::Unknown,
-                    method: method.into(),
-                },
+                hausdorff: Hausdorff::unknown(value.min(2.0), method.into()),
                 boundary: None,
                 regular: false,
             };
-            GraphDimensions {
-                dimensions: Some(dimensions),
-                drawn: None,
-                notes: vec!["the expected sum of ratio^D is 1".into()],
-            }
+            GraphDimensions::of(Some(dimensions), "the expected sum of ratio^D is 1".into())
         }
     }
 }
@@ -117,8 +109,7 @@ fn at_random(graph: &Graph) -> GraphDimensions {
 /// are filled, 1 for lines.
 fn infertile(graph: &Graph) -> Option<f64> {
     let objects = graph.objects().iter();
-    let drawn =
-        objects.filter(|object| object.visible && matches!(object.replacement, Replacement::Kept));
+    let drawn = objects.filter(|object| object.visible && object.is_kept());
     drawn
         .map(|object| {
             let is_closed = graph.base_elements()[object.base_element].is_closed();

@@ -107,15 +107,16 @@ fn points(system: &GraphDirectedSystem) -> Vec<DVec3> {
     points
 }
 
+/// Returns the part of a vector that is orthogonal to orthonormal axes; two passes are sufficient (Kahan).
+fn remainder(axes: &[DVec3], vector: DVec3) -> DVec3 {
+    let axes = axes.iter().chain(axes);
+    axes.fold(vector, |left, axis| left - left.dot(*axis) * *axis)
+}
+
 /// Adds the normalised remainder of a vector to an orthonormal list, and returns `true`, if it is not in the
 /// span of the list.
 fn extend(axes: &mut Vec<DVec3>, vector: DVec3) -> bool {
-    let remainder = |vector: DVec3| {
-        axes.iter()
-            .fold(vector, |left, axis| left - left.dot(*axis) * *axis)
-    };
-    // Two passes are sufficient (Kahan).
-    let left = remainder(remainder(vector));
+    let left = remainder(axes, vector);
     let new = axes.len() < 3 && left.length() > FLAT;
     if new {
         axes.push(left.normalize());
@@ -127,11 +128,7 @@ fn extend(axes: &mut Vec<DVec3>, vector: DVec3) -> bool {
 fn completed(mut axes: Vec<DVec3>) -> DMat3 {
     // The largest remainder loses the fewest digits to rounding.
     while axes.len() < 3 {
-        let remainder = |vector: DVec3| {
-            axes.iter()
-                .fold(vector, |left, axis| left - left.dot(*axis) * *axis)
-        };
-        let all = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| remainder(remainder(axis)));
+        let all = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| remainder(&axes, axis));
         let longest =
             all.into_iter().fold(
                 DVec3::ZERO,

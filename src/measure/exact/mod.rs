@@ -45,6 +45,8 @@ pub use system::GraphDirectedSystem;
 
 pub(super) use pieces::distinct;
 
+use crate::saturating::real;
+
 use affinity::affinity;
 use part::{PartDimension, part_dimension};
 
@@ -118,6 +120,19 @@ pub struct Hausdorff {
     pub overlap: Overlap,
     /// Method by which the dimension was found, or attempts that failed.
     pub method: String,
+}
+
+impl Hausdorff {
+    /// Returns a dimension that is not decided.
+    fn unknown(upper_bound: f64, method: String) -> Self {
+        Self {
+            value: None,
+            closed_form: None,
+            upper_bound: Some(upper_bound),
+            overlap: Overlap::Unknown,
+            method,
+        }
+    }
 }
 
 /// Dimension of the boundary of a set with interior.
@@ -243,21 +258,16 @@ fn of_affine(parts: &[&GraphDirectedSystem], space: usize, effort: Effort) -> Op
     let all: Option<Vec<Affinity>> = parts.iter().map(|part| affinity(part, effort)).collect();
     let all = all?.into_iter();
     let affinity = all.max_by(|a, b| a.upper_bound.total_cmp(&b.upper_bound))?;
-    #[expect(clippy::cast_precision_loss, reason = "2 or 3")]
-    let space = space as f64;
     Some(Dimensions {
         similarity: None,
         affinity: Some(affinity),
-        hausdorff: Hausdorff {
-            value: None,
-            closed_form: None,
-            upper_bound: Some(affinity.upper_bound.min(space)),
-            overlap: Overlap::Unknown,
-            method: format!(
+        hausdorff: Hausdorff::unknown(
+            affinity.upper_bound.min(real(space)),
+            format!(
                 "maps are not similarities: bounded by the affinity dimension, from products of {} maps (Falconer 1988)",
                 affinity.length
             ),
-        },
+        ),
         boundary: None,
         regular: false,
     })

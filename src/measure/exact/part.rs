@@ -1,6 +1,7 @@
 //! The dimension of a strongly connected part of a system.
 
 use crate::measure::similarity::dimension_of_part;
+use crate::saturating::real;
 
 use super::closed_form::{closed_form, plain, settled};
 use super::distinct::upper_bound;
@@ -39,13 +40,7 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
             equation,
             closed_form: plain(value),
         },
-        hausdorff: Hausdorff {
-            value: None,
-            closed_form: None,
-            upper_bound: Some(value.min(count(system.space))),
-            overlap: Overlap::Unknown,
-            method: String::new(),
-        },
+        hausdorff: Hausdorff::unknown(value.min(real(system.space)), String::new()),
         boundary: None,
     };
     if value == 0.0 {
@@ -69,12 +64,6 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
     }
     part
 }
-
-#[expect(clippy::cast_precision_loss, reason = "3 at most")]
-fn count(dimensions: usize) -> f64 {
-    dimensions as f64
-}
-
 impl PartDimension {
     /// Records that the set has its similarity dimension.
     fn decide(&mut self, overlap: Overlap, method: String) {
@@ -93,9 +82,7 @@ impl PartDimension {
     /// Returns `true` if the set has the dimension of the space that contains it.
     fn has_inside(&self, flat: &Flat) -> bool {
         let own = self.hausdorff.value;
-        own.is_some_and(|own| {
-            flat.dimension == flat.space && (own - count(flat.space)).abs() < SAME
-        })
+        own.is_some_and(|own| flat.dimension == flat.space && (own - real(flat.space)).abs() < SAME)
     }
 
     fn by_neighbours(&mut self, flat: &Flat, generations: &Generations, effort: Effort) {
@@ -216,7 +203,7 @@ impl PartDimension {
             self.decide(Overlap::Touching, method.into());
             // The hulls of copies leave no gap: their total area is that of the hull that contains them.
             if self.has_inside(flat) {
-                let value = count(flat.space - 1);
+                let value = real(flat.space - 1);
                 self.boundary = Some(Boundary {
                     value: Some(value),
                     closed_form: plain(value),

@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use crate::digraph::components;
+use crate::digraph::{components, count};
 use crate::geometry::{DAffine2, DMat2};
 use crate::measure::copies::{Copies, Copy};
 
@@ -24,7 +24,7 @@ pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
         targets[copy.from].push(copy.to);
     }
     let component = components(&targets);
-    let count = component.iter().max().map_or(0, |most| most + 1);
+    let count = count(&component);
     let mut distinct = Copies {
         copies: Vec::new(),
         ..copies.clone()

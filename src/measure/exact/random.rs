@@ -7,6 +7,9 @@ use crate::extent::NoLimit;
 use crate::graph::{Alternative, Graph, Replacement};
 use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
+use crate::measure::perron::crossing;
+use crate::saturating::real;
+
 use super::spectral::dense_radius;
 
 /// Maximum number of quadrature nodes of one generator.
@@ -67,22 +70,14 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, String> {
     while radius(high) > 1.0 {
         (low, high) = (high, 2.0 * high);
     }
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if radius(middle) > 1.0 {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    Ok(high)
+    Ok(crossing(high, low, radius))
 }
 
 /// Adds the ratio of a fertile element, from a behaviour to an object.
 fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, weight: f64) {
     let [from, object] = place;
     let object = &graph.objects()[object];
-    if !matches!(object.replacement, Replacement::Kept) {
+    if !object.is_kept() {
         ratios.push(Ratio {
             from,
             to: object.behaviour,
@@ -198,8 +193,7 @@ fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
             (-33..=33).map(node).collect()
         }
         Distribution::Choice(values) => {
-            #[expect(clippy::cast_precision_loss, reason = "a count of list entries")]
-            let weight = 1.0 / values.len() as f64;
+            let weight = 1.0 / real(values.len());
             values
                 .iter()
                 .map(|value| (value.eval(slots), weight))

@@ -1,6 +1,6 @@
 //! The growth of the number of paths of a graph: the spectral radius of its matrix.
 
-use crate::digraph::components;
+use crate::digraph::parts;
 
 /// Relative width at which an enclosure counts as a value, once it no longer narrows.
 const NARROW: f64 = 1e-13;
@@ -18,25 +18,16 @@ const MOST_WORK: usize = 200_000_000;
 /// The radius is the largest of those of the strongly connected parts, each computed by power iteration on
 /// the part plus the identity; quotients of successive vectors enclose it (Collatz 1942, Wielandt 1950).
 pub(super) fn spectral_radius(targets: &[Vec<usize>]) -> Option<f64> {
-    let component = components(targets);
-    let count = component.iter().max().map_or(0, |most| most + 1);
-    let mut members = vec![Vec::new(); count];
-    let mut number = vec![0; targets.len()];
-    for (node, &part) in component.iter().enumerate() {
-        number[node] = members[part].len();
-        members[part].push(node);
-    }
+    let edges = targets.iter().enumerate();
+    let edges = edges.flat_map(|(from, to)| to.iter().map(move |&to| [from, to]));
+    let (_, parts) = parts(targets.len(), &edges.collect::<Vec<_>>());
     let mut radius: f64 = 0.0;
-    for (part, members) in members.iter().enumerate() {
-        let inside = |node: &usize| component[*node] == part;
-        let edges: Vec<Vec<usize>> = members
-            .iter()
-            .map(|&node| {
-                let inner = targets[node].iter().copied().filter(inside);
-                inner.map(|node| number[node]).collect()
-            })
-            .collect();
-        radius = radius.max(radius_of_part(&edges)?);
+    for (size, edges) in parts {
+        let mut targets = vec![Vec::new(); size];
+        for [from, to] in edges {
+            targets[from].push(to);
+        }
+        radius = radius.max(radius_of_part(&targets)?);
     }
     Some(radius)
 }

@@ -1,6 +1,6 @@
 //! Systems of sets that are made of smaller copies of each other, from which dimensions are computed.
 
-use crate::digraph::components;
+use crate::digraph::{Edge, parts};
 use crate::geometry::{DAffine2, DMat2};
 use crate::graph::Graph;
 use crate::measure::copies::fixed_copies;
@@ -12,6 +12,16 @@ pub(super) struct Copy {
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) map: DAffine3,
+}
+
+impl Edge for Copy {
+    fn ends(&self) -> [usize; 2] {
+        [self.from, self.to]
+    }
+
+    fn between(&self, [from, to]: [usize; 2]) -> Self {
+        Self { from, to, ..*self }
+    }
 }
 
 /// Sets K₀, K₁, … that are unions of copies, K_from = ∪ map(K_to) over the copies in `from` (Mauldin &
@@ -72,37 +82,13 @@ impl GraphDirectedSystem {
     /// The dimension of the whole is the largest of those of components that have a copy inside: every point
     /// lies in a copy of one, and there are countably many copies.
     pub(super) fn components(&self) -> (Vec<usize>, Vec<Self>) {
-        let mut targets = vec![Vec::new(); self.size];
-        for copy in &self.copies {
-            targets[copy.from].push(copy.to);
-        }
-        let component = components(&targets);
-        let count = component.iter().max().map_or(0, |most| most + 1);
-        let mut parts = vec![
-            Self {
-                space: self.space,
-                size: 0,
-                copies: Vec::new(),
-            };
-            count
-        ];
-        let number: Vec<usize> = component
-            .iter()
-            .map(|&part| {
-                parts[part].size += 1;
-                parts[part].size - 1
-            })
-            .collect();
-        for copy in &self.copies {
-            if component[copy.from] == component[copy.to] {
-                parts[component[copy.from]].copies.push(Copy {
-                    from: number[copy.from],
-                    to: number[copy.to],
-                    map: copy.map,
-                });
-            }
-        }
-        (component, parts)
+        let (component, parts) = parts(self.size, &self.copies);
+        let parts = parts.into_iter().map(|(size, copies)| Self {
+            space: self.space,
+            size,
+            copies,
+        });
+        (component, parts.collect())
     }
 
     /// Returns `true` if all maps are similarities.

@@ -8,11 +8,13 @@
 use std::num::NonZero;
 
 use crate::geometry::DVec2;
-use crate::measure::cover::{Grid, Scale, deviation, mean, on_all};
+use crate::measure::cover::{Grid, Scale};
+use crate::measure::statistics::{deviation, mean};
+use crate::parallel::map;
 use crate::random::Pcg;
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
-use super::{GRAZED, LimitSet, Placed};
+use super::{GRAZED, LimitSet, Placed, merge};
 
 /// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes. Counts are
 /// exact as long as there are fewer.
@@ -73,23 +75,17 @@ impl<'s> Descent<'s> {
         for cell in &self.cells {
             met += usize::from(self.set.meets(cell, &mut left)?);
         }
-        #[expect(clippy::cast_precision_loss, reason = "some thousands of boxes")]
-        (met > 0).then_some((met as f64 * self.weight, self.weight > 1.0))
+        (met > 0).then_some((real(met) * self.weight, self.weight > 1.0))
     }
 
     /// Continues with boxes smaller by the factor `base`.
     fn go_down(&mut self, base: usize) {
         self.choose();
         self.looked_at = 0;
-        #[expect(clippy::cast_precision_loss, reason = "a base is small")]
-        let scale = base as f64;
+        let scale = real(base);
         let mut cells = Vec::new();
         for mut cell in std::mem::take(&mut self.cells) {
-            for copy in &mut cell {
-                copy.map.matrix2 *= scale;
-                copy.map.translation *= scale;
-                copy.scale *= scale;
-            }
+            cell.iter_mut().for_each(|copy| copy.grow(scale));
             cells.append(&mut self.divided(cell, [base; 2]));
             if self.looked_at > MOST_COPIES {
                 break;
@@ -99,21 +95,15 @@ impl<'s> Descent<'s> {
     }
 
     /// Keeps one box of each run of neighbours, if there are too many.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_precision_loss,
-        clippy::cast_sign_loss,
-        reason = "numbers of boxes are small"
-    )]
     fn choose(&mut self) {
         let copies: usize = self.cells.iter().map(Vec::len).sum();
         let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1)).max(FOLLOWED);
         if self.cells.len() <= most {
             return;
         }
-        let run = self.cells.len() as f64 / most as f64;
+        let run = real(self.cells.len()) / real(most);
         self.weight *= run;
-        let places = (0..most).map(|number| ((number as f64 + self.random.unit()) * run) as usize);
+        let places = (0..most).map(|number| whole((real(number) + self.random.unit()) * run));
         let places: Vec<usize> = places.collect();
         // A box that two runs share may be chosen twice.
         let chosen = places.iter().map(|&place| self.cells[place].clone());
@@ -144,8 +134,7 @@ impl<'s> Descent<'s> {
             }
             for row in rows {
                 for column in columns.clone() {
-                    #[expect(clippy::cast_precision_loss, reason = "grids are small")]
-                    let corner = DVec2::new(column as f64, row as f64);
+                    let corner = DVec2::new(real(column), real(row));
                     let nearest = middle.clamp(corner, corner + 1.0);
                     if middle.distance_squared(nearest) <= radius * radius {
                         let mut inner = copy;
@@ -156,28 +145,11 @@ impl<'s> Descent<'s> {
             }
         }
         cells.retain(|cell| !cell.is_empty());
-        cells.iter_mut().for_each(without_doubles);
+        for cell in cells.iter_mut().filter(|cell| cell.len() >= MANY) {
+            merge(cell, |copy| copy, |_, _| {});
+        }
         cells
     }
-}
-
-/// Removes copies that are equal to others.
-fn without_doubles(cell: &mut Cell) {
-    const SAME: f64 = 1e-5;
-    if cell.len() < MANY {
-        return;
-    }
-    cell.sort_by(|a, b| a.map.translation.x.total_cmp(&b.map.translation.x));
-    let mut kept: Cell = Vec::with_capacity(cell.len());
-    for copy in cell.iter() {
-        let near = kept.iter().rev();
-        let mut near = near.take_while(|it| copy.map.translation.x - it.map.translation.x <= SAME);
-        let is_same = |it: &Placed| it.object == copy.object && it.map.abs_diff_eq(copy.map, SAME);
-        if !near.any(is_same) {
-            kept.push(*copy);
-        }
-    }
-    *cell = kept;
 }
 
 impl LimitSet {
@@ -204,12 +176,11 @@ impl LimitSet {
         if extent <= 0.0 {
             return Vec::new();
         }
-        #[expect(clippy::cast_precision_loss, reason = "a base is small")]
-        let smaller = |size: &f64| size / base as f64;
+        let smaller = |size: &f64| size / real(base);
         let first = smaller(&(extent * (1.0 + 2e-9)));
         let sizes = std::iter::successors(Some(first), |size| Some(smaller(size)));
         let sizes: Vec<f64> = sizes.take_while(|size| *size > FINEST * extent).collect();
-        let counts = on_all(grids, threads, |number, grid| {
+        let counts = map(grids, threads.get(), |number, grid| {
             let (map, boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
             let map = Placed::new(map, 0);
             let start = self.start.iter().map(|copy| map.compose(copy)).collect();
@@ -281,8 +252,6 @@ fn pooled(scales: &mut [Scale]) {
 fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
     let levels = counts.iter().map(Vec::len).min().unwrap_or_default();
     let logs = |level: usize| counts.iter().map(move |counts| libm::log(counts[level].0));
-    #[expect(clippy::cast_precision_loss, reason = "grids are few")]
-    let grids = counts.len() as f64;
     let mut log = 0.0;
     let mut scales = Vec::new();
     for level in 0..levels {
@@ -306,7 +275,11 @@ fn joined(sizes: &[f64], counts: &[Vec<Count>]) -> Vec<Scale> {
             count: rounded(log),
             scatter: deviation(logs(level)),
             growth: if level > 0 { log - last } else { 0.0 },
-            growth_error: if sampled { error / grids.sqrt() } else { error },
+            growth_error: if sampled {
+                error / real(counts.len()).sqrt()
+            } else {
+                error
+            },
             sampled,
         });
     }

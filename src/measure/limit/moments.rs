@@ -14,10 +14,12 @@
 use std::num::NonZero;
 
 use crate::geometry::DVec2;
-use crate::measure::cover::{deviation, mean, on_all};
 use crate::measure::regression::Reading;
+use crate::measure::statistics::{differences, mean, readings};
+use crate::parallel::map;
+use crate::saturating::real;
 
-use super::{Cascade, Placed};
+use super::{Cascade, Placed, merge};
 
 /// Maximum radius of a piece, relative to that of a ball. The resulting blur of the balls is the same at all
 /// sizes.
@@ -66,10 +68,9 @@ impl Moments {
         let first = extent / 2.0;
         let sizes = std::iter::successors(Some(first), |size| Some(size / base));
         let sizes: Vec<f64> = sizes.take_while(|size| *size > FINEST * extent).collect();
-        #[expect(clippy::cast_precision_loss, reason = "series are few")]
-        let parts = (0..series.get()).map(|number| number as f64 / series.get() as f64);
+        let parts = (0..series.get()).map(|number| real(number) / real(series.get()));
         let parts: Vec<f64> = parts.collect();
-        let entropies = on_all(&parts, threads, |_, &part| {
+        let entropies = map(&parts, threads.get(), |_, &part| {
             let size = first * libm::pow(base, -part);
             let mut descent = Descent::new(cascade, orders, size / 2.0, part);
             let mut entropies = Vec::new();
@@ -102,23 +103,10 @@ impl Moments {
         };
         let all = self.sizes.iter().enumerate();
         let all = all.map(|(number, &size)| (size, by_series(number)));
-        let finite = |(_, logs): &(f64, Vec<f64>)| logs.iter().all(|log| log.is_finite());
-        let all: Vec<(f64, Vec<f64>)> = all.filter(finite).collect();
-        let reading = |(number, (size, logs)): (usize, &(f64, Vec<f64>))| {
-            let last = &all[number.saturating_sub(1)].1;
-            let both = logs.iter().zip(last);
-            let growth: Vec<f64> = both.map(|(log, last)| log - last).collect();
-            #[expect(clippy::cast_precision_loss, reason = "series are few")]
-            let series = logs.len() as f64;
-            Reading {
-                size: *size,
-                log: mean(logs),
-                scatter: deviation(logs.iter().copied()),
-                growth: mean(&growth),
-                growth_error: deviation(growth.into_iter()) / series.sqrt(),
-            }
-        };
-        all.iter().enumerate().map(reading).collect()
+        readings(all, |logs, last| {
+            let growth: Vec<f64> = differences(logs, last).collect();
+            [mean(logs), mean(&growth)]
+        })
     }
 }
 
@@ -248,8 +236,7 @@ impl<'c> Descent<'c> {
                 }
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "pieces are some thousand")]
-        let chances = most as f64 / parts.iter().sum::<f64>();
+        let chances = real(most) / parts.iter().sum::<f64>();
         let mut passed = self.place;
         self.place = (self.place + GOLDEN).fract();
         let mut parts = parts.into_iter();
@@ -300,7 +287,9 @@ impl<'c> Descent<'c> {
                 radius,
             });
         }
-        join(&mut small);
+        if small.len() >= MANY {
+            merge(&mut small, |it| &it.copy, |same, it| same.mass += it.mass);
+        }
         small
     }
 
@@ -347,51 +336,8 @@ impl Piece {
     }
 }
 
-impl Placed {
-    /// Enlarges the copy by a factor, about 0.
-    fn grow(&mut self, factor: f64) {
-        self.map.matrix2 *= factor;
-        self.map.translation *= factor;
-        self.scale *= factor;
-    }
-
-    fn moved(mut self, by: DVec2) -> Self {
-        self.map.translation += by;
-        self
-    }
-}
-
 /// Returns the logarithm of a sum of exponentials.
 fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     let most = logs.clone().fold(f64::NEG_INFINITY, f64::max);
     most + libm::log(logs.map(|log| libm::exp(log - most)).sum::<f64>())
-}
-
-/// Joins copies that are equal, and adds their masses.
-fn join(copies: &mut Vec<Small>) {
-    const SAME: f64 = 1e-5;
-    if copies.len() < MANY {
-        return;
-    }
-    copies.sort_by(|a, b| {
-        a.copy
-            .map
-            .translation
-            .x
-            .total_cmp(&b.copy.map.translation.x)
-    });
-    let mut kept: Vec<Small> = Vec::with_capacity(copies.len());
-    for small in copies.drain(..) {
-        let x = small.copy.map.translation.x;
-        let near = kept.iter_mut().rev();
-        let mut near = near.take_while(|it| x - it.copy.map.translation.x <= SAME);
-        let is_same = |it: &&mut Small| {
-            it.copy.object == small.copy.object && it.copy.map.abs_diff_eq(small.copy.map, SAME)
-        };
-        match near.find(is_same) {
-            Some(same) => same.mass += small.mass,
-            None => kept.push(small),
-        }
-    }
-    *copies = kept;
 }

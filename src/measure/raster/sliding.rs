@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use std::num::NonZero;
 
 use crate::measure::bits::Bits;
+use crate::saturating::real;
 
 /// Mean number of boxes of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,23 +62,21 @@ pub(in crate::measure) fn means(pixels: &Bits, threads: NonZero<usize>) -> Vec<M
     means
 }
 
-#[expect(clippy::cast_precision_loss, reason = "a mean is rounded")]
 fn mean(dilated: &Bits, places: usize, block: usize) -> Mean {
     Mean {
-        size: (places * block) as f64,
-        boxes: dilated.count() as f64 / (places * places) as f64,
+        size: real(places * block),
+        boxes: dilated.area() / real(places * places),
     }
 }
 
 /// Returns the thickness of a set, in pixels beyond the first: the sum of the parts of the set that are
 /// filled by squares of 2, 3 … 6 pixels inside it. The thickness is near w − 1 for lines that are w pixels
 /// wide, and 5 for filled shapes. In large pictures, only some bands of rows are examined.
-#[expect(clippy::cast_precision_loss, reason = "parts are rounded")]
 pub(in crate::measure) fn thickness(pixels: &Bits, threads: NonZero<usize>) -> f64 {
     const THIN: f64 = 0.3;
     let bands = pixels.bands();
     let pixels = bands.as_ref();
-    let all = pixels.count().max(1) as f64;
+    let all = pixels.area().max(1.0);
     let mut thickness = 0.0;
     for side in FILLING {
         let mut filled = pixels.eroded(side);
@@ -87,7 +86,7 @@ pub(in crate::measure) fn thickness(pixels: &Bits, threads: NonZero<usize>) -> f
             filled = filled.dilated(more, threads);
             places += more;
         }
-        let part = filled.count() as f64 / all;
+        let part = filled.area() / all;
         thickness += part;
         if part < THIN {
             break;
