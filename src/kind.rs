@@ -1,8 +1,9 @@
 //! The four kinds of models and files.
 
-/// Declares the kinds of fractals: the name of a kind in files, the folder of its files in libraries, and its noun.
+/// Declares the kinds of fractals: the name of a kind in files, the folder of its files in libraries,
+/// its noun, and its full name with the article.
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident: $name:literal, $folder:literal, $noun:literal;)*) => {
+    ($($(#[$doc:meta])* $kind:ident: $name:literal, $folder:literal, $noun:literal, $full:literal;)*) => {
         /// Kind of a model and of its file.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
@@ -29,17 +30,23 @@ macro_rules! kinds {
             pub const fn noun(self) -> &'static str {
                 match self { $(Self::$kind => $noun,)* }
             }
+
+            /// Returns the full name with its article, for use in messages.
+            #[must_use]
+            pub const fn full_name(self) -> &'static str {
+                match self { $(Self::$kind => $full,)* }
+            }
         }
     };
 }
 
 kinds! {
     /// Production rule.
-    Rule: "rule", "rules", "rule";
+    Rule: "rule", "rules", "rule", "a production rule";
     /// Iterated function system.
-    Ifs: "ifs", "ifs", "system";
+    Ifs: "ifs", "ifs", "system", "an iterated function system";
     /// Structure of objects that instance each other.
-    Instancing: "instancing", "instancing", "structure";
+    Instancing: "instancing", "instancing", "structure", "an instancing structure";
     /// L-system.
-    LSystem: "lsystem", "lsystems", "L-system";
+    LSystem: "lsystem", "lsystems", "L-system", "an L-system";
 }

@@ -64,10 +64,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 rows
             })
             .collect();
-        output::print(&format!(
-            "{}\n",
-            serde_json::to_string_pretty(&rows).map_err(anyhow::Error::from)?
-        ))?;
+        output::print_json(&rows)?;
     } else {
         for (file, diagnostics) in &all {
             if diagnostics.is_empty() {

@@ -179,13 +179,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if let Some(path) = &arguments.output {
         arguments.draw(path, format, &both, &subjects)?;
     }
-    let text = if arguments.json {
-        let json = serde_json::to_string_pretty(&comparison);
-        format!("{}\n", json.map_err(anyhow::Error::from)?)
-    } else {
+    output::print_as(arguments.json, &comparison, || {
         described(&comparison, &distance)
-    };
-    Ok(output::print(&text)?)
+    })
 }
 
 impl Arguments {

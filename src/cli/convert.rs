@@ -1,13 +1,12 @@
 //! `kfrac convert`: converts a fractal to another kind of file.
 
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::catalogue::Catalogue;
-use crate::convert::{ConvertError, Keeps, Refusal, convert};
+use crate::convert::{ConvertError, Keeps, Refusal, convert, described};
 use crate::kind::Kind;
 
 use super::rule::{Loaded, RuleArguments};
@@ -46,7 +45,7 @@ Examples:
 ";
 
 fn kind() -> impl TypedValueParser<Value = Kind> {
-    let kinds = Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(described(kind)[1]));
+    let kinds = Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(described(kind)));
     PossibleValuesParser::new(kinds).try_map(|name| {
         let mut kinds = Kind::ALL.into_iter();
         kinds.find(|kind| kind.name() == name).ok_or("unknown")
@@ -62,18 +61,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let document = convert(&loaded.model, arguments.to, keeps)
         .map_err(|error| failure(error, &loaded, arguments.to))?;
-    write(&arguments.output, &document.to_yaml())
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    if path == Path::new("-") {
-        return Ok(output::print(text)?);
-    }
-    output::write(path, true, |out, _| {
-        out.write_all(text.as_bytes())
-            .map_err(|error| output::failed(error, path))
-    })?;
-    Ok(())
+    output::write_text(&arguments.output, &document.to_yaml())
 }
 
 fn failure(error: ConvertError, loaded: &Loaded, to: Kind) -> Failure {
@@ -83,25 +71,6 @@ fn failure(error: ConvertError, loaded: &Loaded, to: Kind) -> Failure {
         ConvertError::Refused(Refusal::SameKind(_)) => Failure::Usage(format!(
             "{name} is not converted: {error}: `kfrac cat --inline` shows all of it"
         )),
-        _ => anyhow::anyhow!("{name} does not become {}: {error}", described(to)[0]).into(),
-    }
-}
-
-/// Returns the noun of a kind with its article, and a description.
-fn described(kind: Kind) -> [&'static str; 2] {
-    match kind {
-        Kind::Rule => [
-            "a production rule",
-            "A production rule; all maps must be similarities",
-        ],
-        Kind::Ifs => [
-            "an iterated function system",
-            "An iterated function system, recurrent where necessary",
-        ],
-        Kind::Instancing => [
-            "an instancing structure",
-            "Objects that instance each other",
-        ],
-        Kind::LSystem => ["an L-system", "An L-system, whose symbols draw lines"],
+        _ => anyhow::anyhow!("{name} does not become {}: {error}", to.full_name()).into(),
     }
 }

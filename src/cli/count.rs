@@ -88,15 +88,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         bounds: place.bounds(&found.bounds),
         ..found
     };
-    let text = if arguments.json {
-        let mut text = serde_json::to_string_pretty(&json(&found, &loaded, steps))
-            .map_err(anyhow::Error::new)?;
-        text.push('\n');
-        text
-    } else {
+    output::print_as(arguments.json, &json(&found, &loaded, steps), || {
         text(&found, place.ratio())
-    };
-    Ok(output::print(&text)?)
+    })
 }
 
 fn json<'a>(found: &Counted, loaded: &'a Loaded, steps: u32) -> Found<'a> {

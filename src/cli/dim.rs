@@ -156,24 +156,16 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         if let Some((path, format)) = plot {
             series.draw(path, format)?;
         }
-        let said = if arguments.json {
-            series.json()?
-        } else {
-            series.described()
-        };
-        return Ok(output::print(&said)?);
+        return output::print_as(arguments.json, &series.json(), || series.described());
     }
     let mut measured = input::measure(arguments, catalogue)?;
     report::warn(&mut measured);
     if let Some((path, format)) = plot {
         draw(&measured, path, format)?;
     }
-    let said = if arguments.json {
-        report::json(&measured)?
-    } else {
+    output::print_as(arguments.json, &report::json(&measured), || {
         report::described(&measured)
-    };
-    output::print(&said)?;
+    })?;
     for warning in &measured.warnings {
         text::print_message(&format!("warning: {warning}"));
     }

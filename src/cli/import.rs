@@ -1,7 +1,7 @@
 //! `kfrac import`: converts files of Fractint.
 
 use std::collections::BTreeSet;
-use std::io::{Read as _, Write as _};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -189,10 +189,7 @@ impl Written<'_> {
             return Ok(None);
         }
         output::make_folder(self.folder)?;
-        output::write(&path, true, |out, _| {
-            out.write_all(yaml.as_bytes())
-                .map_err(|error| output::failed(error, &path))
-        })?;
+        output::write_text(&path, yaml)?;
         Ok(Some(path))
     }
 

@@ -207,12 +207,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let graph = loaded.compile(steps)?;
     let limit = loaded.other_limit(steps)?;
     let info = info(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
-    if arguments.json {
-        output::print_json(&info)?;
-    } else {
-        output::print(&described(&loaded, &info, graph.place().ratio()))?;
-    }
-    Ok(())
+    output::print_as(arguments.json, &info, || {
+        described(&loaded, &info, graph.place().ratio())
+    })
 }
 
 /// Collects the description. `limit` is the graph that has the limit set.

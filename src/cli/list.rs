@@ -51,8 +51,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         .collect();
     if arguments.json {
         let rows: Vec<_> = rows.iter().map(|(_, row)| row).collect();
-        let json = serde_json::to_string_pretty(&rows).map_err(anyhow::Error::from)?;
-        return Ok(output::print(&format!("{json}\n"))?);
+        return Ok(output::print_json(&rows)?);
     }
     if rows.is_empty() {
         let message = format!("nothing in the library has '{asked}' in its name, title or tags");

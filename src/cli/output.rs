@@ -152,6 +152,27 @@ pub(super) fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
         .context(NO_STANDARD_OUTPUT)
 }
 
+/// Prints a result, as JSON or as text.
+pub(super) fn print_as(
+    is_json: bool,
+    value: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    Ok(match is_json {
+        true => print_json(value)?,
+        false => print(&text())?,
+    })
+}
+
+/// Writes a text to a file or to standard output.
+pub(super) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    let write = |out: &mut Counted<Output>| out.write_all(text.as_bytes());
+    self::write(path, true, |out, _| {
+        write(out).map_err(|error| failed(error, path))
+    })
+    .map(|_| ())
+}
+
 /// Writer that counts bytes.
 pub(super) struct Counted<W> {
     inner: W,

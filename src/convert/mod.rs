@@ -114,12 +114,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         }
         _ => Structure::of_graph(&graph, steps, keeps, &[])?,
     };
-    let own = match to {
-        Kind::Ifs => ifs::write(&structure, keeps)?,
-        Kind::Instancing => instancing::write(&structure, keeps)?,
-        Kind::Rule => rule::write(&structure)?,
-        Kind::LSystem => lsystem::write(&structure, keeps)?,
-    };
+    let own = (writer(to).1)(&structure, keeps)?;
     let text = Node::from(headed(model.metadata(), to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());
     let document = read.map_err(ConvertError::NotReadBack)?;
@@ -127,6 +122,31 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         Ok(_) => Ok(document),
         Err(diagnostics) => Err(ConvertError::NotReadBack(diagnostics)),
     }
+}
+
+/// Writes the keys of a kind.
+type Writer = fn(&Structure, Keeps) -> Result<Entries, Refusal>;
+
+/// Returns the description and the writer of a kind as the target of conversions.
+fn writer(to: Kind) -> (&'static str, Writer) {
+    match to {
+        Kind::Rule => (
+            "A production rule; all maps must be similarities",
+            rule::write,
+        ),
+        Kind::Ifs => (
+            "An iterated function system, recurrent where necessary",
+            ifs::write,
+        ),
+        Kind::Instancing => ("Objects that instance each other", instancing::write),
+        Kind::LSystem => ("An L-system, whose symbols draw lines", lsystem::write),
+    }
+}
+
+/// Returns a description of a kind as the target of conversions, as a help text.
+#[must_use]
+pub fn described(to: Kind) -> &'static str {
+    writer(to).0
 }
 
 /// Returns the entries of a document: description, content, dimensions, style and view.

@@ -5,14 +5,14 @@ use crate::document::node::Value;
 use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::rule::{BaseElement, Piece};
 
-use super::Refusal;
 use super::number::{point, value};
 use super::structure::{Placed, Structure};
+use super::{Keeps, Refusal};
 
 /// Relative difference of a map's stretches below which it is a similarity.
 const ROUNDING: f64 = 1e-12;
 
-pub(super) fn write(structure: &Structure) -> Result<Entries, Refusal> {
+pub(super) fn write(structure: &Structure, _: Keeps) -> Result<Entries, Refusal> {
     let writer = Writer {
         structure,
         usual: structure.instances().find(|placed| placed.object.is_some()),

@@ -8,14 +8,13 @@ use serde_json::{Value, json};
 use crate::measure::exact::{Dimensions, GraphDimensions, Hausdorff};
 use crate::measure::{BoxCounting, Estimate, Trend};
 
-use super::super::Failure;
 use super::Measured;
 
 /// Number of decades below which a slope is weak evidence of a dimension.
 const FEW_DECADES: f64 = 2.0;
 
 #[derive(Serialize)]
-struct Report<'a> {
+pub(super) struct Report<'a> {
     similarity: Option<Value>,
     affinity: Option<Value>,
     hausdorff: Option<Value>,
@@ -72,7 +71,7 @@ impl Fields {
 }
 
 /// Formats the result as JSON.
-pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
+pub(super) fn json(measured: &Measured) -> Report<'_> {
     let exact = measured.exact.as_ref();
     let known = exact.and_then(|exact| exact.dimensions.as_ref());
     let boxes = measured.counting.boxes.iter().map(|it| Boxes {
@@ -97,7 +96,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
         lacunarity.map(|it| json!({"size": it.size, "value": it.value, "places": it.places}));
     let means = measured.counting.means.iter();
     let means = means.map(|(size, boxes)| json!({"size": size, "boxes": boxes}));
-    let report = Report {
+    Report {
         similarity: exact.map(|_| similarity(known)),
         affinity: known.and_then(affinity),
         hausdorff: exact.map(|_| hausdorff(known)),
@@ -117,10 +116,7 @@ pub(super) fn json(measured: &Measured) -> Result<String, Failure> {
         spectrum: spectrum.collect(),
         lacunarity: lacunarity.collect(),
         warnings: &measured.warnings,
-    };
-    let mut text = serde_json::to_string_pretty(&report).map_err(anyhow::Error::from)?;
-    text.push('\n');
-    Ok(text)
+    }
 }
 
 /// Drift of the local slopes.

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::figure::dimension;
 use crate::measure::exact::{Dimensions, GraphDimensions, dimensions_of_graph};
@@ -41,7 +41,7 @@ impl Series {
         })
     }
 
-    pub(super) fn json(&self) -> Result<String, Failure> {
+    pub(super) fn json(&self) -> Value {
         let samples = self.samples.iter().map(|(value, known)| {
             let dimensions = known.dimensions.as_ref();
             let hausdorff = dimensions.map(|it| &it.hausdorff);
@@ -53,14 +53,11 @@ impl Series {
                 "notes": known.notes,
             })
         });
-        let said = json!({
+        json!({
             "name": self.name,
             "parameter": self.parameter,
             "samples": samples.collect::<Vec<_>>(),
-        });
-        let mut text = serde_json::to_string_pretty(&said).map_err(anyhow::Error::from)?;
-        text.push('\n');
-        Ok(text)
+        })
     }
 
     pub(super) fn described(&self) -> String {
