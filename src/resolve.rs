@@ -80,43 +80,34 @@ fn resolve(
     settings: &[Setting],
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     match document {
-        KindDocument::Rule(document) => {
-            resolved(&document.heading, settings, |resolver, heading| {
-                Some(Model::Rule(resolver.rule(document, heading).into()))
-            })
-        }
-        KindDocument::Ifs(document) => {
-            resolved(&document.heading, settings, |resolver, heading| {
-                let system = resolver.system(document, heading)?;
-                Some(Model::Ifs(system.into()))
-            })
-        }
+        KindDocument::Rule(document) => resolved(&document.heading, settings, |to, heading| {
+            Some(to.rule(document, heading))
+        }),
+        KindDocument::Ifs(document) => resolved(&document.heading, settings, |to, heading| {
+            to.system(document, heading)
+        }),
         KindDocument::Instancing(document) => {
-            resolved(&document.heading, settings, |resolver, heading| {
-                let structure = resolver.structure(document, heading)?;
-                Some(Model::Instancing(structure.into()))
+            resolved(&document.heading, settings, |to, heading| {
+                to.structure(document, heading)
             })
         }
-        KindDocument::LSystem(document) => {
-            resolved(&document.heading, settings, |resolver, heading| {
-                let system = resolver.lsystem(document, heading)?;
-                Some(Model::LSystem(system.into()))
-            })
-        }
+        KindDocument::LSystem(document) => resolved(&document.heading, settings, |to, heading| {
+            to.lsystem(document, heading)
+        }),
     }
 }
 
 /// Resolves the metadata and the model, and adds warnings of unused parameters.
-fn resolved<K: Default>(
+fn resolved<K: Default, M: Into<Model>>(
     document: &MetadataDocument,
     settings: &[Setting],
-    model: impl FnOnce(&mut Resolver<K>, Metadata) -> Option<Model>,
+    model: impl FnOnce(&mut Resolver<K>, Metadata) -> Option<M>,
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     let mut resolver = Resolver::<K>::default();
     let heading = resolver.metadata(document, settings);
     let model = model(&mut resolver, heading);
     let model = match model {
-        Some(model) if !resolver.diagnostics.has_errors() => model,
+        Some(model) if !resolver.diagnostics.has_errors() => model.into(),
         _ => return Err(resolver.diagnostics),
     };
     let mut doubts = Diagnostics::default();

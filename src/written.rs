@@ -40,19 +40,6 @@ impl WrittenPoint {
         }
     }
 
-    /// Returns (0, 0) for a point that is left out.
-    pub(crate) fn origin(place: &Place) -> Self {
-        let zero = || Written {
-            value: Expression::number(0.0),
-            place: place.clone(),
-        };
-        Self {
-            x: zero(),
-            y: zero(),
-            place: place.clone(),
-        }
-    }
-
     /// Returns a complex parameter of the given name as a point.
     pub(crate) fn named(name: &str, place: &Place) -> Self {
         let part = |part: &str| Written {

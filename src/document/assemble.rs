@@ -1,22 +1,21 @@
 //! Inlining of parents, components, data and other fractals into a file, which makes it self-contained.
 
 mod fractals;
-mod harmless;
 mod parameters;
 
 use std::sync::Arc;
 
 use crate::catalogue::{Catalogue, Shelf, is_same_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, listed, nearest};
-
 use crate::kind::Kind;
 
+use super::KindDocument;
 use super::data;
 use super::merge::{Entries, merge};
 use super::node::{Key, Node, Value};
-use super::read::{DESCRIPTION, check_description, shape};
+use super::read::{DESCRIPTION, check_description};
+use super::shape::{Form, Shape};
 use super::yaml::{Budget, Size};
-use harmless::{harmless, harmless_parent};
 
 /// Maximum length of a chain of parents.
 const MOST_PARENTS: usize = 32;
@@ -65,11 +64,11 @@ fn assemble_within(
     for (_, node) in &entries {
         assembly.budget.own(Size::of(node));
     }
-    assembly.inline(&mut entries);
+    let kind = assembly.kind.unwrap_or(Kind::Rule);
+    assembly.inline_all(&mut entries, KindDocument::table(kind).shape);
     assembly.hoist_parameters(&mut entries);
     assembly.inline_data(&mut entries);
-    assembly.inline_fractals(&mut entries);
-    let (kind, complete) = (assembly.kind.unwrap_or(Kind::Rule), assembly.complete);
+    let complete = assembly.complete;
     let value = Value::Mapping(entries);
     Some((Node { place, value }, kind, complete))
 }
@@ -131,12 +130,18 @@ impl Assembly<'_> {
     fn entries(&mut self, node: Node) -> Option<(Place, Entries)> {
         let Value::Mapping(entries) = node.value else {
             let message = format!("a rule is needed here, this is {}", node.kind());
-            self.error(&node.place, message, shape(Kind::Rule).hint);
+            self.error(
+                &node.place,
+                message,
+                KindDocument::table(Kind::Rule).shape.hint,
+            );
             return None;
         };
         let kind = self.kind_of(&entries)?;
         let keys = entries.iter().map(|(key, _)| key);
-        let meant = shape(kind).meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
+        let meant = KindDocument::table(kind)
+            .shape
+            .meant(keys, |diagnostic| self.diagnostics.push(diagnostic));
         let mut known = Vec::new();
         for (name, (mut key, value)) in meant.into_iter().zip(entries) {
             if let Some(name) = name {
@@ -197,7 +202,11 @@ impl Assembly<'_> {
         let (_, parent) = entries.remove(index);
         let parents = self.parent(&parent).unwrap_or_else(|| {
             self.complete = false;
-            harmless_parent(&parent.place, self.kind.unwrap_or(Kind::Rule))
+            let kind = self.kind.unwrap_or(Kind::Rule);
+            match Node::made(KindDocument::table(kind).stand_in, &parent.place).value {
+                Value::Mapping(entries) => entries,
+                _ => Vec::new(),
+            }
         });
         merge(&mut entries, parents);
         Some((place, entries))
@@ -239,127 +248,71 @@ impl Assembly<'_> {
         Some(self.extended(node)?.1)
     }
 
-    /// Replaces names of components by the components.
-    fn inline(&mut self, entries: &mut Entries) {
+    /// Replaces names of components and of fractals by what they name, where the table of keys has such
+    /// names.
+    fn inline_all(&mut self, entries: &mut Entries, shape: &'static Shape) {
         for (key, node) in entries {
             let written_in = |rule: &Arc<Source>| Arc::ptr_eq(rule, key.place.source());
             self.generation = self.chain.iter().position(written_in).unwrap_or(0);
-            match key.name.as_str() {
-                "initiator" => {
-                    self.component(node, Shelf::Initiators);
-                    self.inline_base_elements(node);
-                }
-                "generator" => self.generator(node),
-                "generators" => {
-                    if let Value::Mapping(generators) = &mut node.value {
-                        generators
-                            .iter_mut()
-                            .for_each(|(_, node)| self.generator(node));
-                    }
-                }
-                "base_element" => self.component(node, Shelf::BaseElements),
-                _ => {}
+            self.inline_key(key, node, shape);
+        }
+    }
+
+    fn inline_key(&mut self, key: &Key, node: &mut Node, shape: &'static Shape) {
+        if let Some(member) = shape.members().find(|member| member.name == key.name) {
+            self.inline(node, &member.holds);
+        }
+    }
+
+    fn inline(&mut self, node: &mut Node, form: &'static Form) {
+        match (form, &mut node.value) {
+            (Form::File(shelf), Value::Text(_)) if Shelf::COMPONENTS.contains(shelf) => {
+                self.component(node, *shelf);
             }
+            (Form::Grown, Value::Text(_) | Value::Mapping(_)) => self.inline_fractal(node),
+            (Form::Either(forms), _) => forms.iter().for_each(|form| self.inline(node, form)),
+            (Form::List(form, ..), Value::Sequence(entries)) => {
+                entries.iter_mut().for_each(|node| self.inline(node, form));
+            }
+            (Form::Names(form, _), Value::Mapping(entries)) => {
+                let entries = entries.iter_mut();
+                entries.for_each(|(_, node)| self.inline(node, form));
+            }
+            (Form::Mapping(shape), Value::Mapping(entries)) => {
+                let entries = entries.iter_mut();
+                entries.for_each(|(key, node)| self.inline_key(key, node, shape));
+            }
+            _ => {}
         }
     }
 
     /// Replaces the name of a data file under `interpolate` by the points in it.
     fn inline_data(&mut self, entries: &mut Entries) {
-        let interpolation = entries
-            .iter_mut()
-            .find(|(key, _)| key.name == "interpolate");
-        let Some((
-            _,
-            Node {
-                value: Value::Mapping(of),
-                ..
-            },
-        )) = interpolation
-        else {
+        let mut interpolation = { entries.iter_mut() }.filter(|(key, _)| key.name == "interpolate");
+        let Some((_, interpolation)) = interpolation.next() else {
             return;
         };
-        let scales = of.iter().find(|(key, _)| key.name == "scale");
-        let pieces = match scales.map(|(_, node)| &node.value) {
+        let pieces = match interpolation.get("scale").map(|node| &node.value) {
             Some(Value::Sequence(scales)) => scales.len().max(2),
             _ => 2,
         };
-        let Some((_, points)) = of.iter_mut().find(|(key, _)| key.name == "points") else {
+        let Some(points) = interpolation.get_mut("points") else {
             return;
         };
         let Value::Text(name) = &points.value else {
             return;
         };
         let found = self.catalogue.data(name, &points.place);
-        match found
-            .map_err(|error| error.at(&points.place))
+        let found = found.map_err(|error| error.at(&points.place));
+        *points = found
             .and_then(|source| data::read(&source))
-        {
-            Ok(read) => *points = read,
-            Err(error) => {
+            .unwrap_or_else(|error| {
                 self.diagnostics.push(error);
                 self.complete = false;
                 // Valid points as a placeholder, which cause no further diagnostics.
-                let number = |value| Node {
-                    place: points.place.clone(),
-                    value: Value::Number(value),
-                };
-                let point = |place: usize| {
-                    let [x, y] = [place, place % 2]
-                        .map(|it| f64::from(u32::try_from(it).unwrap_or(u32::MAX)));
-                    Node {
-                        place: points.place.clone(),
-                        value: Value::Sequence(vec![number(x), number(y)]),
-                    }
-                };
-                points.value = Value::Sequence((0..=pieces).map(point).collect());
-            }
-        }
-    }
-
-    fn generator(&mut self, node: &mut Node) {
-        self.component(node, Shelf::Generators);
-        let parts = match &mut node.value {
-            Value::Mapping(entries) => entries.iter_mut().find(|(key, _)| key.name == "parts"),
-            _ => None,
-        };
-        match parts.map(|(_, parts)| &mut parts.value) {
-            Some(Value::Sequence(parts)) => {
-                parts
-                    .iter_mut()
-                    .for_each(|part| self.inline_base_elements(part));
-            }
-            _ => self.inline_base_elements(node),
-        }
-    }
-
-    /// Inlines the base elements of single elements, in a list or in a mapping with `elements`.
-    fn inline_base_elements(&mut self, node: &mut Node) {
-        let list = match &mut node.value {
-            Value::Sequence(list) => list,
-            Value::Mapping(entries) => {
-                match entries.iter_mut().find(|(key, _)| key.name == "elements") {
-                    Some((
-                        _,
-                        Node {
-                            value: Value::Sequence(list),
-                            ..
-                        },
-                    )) => list,
-                    _ => return,
-                }
-            }
-            _ => return,
-        };
-        for element in list {
-            if let Value::Mapping(entries) = &mut element.value {
-                for (_, node) in entries
-                    .iter_mut()
-                    .filter(|(key, _)| key.name == "base_element")
-                {
-                    self.component(node, Shelf::BaseElements);
-                }
-            }
-        }
+                let all: Vec<_> = (0..=pieces).map(|x| format!("[{x}, {}]", x % 2)).collect();
+                Node::made(&format!("[{}]", all.join(", ")), &points.place)
+            });
     }
 
     /// Replaces the name of a component by the component, or by a placeholder if it cannot be found.
@@ -396,7 +349,11 @@ impl Assembly<'_> {
         let component = component.filter(|component| self.has_room(component, &node.place));
         *node = component.unwrap_or_else(|| {
             self.complete = false;
-            harmless(shelf, &node.place)
+            let key = match shelf {
+                Shelf::BaseElements => "points",
+                _ => "elements",
+            };
+            Node::made(&format!("{{{key}: [[0, 0], [0.5, 0]]}}"), &node.place)
         });
     }
 

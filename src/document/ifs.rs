@@ -5,6 +5,7 @@
 
 use crate::diagnostic::Place;
 
+use super::read::EllipseDocument;
 use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An iterated function system as written.
@@ -162,15 +163,4 @@ pub struct FractalDocument {
     pub map: Option<MapDocument>,
     /// Source span of the fractal's name.
     pub place: Place,
-}
-
-/// An ellipse as written.
-#[derive(Clone, Debug)]
-pub struct EllipseDocument {
-    /// Centre.
-    pub centre: WrittenPoint,
-    /// Half axes.
-    pub axes: [WrittenNumber; 2],
-    /// Angle from the x axis to the first half axis, in degrees.
-    pub rotate: Option<WrittenNumber>,
 }

@@ -4,8 +4,8 @@
 //! cannot be read and has been reported.
 
 use crate::diagnostic::Place;
-use crate::style::Colour;
 
+use super::read::TintDocument;
 use super::{MetadataDocument, ShapeDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An instancing structure as written.
@@ -19,8 +19,6 @@ pub struct InstancingDocument {
     pub scene: Option<UnionDocument>,
     /// The set that is drawn in place of objects that are not replaced yet.
     pub initial: Option<ShapeDocument>,
-    /// Whether the style sets `color_by`.
-    pub tells_colours: bool,
 }
 
 /// An object as written.
@@ -92,13 +90,4 @@ pub enum TransformDocument {
     Translate(WrittenPoint),
     /// Linear map by the rows of its matrix.
     Matrix([WrittenPoint; 2]),
-}
-
-/// A tint as written.
-#[derive(Clone, Debug)]
-pub struct TintDocument {
-    /// Colour; `None` if it cannot be read.
-    pub colour: Option<Colour>,
-    /// Strength of the tint from 0 to 1; 1 if `None`.
-    pub alpha: Option<WrittenNumber>,
 }

@@ -28,8 +28,6 @@ pub struct LSystemDocument {
     pub symbols: Vec<SymbolDocument>,
     /// Symbols that contexts ignore.
     pub ignored: Vec<char>,
-    /// Whether the style sets `color_by`.
-    pub tells_colours: bool,
 }
 
 /// A string of modules as written.

@@ -22,6 +22,8 @@ pub struct MetadataDocument {
     pub hausdorff_dimension: Option<WrittenNumber>,
     /// Style of the picture.
     pub style: Style,
+    /// Whether the style sets `color_by`.
+    pub sets_colours: bool,
     /// View: the window and the margin.
     pub view: View,
     /// Whether all parents, components and fractals were found. Otherwise unknown names may be defined

@@ -9,6 +9,7 @@ mod data;
 mod ifs;
 mod instancing;
 mod lsystem;
+mod mapping;
 mod merge;
 mod metadata;
 pub mod node;
@@ -21,22 +22,25 @@ mod style;
 mod yaml;
 
 pub use ifs::{
-    CondensationDocument, EdgeDocument, EllipseDocument, FormDocument, FractalDocument,
-    IfsDocument, InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales,
-    ShapeDocument,
+    CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
+    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    TintDocument, TransformDocument, UnionDocument,
+    TransformDocument, UnionDocument,
 };
 pub use lsystem::{
     ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, SymbolDocument,
     WordDocument,
 };
 pub use metadata::{MetadataDocument, ParameterDocument};
+pub use read::{
+    BaseElementDocument, CaseDocument, DiskDocument, EllipseDocument, InitiatorDocument, Listed,
+    MoveDocument, TintDocument,
+};
 pub use rule::{
-    BaseElementDocument, Entry, GeneratorDocument, InitiatorDocument, Listed, MoveDocument,
-    PartDocument, PieceDocument, RuleDocument, SelectDocument, WhichPoints,
+    Entry, GeneratorDocument, PartDocument, PieceDocument, RuleDocument, SelectDocument,
+    WhichPoints,
 };
 
 pub use schema::{schema, schema_of_all};
@@ -50,34 +54,58 @@ use std::sync::Arc;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Place, Source};
 use crate::expression::Expression;
+use crate::kind::Kind;
 
 use node::Node;
+use read::{KindTable, OfKind, read_heading};
+use reader::Reader;
 
-/// The content of a file as written, by kind.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub enum KindDocument {
-    /// A production rule.
-    Rule(RuleDocument),
-    /// An iterated function system.
-    Ifs(IfsDocument),
-    /// A structure of objects that instance each other.
-    Instancing(InstancingDocument),
-    /// An L-system.
-    LSystem(LSystemDocument),
+/// Makes [`KindDocument`] from a table of kinds and their documents.
+macro_rules! documents {
+    ($($(#[$doc:meta])* $kind:ident($document:ty);)*) => {
+        /// The content of a file as written, by kind.
+        #[derive(Clone, Debug)]
+        #[non_exhaustive]
+        pub enum KindDocument { $($(#[$doc])* $kind($document),)* }
+
+        impl KindDocument {
+            /// Returns the metadata that files of all kinds have.
+            #[must_use]
+            pub fn metadata(&self) -> &MetadataDocument {
+                match self { $(Self::$kind(document) => &document.heading,)* }
+            }
+
+            /// Returns the definition of a kind.
+            fn table(kind: Kind) -> &'static KindTable {
+                match kind { $(Kind::$kind => <$document>::TABLE,)* }
+            }
+
+            /// Reads a file whose parents and components are inlined. `complete` states that all of them were
+            /// found.
+            fn read(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Option<Self> {
+                let fields = reader.fields(node, Self::table(kind).shape)?;
+                let heading = read_heading(reader, &fields);
+                Some(match kind {
+                    $(Kind::$kind => {
+                        let mut document = <$document>::read(reader, &fields, heading);
+                        document.heading.complete = complete && !reader.names_are_missing;
+                        Self::$kind(document)
+                    })*
+                })
+            }
+        }
+    };
 }
 
-impl KindDocument {
-    /// Returns the metadata that files of all kinds have.
-    #[must_use]
-    pub fn metadata(&self) -> &MetadataDocument {
-        match self {
-            Self::Rule(rule) => &rule.heading,
-            Self::Ifs(ifs) => &ifs.heading,
-            Self::Instancing(structure) => &structure.heading,
-            Self::LSystem(system) => &system.heading,
-        }
-    }
+documents! {
+    /// A production rule.
+    Rule(RuleDocument);
+    /// An iterated function system.
+    Ifs(IfsDocument);
+    /// A structure of objects that instance each other.
+    Instancing(InstancingDocument);
+    /// An L-system.
+    LSystem(LSystemDocument);
 }
 
 /// A file with its parents and components inlined.
@@ -98,8 +126,10 @@ impl Document {
         let mut warnings = Diagnostics::default();
         let assembled = assemble::assemble(source, catalogue, &mut warnings);
         let parsed = assembled.and_then(|(node, kind, complete)| {
-            let kind = read::read(kind, &node, complete, &mut warnings)?;
-            Some((node, kind))
+            let mut reader = Reader::after(&warnings);
+            let kind = KindDocument::read(&mut reader, kind, &node, complete);
+            warnings.extend(reader.diagnostics);
+            Some((node, kind?))
         });
         match parsed {
             Some((node, kind)) => Ok(Self {
@@ -128,7 +158,7 @@ impl Document {
     pub fn rule(&self) -> Option<&RuleDocument> {
         match &self.kind {
             KindDocument::Rule(rule) => Some(rule),
-            KindDocument::Ifs(_) | KindDocument::Instancing(_) | KindDocument::LSystem(_) => None,
+            _ => None,
         }
     }
 

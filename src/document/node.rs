@@ -97,6 +97,37 @@ impl Node {
             .map(|(_, node)| node)
     }
 
+    /// Returns the value of a key, to change it.
+    pub(super) fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
+        let Value::Mapping(entries) = &mut self.value else {
+            return None;
+        };
+        let mut found = entries.iter_mut().filter(|(known, _)| known.name == key);
+        found.next().map(|(_, node)| node)
+    }
+
+    /// Returns the content of a text that the program writes, all of it at one place.
+    pub(super) fn made(text: &str, place: &Place) -> Self {
+        let made = Self::parse(&Source::new("(made)", text));
+        let mut made = made.unwrap_or_else(|_| Value::Null.into());
+        made.set_place(place);
+        made
+    }
+
+    fn set_place(&mut self, place: &Place) {
+        self.place = place.clone();
+        match &mut self.value {
+            Value::Sequence(nodes) => nodes.iter_mut().for_each(|node| node.set_place(place)),
+            Value::Mapping(entries) => {
+                for (key, node) in entries {
+                    key.place = place.clone();
+                    node.set_place(place);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// Returns a scalar as written, without quotes; `None` for a list or mapping.
     #[must_use]
     pub fn written(&self) -> Option<&str> {

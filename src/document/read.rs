@@ -17,54 +17,35 @@ mod turtle;
 mod word;
 
 pub(super) use base_element::BASE_ELEMENT;
+pub use base_element::BaseElementDocument;
 pub(super) use elements::{ELEMENTS, INITIATOR};
+pub use elements::{InitiatorDocument, Listed};
 pub(super) use generator::GENERATOR;
-pub(super) use ifs::IFS;
-pub(super) use instancing::INSTANCING;
-pub(super) use lsystem::LSYSTEM;
-pub(super) use metadata::{DESCRIPTION, check_description};
+pub use generator::MoveDocument;
+pub use instancing::TintDocument;
+pub(super) use metadata::{DESCRIPTION, check_description, read_heading};
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
+pub use select::CaseDocument;
+pub use set::{DiskDocument, EllipseDocument};
 
-use crate::diagnostic::Diagnostics;
-use crate::kind::Kind;
-
-use super::KindDocument;
-use super::node::Node;
-use super::reader::Reader;
+use super::MetadataDocument;
+use super::reader::{Fields, Reader};
 use super::shape::Shape;
 
-/// Returns the keys of a kind of file.
-pub(super) fn shape(kind: Kind) -> &'static Shape {
-    match kind {
-        Kind::Rule => &RULE,
-        Kind::Ifs => &IFS,
-        Kind::Instancing => &INSTANCING,
-        Kind::LSystem => &LSYSTEM,
-    }
+/// The definition of a kind of document.
+pub(super) struct KindTable {
+    pub(super) shape: &'static Shape,
+    /// Description of its files, which editors show.
+    pub(super) about: &'static str,
+    /// Content that stands in for a missing parent and causes no further diagnostics.
+    pub(super) stand_in: &'static str,
 }
 
-/// Reads a file whose parents and components are inlined. `complete` states that all of them were
-/// found.
-pub(super) fn read(
-    kind: Kind,
-    node: &Node,
-    complete: bool,
-    diagnostics: &mut Diagnostics,
-) -> Option<KindDocument> {
-    let mut reader = Reader::after(diagnostics);
-    let document = read_kind(&mut reader, kind, node, complete);
-    diagnostics.extend(reader.diagnostics);
-    document
-}
+/// The document of a kind.
+pub(super) trait OfKind {
+    const TABLE: &'static KindTable;
 
-fn read_kind(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Option<KindDocument> {
-    match kind {
-        Kind::Rule => rule::read_rule(reader, node, complete).map(KindDocument::Rule),
-        Kind::Ifs => ifs::read_ifs(reader, node, complete).map(KindDocument::Ifs),
-        Kind::Instancing => {
-            instancing::read_instancing(reader, node, complete).map(KindDocument::Instancing)
-        }
-        Kind::LSystem => lsystem::read_lsystem(reader, node, complete).map(KindDocument::LSystem),
-    }
+    /// Reads the keys that only this kind has.
+    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self;
 }

@@ -56,6 +56,20 @@ impl<'n> Fields<'n> {
     }
 
     /// Returns the definition of a key in the shape.
+    /// Returns whether a key may hold the name of a file.
+    pub(super) fn holds_file(&self, key: &'static str) -> bool {
+        let is_file = |form: &Form| matches!(form, Form::File(_));
+        self.member(key).is_some_and(|member| match member.holds {
+            Form::Either(forms) => forms.iter().any(is_file),
+            ref form => is_file(form),
+        })
+    }
+
+    /// Returns the default of a key that is a flag.
+    pub(super) fn default_flag(&self, key: &'static str) -> bool {
+        { self.member(key) }.is_some_and(|member| matches!(member.holds, Form::Flag(true)))
+    }
+
     fn member(&self, key: &'static str) -> Option<&'static Member> {
         self.shape.members().find(|member| member.name == key)
     }
@@ -177,24 +191,18 @@ impl Reader {
         }
     }
 
-    /// Reads a flag. Returns the default of the shape if the flag is absent or cannot be read.
-    pub(super) fn flag(&mut self, fields: &Fields<'_>, key: &'static str) -> bool {
-        let default = fields
-            .member(key)
-            .is_some_and(|member| matches!(member.holds, Form::Flag(true)));
-        match fields.take(key).map(|node| (&node.value, node)) {
-            None => default,
-            Some((Value::Bool(flag), _)) => *flag,
-            Some((_, node)) => {
-                let hint = match node.written().map(str::to_lowercase).as_deref() {
-                    Some("yes" | "on" | "true") => "write true",
-                    Some("no" | "off" | "false") => "write false",
-                    _ => "write true or false, without quotes",
-                };
-                self.mismatch(node, "true or false", hint);
-                default
-            }
+    /// Reads `true` or `false`.
+    pub(super) fn flag(&mut self, node: &Node) -> Option<bool> {
+        if let Value::Bool(flag) = node.value {
+            return Some(flag);
         }
+        let hint = match node.written().map(str::to_lowercase).as_deref() {
+            Some("yes" | "on" | "true") => "write true",
+            Some("no" | "off" | "false") => "write false",
+            _ => "write true or false, without quotes",
+        };
+        self.mismatch(node, "true or false", hint);
+        None
     }
 
     /// Reads a name.
@@ -244,10 +252,6 @@ impl Reader {
             value: expression,
             place: node.place.clone(),
         }
-    }
-
-    pub(super) fn optional_number(&mut self, node: Option<&Node>) -> Option<WrittenNumber> {
-        node.map(|node| self.number(node))
     }
 
     /// Reads a list of exactly two numbers.
@@ -308,8 +312,14 @@ impl Reader {
         }
     }
 
-    pub(super) fn optional_point(&mut self, node: Option<&Node>) -> Option<WrittenPoint> {
-        node.map(|node| self.point(node))
+    /// Reads a list of two numbers, or a number, which counts twice.
+    pub(super) fn pair(&mut self, node: &Node) -> [WrittenNumber; 2] {
+        if let Value::Sequence(_) = &node.value {
+            let point = self.point(node);
+            return [point.x, point.y];
+        }
+        let number = self.number(node);
+        [number.clone(), number]
     }
 
     pub(super) fn list<'n>(&mut self, node: &'n Node, what: &str, hint: &str) -> &'n [Node] {

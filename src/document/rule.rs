@@ -6,6 +6,7 @@
 use crate::diagnostic::Place;
 use crate::rule::Placement;
 
+use super::read::{BaseElementDocument, CaseDocument, InitiatorDocument, Listed, MoveDocument};
 use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// A production rule as written, with its components inlined.
@@ -21,31 +22,6 @@ pub struct RuleDocument {
     pub select: Option<SelectDocument>,
     /// Base element of all elements without their own.
     pub base_element: Option<BaseElementDocument>,
-}
-
-/// An initiator as written.
-#[derive(Clone, Debug)]
-pub struct InitiatorDocument {
-    /// Points and elements.
-    pub entries: Vec<Entry>,
-    /// Whether one more element connects the last point to the first.
-    pub closed: bool,
-    /// Whether elements join each other.
-    pub connected: bool,
-    /// Source span of the initiator.
-    pub place: Place,
-}
-
-impl InitiatorDocument {
-    /// Returns a placeholder for an initiator that cannot be read.
-    pub(super) fn missing(place: &Place) -> Self {
-        Self {
-            entries: Vec::new(),
-            closed: false,
-            connected: true,
-            place: place.clone(),
-        }
-    }
 }
 
 /// A generator as written.
@@ -85,46 +61,6 @@ pub enum Entry {
     Element(Box<Listed>),
 }
 
-/// An element as written.
-#[derive(Clone, Debug)]
-pub struct Listed {
-    /// Start point; the end of the previous entry if `None`.
-    pub from: Option<WrittenPoint>,
-    /// End point.
-    pub to: WrittenPoint,
-    /// Direction, 1 to 4.
-    pub direction: Option<WrittenNumber>,
-    /// Whether the element is replaced.
-    pub fertile: bool,
-    /// Whether the element is drawn.
-    pub visible: bool,
-    /// Whether the element may join the previous one.
-    pub connected: bool,
-    /// Generator that replaces the element, if it names one.
-    pub generator: Option<Written<String>>,
-    /// The element's own base element.
-    pub base_element: Option<BaseElementDocument>,
-    /// Source span of the element.
-    pub place: Place,
-}
-
-/// A move of points of a generator, as written.
-#[derive(Clone, Debug)]
-pub struct MoveDocument {
-    /// Angle in degrees, counter-clockwise.
-    pub rotate: Option<WrittenNumber>,
-    /// Scaling factors along x and y.
-    pub scale: Option<[WrittenNumber; 2]>,
-    /// Translation, which is applied last.
-    pub shift: Option<WrittenPoint>,
-    /// Centre of scaling and rotation.
-    pub about: Option<WrittenPoint>,
-    /// Points that move.
-    pub points: WhichPoints,
-    /// Source span of the move.
-    pub place: Place,
-}
-
 /// The points to which a move applies.
 #[derive(Clone, Debug)]
 pub enum WhichPoints {
@@ -140,26 +76,11 @@ pub enum WhichPoints {
 #[derive(Clone, Debug)]
 pub enum SelectDocument {
     /// Conditions, which are tried in order, with generators. The last case has no condition.
-    Cases(Vec<(Option<WrittenNumber>, Option<Written<String>>)>, Place),
+    Cases(Vec<CaseDocument>, Place),
     /// By index of the element.
     ByIndex(Vec<Written<String>>, Place),
     /// At random, by weight.
     AtRandom(Vec<(Written<String>, WrittenNumber)>, Place),
-}
-
-/// A base element as written.
-#[derive(Clone, Debug)]
-pub struct BaseElementDocument {
-    /// Pieces; the first is the first point.
-    pub pieces: Vec<PieceDocument>,
-    /// Whether the last point is connected to the first.
-    pub closed: bool,
-    /// Point of the outline that is mapped to (0, 0).
-    pub from: Option<WrittenPoint>,
-    /// Point of the outline that is mapped to (1, 0).
-    pub to: Option<WrittenPoint>,
-    /// Source span of the base element.
-    pub place: Place,
 }
 
 /// A piece of a base element as written.

@@ -10,10 +10,8 @@ mod switch;
 
 use crate::catalogue::{Catalogue, Shelf};
 
-use super::read::{
-    BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, IFS, INITIATOR, INSTANCING, LSYSTEM, PARAMETER,
-    PARAMS, RULE,
-};
+use super::KindDocument;
+use super::read::{BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, INITIATOR, PARAMETER, PARAMS};
 use super::shape::{Choice, Form, Needed, Shape};
 use json::{Json, Object, list};
 
@@ -76,22 +74,10 @@ fn body(shelf: Shelf, at: &str) -> Object {
         named: Vec::new(),
     };
     let (about, body) = match shelf {
-        Shelf::RULES => (
-            "A production rule: what the growth starts from, and what replaces an element.",
-            definitions.grown(&RULE),
-        ),
-        Shelf::IFS => (
-            "An iterated function system: maps that shrink the plane, and what they are applied to.",
-            definitions.grown(&IFS),
-        ),
-        Shelf::INSTANCING => (
-            "A structure of objects that instance each other, or themselves.",
-            definitions.grown(&INSTANCING),
-        ),
-        Shelf::LSYSTEMS => (
-            "An L-system: a word, what replaces its symbols, and what a turtle draws of it.",
-            definitions.grown(&LSYSTEM),
-        ),
+        Shelf::Fractals(kind) => {
+            let table = KindDocument::table(kind);
+            (table.about, definitions.grown(table.shape))
+        }
         Shelf::Initiators => (
             "An initiator: what the growth starts from.",
             definitions.either(&[ELEMENTS, Form::Mapping(&INITIATOR_FILE)]),

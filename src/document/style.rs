@@ -3,8 +3,9 @@
 use crate::expression::Scope;
 use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, View, Width};
 
+use super::mapping::FromNode;
 use super::node::{Node, Value};
-use super::reader::Reader;
+use super::reader::{Fields, Reader};
 use super::shape::{Choice, Form, Shape, keys};
 
 pub(super) const STYLE: Shape = Shape {
@@ -51,39 +52,24 @@ pub(super) const VIEW: Shape = Shape {
     hint: "view: {window: [x, y, width, height], margin: 10}",
 };
 
-pub(super) fn read_style(reader: &mut Reader, node: Option<&Node>) -> Style {
-    let mut style = Style::default();
-    let Some(node) = node else { return style };
-    let Some(fields) = reader.fields(node, &STYLE) else {
-        return style;
-    };
-    style.stroke = fields
-        .take("stroke")
-        .and_then(|node| read_colour(reader, node));
-    style.fill = fields
-        .take("fill")
-        .and_then(|node| read_colour(reader, node));
-    style.background = fields
-        .take("background")
-        .and_then(|node| read_colour(reader, node));
-    if let Some(width) = fields.take("width") {
-        style.width = read_width(reader, width).unwrap_or(style.width);
+impl FromNode for Style {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let fields = reader.fields(node, &STYLE)?;
+        Some(Self {
+            stroke: fields.optional(reader, "stroke"),
+            fill: fields.optional(reader, "fill"),
+            background: fields.optional(reader, "background"),
+            width: fields.read(reader, "width")?,
+            cap: fields.read(reader, "cap")?,
+            join: fields.read(reader, "join")?,
+            color_by: fields.read(reader, "color_by")?,
+            palette: fields.read(reader, "palette")?,
+        })
     }
-    if let Some(cap) = fields.take("cap") {
-        style.cap = reader.variant(cap, "cap").unwrap_or_default();
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::default())
     }
-    if let Some(join) = fields.take("join") {
-        style.join = reader.variant(join, "join").unwrap_or_default();
-    }
-    if let Some(color_by) = fields.take("color_by") {
-        style.color_by = reader
-            .variant(color_by, "way to colour")
-            .unwrap_or_default();
-    }
-    if let Some(palette) = fields.take("palette") {
-        style.palette = read_palette(reader, palette).unwrap_or_default();
-    }
-    style
 }
 
 /// Reads a colour. Returns `None` for `none` and for null, and reports other values that are not
@@ -110,37 +96,48 @@ pub(super) fn read_colour(reader: &mut Reader, node: &Node) -> Option<Colour> {
     colour
 }
 
-fn read_width(reader: &mut Reader, node: &Node) -> Option<Width> {
-    if let Value::Mapping(_) = node.value {
-        let fields = reader.fields(node, &WIDTH)?;
-        let Some(relative) = fields.take("relative") else {
-            if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
-                reader.mismatch(node, WIDTH.what, WIDTH.hint);
-            }
+impl FromNode for Width {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        if let Value::Mapping(_) = node.value {
+            let fields = reader.fields(node, &WIDTH)?;
+            let Some(relative) = fields.take("relative") else {
+                if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
+                    reader.mismatch(node, WIDTH.what, WIDTH.hint);
+                }
+                return None;
+            };
+            return f64::from_node(reader, relative).map(Self::Relative);
+        }
+        if let Value::Text(text) = &node.value
+            && let Some(pixels) = text.strip_suffix("px").map(str::trim_end)
+            && pixels.parse::<f64>().is_ok()
+        {
+            let hint = format!("write {pixels}: widths are pixels");
+            reader.error_with_hint(&node.place, "a width has no unit", hint);
             return None;
-        };
-        let width = positive(reader, relative);
-        return width.map(Width::Relative);
+        }
+        f64::from_node(reader, node).map(Self::Pixels)
     }
-    if let Value::Text(text) = &node.value
-        && let Some(pixels) = text.strip_suffix("px").map(str::trim_end)
-        && pixels.parse::<f64>().is_ok()
-    {
-        let hint = format!("write {pixels}: widths are pixels");
-        reader.error_with_hint(&node.place, "a width has no unit", hint);
-        return None;
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Style::default().width)
     }
-    positive(reader, node).map(Width::Pixels)
 }
 
 /// Reads a constant expression whose value is not negative.
-fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
-    let value = constant(reader, node)?;
-    if value < 0.0 {
-        reader.error_with_hint(&node.place, "this cannot be negative", "0 or more");
-        return None;
+impl FromNode for f64 {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let value = constant(reader, node)?;
+        if value < 0.0 {
+            reader.error_with_hint(&node.place, "this cannot be negative", "0 or more");
+            return None;
+        }
+        Some(value)
     }
-    Some(value)
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(0.0)
+    }
 }
 
 fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
@@ -158,66 +155,73 @@ fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
     }
 }
 
-fn read_palette(reader: &mut Reader, node: &Node) -> Option<Palette> {
-    match &node.value {
-        Value::Text(name) => {
-            let palette = Palette::named(name);
-            if palette.is_err() {
-                let known = crate::diagnostic::did_you_mean(name, Palette::names());
-                let hint = known.unwrap_or_else(|| {
-                    format!(
-                        "one of: {}",
-                        Palette::names().collect::<Vec<_>>().join(", ")
-                    )
-                });
-                reader.error_with_hint(&node.place, format!("there is no palette '{name}'"), hint);
+impl FromNode for Palette {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        match &node.value {
+            Value::Text(name) => {
+                let palette = Palette::named(name);
+                if palette.is_err() {
+                    let known = crate::diagnostic::did_you_mean(name, Palette::names());
+                    let hint = known.unwrap_or_else(|| {
+                        format!(
+                            "one of: {}",
+                            Palette::names().collect::<Vec<_>>().join(", ")
+                        )
+                    });
+                    reader.error_with_hint(
+                        &node.place,
+                        format!("there is no palette '{name}'"),
+                        hint,
+                    );
+                }
+                palette.ok()
             }
-            palette.ok()
+            Value::Sequence(entries) if !entries.is_empty() => {
+                let colours: Vec<_> = entries
+                    .iter()
+                    .filter_map(|entry| read_colour(reader, entry))
+                    .collect();
+                (!colours.is_empty()).then(|| Palette::of_colours("", &colours))
+            }
+            _ => {
+                reader.mismatch(node, "a palette", "palette: viridis, or a list of colours");
+                None
+            }
         }
-        Value::Sequence(entries) if !entries.is_empty() => {
-            let colours: Vec<_> = entries
-                .iter()
-                .filter_map(|entry| read_colour(reader, entry))
-                .collect();
-            (!colours.is_empty()).then(|| Palette::of_colours("", &colours))
-        }
-        _ => {
-            reader.mismatch(node, "a palette", "palette: viridis, or a list of colours");
-            None
-        }
+    }
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::default())
     }
 }
 
-pub(super) fn read_view(reader: &mut Reader, node: Option<&Node>) -> View {
-    let mut view = View::default();
-    let Some(node) = node else { return view };
-    let Some(fields) = reader.fields(node, &VIEW) else {
-        return view;
-    };
-    if let Some(window) = fields.take("window") {
-        let entries = reader.list(window, "a list of four numbers", VIEW.hint);
-        let numbers: Vec<_> = entries
-            .iter()
-            .filter_map(|entry| constant(reader, entry))
-            .collect();
-        let wrong = match (&window.value, entries.len(), numbers.as_slice()) {
-            (Value::Sequence(_), 4, &[x, y, width, height]) => {
-                view.window = Some([x, y, width, height]);
-                width <= 0.0 || height <= 0.0
-            }
-            (Value::Sequence(_), count, _) => count != 4,
-            _ => false,
-        };
-        if wrong {
-            reader.error_with_hint(
-                &window.place,
-                "a window has a lower left corner, a width and a height above 0",
-                VIEW.hint,
-            );
+impl FromNode for View {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let fields = reader.fields(node, &VIEW)?;
+        Some(Self {
+            window: fields.optional(reader, "window"),
+            margin: fields.read(reader, "margin")?,
+        })
+    }
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::default())
+    }
+}
+
+/// A window: its lower left corner, its width and its height.
+impl FromNode for [f64; 4] {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let entries = reader.list(node, "a list of four numbers", VIEW.hint);
+        let numbers = entries.iter().filter_map(|entry| constant(reader, entry));
+        let numbers: Vec<_> = numbers.collect();
+        let window = Self::try_from(numbers).ok().filter(|_| entries.len() == 4);
+        let is_empty = window.is_some_and(|[_, _, width, height]| width <= 0.0 || height <= 0.0);
+        let is_list = matches!(node.value, Value::Sequence(_));
+        if is_list && (is_empty || entries.len() != 4) {
+            let message = "a window has a lower left corner, a width and a height above 0";
+            reader.error_with_hint(&node.place, message, VIEW.hint);
         }
+        window
     }
-    if let Some(margin) = fields.take("margin") {
-        view.margin = positive(reader, margin).unwrap_or_default();
-    }
-    view
 }

@@ -158,7 +158,7 @@ impl Resolver<OfInstancing> {
         let tints = structure
             .instances()
             .any(|instance| instance.tint.is_some());
-        if tints && !document.tells_colours {
+        if tints && !document.heading.sets_colours {
             structure.heading.style.color_by = ColorBy::Tint;
         }
         self.check_loops(document, &structure)?;

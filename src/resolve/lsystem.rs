@@ -89,7 +89,7 @@ impl Resolver<OfLSystem> {
             axiom: axiom?,
             productions,
         };
-        if system.has_colours() && !document.tells_colours {
+        if system.has_colours() && !document.heading.sets_colours {
             system.heading.style.color_by = ColorBy::Tint;
         }
         self.check_weights(document, &system);

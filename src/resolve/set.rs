@@ -1,6 +1,7 @@
 //! Resolution of plane sets.
 
 use crate::document::{EllipseDocument, FormDocument, ShapeDocument};
+use crate::geometry::DVec2;
 use crate::ifs::Shape;
 
 use super::Resolver;
@@ -36,8 +37,10 @@ impl<K> Resolver<K> {
                     centre,
                     axes,
                     rotate,
+                    ..
                 } = &**ellipse;
-                let centre = self.constant_point(centre);
+                let origin = Some(DVec2::ZERO);
+                let centre = { centre.as_ref() }.map_or(origin, |point| self.constant_point(point));
                 let axes = axes.each_ref();
                 let lengths = self.numbers(axes);
                 let angle = match rotate {

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Source;
-use crate::document::merge::Entries;
 use crate::document::node::{Node, Value};
 use crate::document::yaml::Size;
 
@@ -15,48 +14,9 @@ const MOST_DEEP: usize = 8;
 const MOST_FRACTALS: usize = 1000;
 
 impl Assembly<'_> {
-    /// Inlines the fractals in all sets of a file.
-    pub(super) fn inline_fractals(&mut self, entries: &mut Entries) {
-        for (key, node) in entries {
-            match (key.name.as_str(), &mut node.value) {
-                // Names of objects are arbitrary and may equal a keyword.
-                ("objects", Value::Mapping(objects)) => {
-                    for (_, object) in objects {
-                        self.inline_fractals_in(object);
-                    }
-                }
-                ("condensation" | "initial" | "scene", _) => self.inline_fractals_in(node),
-                _ => {}
-            }
-        }
-    }
-
-    /// Inlines the fractals in a set, an instance, a list or a union.
-    fn inline_fractals_in(&mut self, node: &mut Node) {
-        match &mut node.value {
-            Value::Sequence(items) => {
-                for item in items {
-                    self.inline_fractals_in(item);
-                }
-            }
-            Value::Mapping(entries) => {
-                for (key, node) in entries {
-                    match (key.name.as_str(), &node.value) {
-                        ("fractal", Value::Text(_) | Value::Mapping(_)) => {
-                            self.inline_fractal(node)
-                        }
-                        ("union", _) => self.inline_fractals_in(node),
-                        _ => {}
-                    }
-                }
-            }
-            _ => {}
-        }
-    }
-
     /// Replaces the name of a fractal by the content of its file, or by an empty text if that is not
     /// possible.
-    fn inline_fractal(&mut self, node: &mut Node) {
+    pub(super) fn inline_fractal(&mut self, node: &mut Node) {
         let found = if self.missing < MOST_MISSING {
             self.fractal(node)
         } else {

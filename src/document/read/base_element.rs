@@ -1,28 +1,29 @@
 //! Reading of base elements.
 
 use crate::catalogue::Shelf;
+use crate::document::WrittenPoint;
+use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::rule::{BaseElementDocument, PieceDocument};
+use crate::document::rule::PieceDocument;
 use crate::document::shape::{Form, Shape, Way, keys, way};
 
-pub(in crate::document) const BASE_ELEMENT: Shape = Shape {
-    what: "a base element",
-    keys: &[&keys![
-        needed points: Form::List(&Form::Either(&[Form::Point, Form::Mapping(&PIECE)]), 2, None),
-            "The outline: a point, then points and round pieces. The first and the last point differ."
-            => "a base element needs `points`";
-        closed: Form::Flag(false),
-            "Whether the last point is joined to the first: a polygon, which is filled.";
-        from: Form::Point,
-            "The point of the outline's plane that lies on the element's start; [0, 0] if left out.";
-        to: Form::Point,
-            "The point of the outline's plane that lies on the element's end; [1, 0] if left out.";
-    ]],
-    ways: &[],
-    hint: "a name from the library (base_element: triangle), or \
-           {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}",
-};
+mapping! {
+    /// A base element as written.
+    struct BaseElementDocument: BASE_ELEMENT = "a base element",
+        "a name from the library (base_element: triangle), or \
+         {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}";
+    needed points as pieces: Vec<PieceDocument> =
+        Form::List(&Form::Either(&[Form::Point, Form::Mapping(&PIECE)]), 2, None),
+        "The outline: a point, then points and round pieces. The first and the last point differ."
+        => "a base element needs `points`";
+    closed: bool = Form::Flag(false),
+        "Whether the last point is joined to the first: a polygon, which is filled.";
+    from: Option<WrittenPoint> = Form::Point,
+        "The point of the outline's plane that lies on the element's start; [0, 0] if left out.";
+    to: Option<WrittenPoint> = Form::Point,
+        "The point of the outline's plane that lies on the element's end; [1, 0] if left out.";
+}
 
 pub(super) const BASE_ELEMENT_OF: Form = Form::Either(&[
     Form::File(Shelf::BaseElements),
@@ -47,27 +48,20 @@ const ARC: Way = way(&["arc", "through"], &["curve", "control"]);
 
 const CURVE: Way = way(&["curve", "control"], &["arc", "through"]);
 
-pub(super) fn read_base_element(reader: &mut Reader, node: &Node) -> Option<BaseElementDocument> {
-    if reader.is_component(node) {
-        return None;
-    }
-    let fields = reader.fields(node, &BASE_ELEMENT)?;
-    let mut pieces = Vec::new();
-    if let Some(points) = fields.take("points") {
-        let list = reader.list(points, "a list of points", BASE_ELEMENT.hint);
-        pieces.extend(list.iter().filter_map(|entry| read_piece(reader, entry)));
-        if matches!(points.value, Value::Sequence(_)) && list.len() < 2 {
+impl FromNode for Vec<PieceDocument> {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let list = reader.list(node, "a list of points", BASE_ELEMENT.hint);
+        if matches!(node.value, Value::Sequence(_)) && list.len() < 2 {
             let message = "a base element needs two points or more";
-            reader.error_with_hint(&points.place, message, "points: [[0, 0], [1, 0]]");
+            reader.error_with_hint(&node.place, message, "points: [[0, 0], [1, 0]]");
         }
+        let pieces = list.iter().filter_map(|entry| read_piece(reader, entry));
+        Some(pieces.collect())
     }
-    Some(BaseElementDocument {
-        pieces,
-        closed: reader.flag(&fields, "closed"),
-        from: reader.optional_point(fields.take("from")),
-        to: reader.optional_point(fields.take("to")),
-        place: node.place.clone(),
-    })
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::new())
+    }
 }
 
 fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
@@ -78,7 +72,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
     if let Some(to) = fields.take("arc") {
         exclude(reader, &fields, &ARC, "an arc");
         let to = reader.point(to);
-        let Some(through) = reader.optional_point(fields.take("through")) else {
+        let Some(through) = fields.optional(reader, "through") else {
             let message = "an arc needs a point that it goes through";
             reader.error_with_hint(&node.place.first_line(), message, PIECE.hint);
             return None;

@@ -1,35 +1,37 @@
 //! Reading of lists of elements and of initiators.
 
-use crate::document::WrittenPoint;
+use crate::diagnostic::Place;
+use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::rule::{Entry, InitiatorDocument, Listed};
-use crate::document::shape::{Form, Shape, keys};
+use crate::document::rule::Entry;
+use crate::document::shape::Form;
+use crate::document::{BaseElementDocument, Written, WrittenNumber, WrittenPoint};
 
-use super::base_element::{BASE_ELEMENT_OF, read_base_element};
+use super::base_element::BASE_ELEMENT_OF;
 
-const ELEMENT: Shape = Shape {
-    what: "an element",
-    keys: &[&keys![
-        from: Form::Point, "Where the element runs from; where the one before it ends, if left out.";
-        needed to: Form::Point, "Where the element runs to."
-            => "this element does not say where it runs to";
-        direction: Form::Whole(1, Some(4)),
-            "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
-             sides swapped), 3 x reflected (its ends swapped), 4 both.";
-        fertile: Form::Flag(true),
-            "Whether the element is replaced; if not, it stays as it is for ever.";
-        visible: Form::Flag(true),
-            "Whether the element is drawn. It counts, and is replaced if it is fertile, all the same.";
-        connected: Form::Flag(true), "Whether the element may join the one before it.";
-        use: Form::Text, "The generator that replaces this element, whatever `select` says.";
-        base_element: BASE_ELEMENT_OF,
-            "What this element looks like, if not like the others: a name from the library, or a shape \
-             of its own.";
-    ]],
-    ways: &[],
-    hint: "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]",
-};
+mapping! {
+    /// An element of a list, as written.
+    struct Listed: ELEMENT = "an element",
+        "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]";
+    from: Option<WrittenPoint> = Form::Point,
+        "Where the element runs from; where the one before it ends, if left out.";
+    needed to: WrittenPoint = Form::Point, "Where the element runs to."
+        => "this element does not say where it runs to";
+    direction: Option<WrittenNumber> = Form::Whole(1, Some(4)),
+        "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
+         sides swapped), 3 x reflected (its ends swapped), 4 both.";
+    fertile: bool = Form::Flag(true),
+        "Whether the element is replaced; if not, it stays as it is for ever.";
+    visible: bool = Form::Flag(true),
+        "Whether the element is drawn. It counts, and is replaced if it is fertile, all the same.";
+    connected: bool = Form::Flag(true), "Whether the element may join the one before it.";
+    use as generator: Option<Written<String>> = Form::Text,
+        "The generator that replaces this element, whatever `select` says.";
+    base_element: Option<BaseElementDocument> = BASE_ELEMENT_OF,
+        "What this element looks like, if not like the others: a name from the library, or a shape \
+         of its own.";
+}
 
 /// A list of elements.
 pub(in crate::document) const ELEMENTS: Form = Form::List(
@@ -38,92 +40,87 @@ pub(in crate::document) const ELEMENTS: Form = Form::List(
     None,
 );
 
-/// Description of lists of elements in the schema.
-pub(super) const ABOUT_ELEMENTS: &str = "A list of points and elements: a chain runs from each \
-    point to the next. Begin with a point, or with an element that has `from`.";
+/// Description of a list of elements.
+macro_rules! about_elements {
+    () => {
+        "A list of points and elements: a chain runs from each point to the next. Begin with a point, \
+         or with an element that has `from`."
+    };
+}
 
-pub(in crate::document) const INITIATOR: Shape = Shape {
-    what: "an initiator",
-    keys: &[&keys![
-        needed elements: ELEMENTS, ABOUT_ELEMENTS
-            => "an initiator needs `elements`", "elements: [[0, 0], [1, 0]]";
-        closed: Form::Flag(false),
-            "Whether one more element runs from the last point back to the first.";
-        connected: Form::Flag(true), "Whether elements join each other at all.";
-    ]],
-    ways: &[],
-    hint: "a name from the library (initiator: segment), a list of points, or \
-           {elements: [...], closed: true}",
-};
+pub(super) use about_elements;
+
+mapping! {
+    /// An initiator as written.
+    struct InitiatorDocument: INITIATOR = "an initiator",
+        "a name from the library (initiator: segment), a list of points, or \
+         {elements: [...], closed: true}";
+    needed elements as entries: Vec<Entry> = ELEMENTS, about_elements!()
+        => "an initiator needs `elements`", "elements: [[0, 0], [1, 0]]";
+    closed: bool = Form::Flag(false),
+        "Whether one more element runs from the last point back to the first.";
+    connected: bool = Form::Flag(true), "Whether elements join each other at all.";
+}
+
+impl InitiatorDocument {
+    /// Returns an initiator with nothing but a list; an empty one stands for one that cannot be read.
+    pub(super) fn listed(entries: Vec<Entry>, place: &Place) -> Self {
+        Self {
+            entries,
+            closed: false,
+            connected: true,
+            place: place.clone(),
+        }
+    }
+}
 
 const LIST: &str =
     "a list of points and elements: - [0, 0], then - [1, 0] or - {to: [1, 0], fertile: false}";
 
 pub(super) fn read_initiator(reader: &mut Reader, node: &Node) -> InitiatorDocument {
-    let mut initiator = InitiatorDocument::missing(&node.place);
-    if let Value::Sequence(_) = node.value {
-        initiator.entries = read_entries(reader, node);
-        return initiator;
-    }
-    if reader.is_component(node) {
-        return initiator;
-    }
-    if let Some(fields) = reader.fields(node, &INITIATOR) {
-        initiator.closed = reader.flag(&fields, "closed");
-        initiator.connected = reader.flag(&fields, "connected");
-        initiator.entries = listed_entries(reader, &fields);
-    }
-    initiator
-}
-
-/// Reads the key `elements` of an initiator, a generator or a part.
-pub(super) fn listed_entries(reader: &mut Reader, fields: &Fields<'_>) -> Vec<Entry> {
-    let node = fields.take("elements");
-    node.map_or_else(Vec::new, |node| read_entries(reader, node))
-}
-
-/// Reads the list of elements of an initiator or of a part.
-pub(super) fn read_entries(reader: &mut Reader, node: &Node) -> Vec<Entry> {
-    let list = reader.list(node, "a list of elements", LIST);
-    let entries: Vec<_> = list.iter().map(|entry| read_entry(reader, entry)).collect();
-    match (&node.value, entries.as_slice()) {
-        (Value::Sequence(_), [] | [Entry::Point(_)]) => {
-            reader.error_with_hint(&node.place, "there is no element in this list", LIST);
+    let initiator = match &node.value {
+        Value::Sequence(_) => {
+            let entries = Vec::from_node(reader, node);
+            entries.map(|entries| InitiatorDocument::listed(entries, &node.place))
         }
-        (_, [Entry::Element(first), ..]) if first.from.is_none() => reader.error_with_hint(
-            &first.place.first_line(),
-            "the first element does not say where it runs from",
-            "begin the list with a point, - [0, 0], or give the element `from`",
-        ),
-        _ => {}
+        _ if reader.is_component(node) => None,
+        _ => InitiatorDocument::from_node(reader, node),
+    };
+    initiator.unwrap_or_else(|| InitiatorDocument::listed(Vec::new(), &node.place))
+}
+
+impl FromNode for Vec<Entry> {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let list = reader.list(node, "a list of elements", LIST);
+        let entries: Vec<_> = list.iter().map(|entry| read_entry(reader, entry)).collect();
+        match (&node.value, entries.as_slice()) {
+            (Value::Sequence(_), [] | [Entry::Point(_)]) => {
+                reader.error_with_hint(&node.place, "there is no element in this list", LIST);
+            }
+            (_, [Entry::Element(first), ..]) if first.from.is_none() => reader.error_with_hint(
+                &first.place.first_line(),
+                "the first element does not say where it runs from",
+                "begin the list with a point, - [0, 0], or give the element `from`",
+            ),
+            _ => {}
+        }
+        Some(entries)
     }
-    entries
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::new())
+    }
 }
 
 fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
+    let unknown = || Entry::Point(WrittenPoint::unknown(&node.place));
     match &node.value {
-        Value::Sequence(_) => return Entry::Point(reader.point(node)),
-        Value::Mapping(_) => {}
+        Value::Sequence(_) => Entry::Point(reader.point(node)),
+        Value::Mapping(_) => Listed::from_node(reader, node)
+            .map_or_else(unknown, |listed| Entry::Element(Box::new(listed))),
         _ => {
             reader.mismatch(node, "a point or an element", ELEMENT.hint);
-            return Entry::Point(WrittenPoint::unknown(&node.place));
+            unknown()
         }
     }
-    let Some(fields) = reader.fields(node, &ELEMENT) else {
-        return Entry::Point(WrittenPoint::unknown(&node.place));
-    };
-    let to = reader.optional_point(fields.take("to"));
-    Entry::Element(Box::new(Listed {
-        from: reader.optional_point(fields.take("from")),
-        to: to.unwrap_or_else(|| WrittenPoint::unknown(&node.place)),
-        direction: reader.optional_number(fields.take("direction")),
-        fertile: reader.flag(&fields, "fertile"),
-        visible: reader.flag(&fields, "visible"),
-        connected: reader.flag(&fields, "connected"),
-        generator: fields.take("use").and_then(|node| reader.name(node)),
-        base_element: fields
-            .take("base_element")
-            .and_then(|node| read_base_element(reader, node)),
-        place: node.place.clone(),
-    }))
 }

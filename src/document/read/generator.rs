@@ -1,21 +1,21 @@
 //! Reading of generators: their parts, random variables and moves.
 
 use crate::catalogue::Shelf;
+use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::rule::{GeneratorDocument, MoveDocument, PartDocument, WhichPoints};
+use crate::document::rule::{GeneratorDocument, PartDocument, WhichPoints};
 use crate::document::shape::{Form, Shape, keys, way};
-use crate::document::{Written, WrittenNumber};
+use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::rule::Placement;
 
-use super::elements::{ABOUT_ELEMENTS, ELEMENTS, listed_entries, read_entries};
+use super::elements::{ELEMENTS, about_elements};
 use super::parameters::written;
-use super::set::pair;
 
 pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",
     keys: &[&keys![
-        elements: ELEMENTS, ABOUT_ELEMENTS;
+        elements: ELEMENTS, about_elements!();
         parts: Form::List(&Form::Mapping(&PART), 1, None),
             "Several lists, in place of `elements`: parts that take the element's place, and parts \
              that seed.";
@@ -46,27 +46,27 @@ const PART: Shape = Shape {
             "Whether one more element runs from the last point back to the first; for a part that \
              seeds.";
         connected: Form::Flag(true), "Whether elements join each other at all.";
-        needed elements: ELEMENTS, ABOUT_ELEMENTS
+        needed elements: ELEMENTS, about_elements!()
             => "a part needs `elements`", "elements: [[0, 0], [1, 0]]";
     ]],
     ways: &[],
     hint: "- {seeds: true, elements: [...]}",
 };
 
-const MOVE: Shape = Shape {
-    what: "a move",
-    keys: &[&keys![
-        rotate: Form::Number, "An angle in degrees, counter-clockwise.";
-        scale: Form::Either(&[Form::Number, Form::Point]), "A factor, or one along x and one along y.";
-        shift: Form::Point, "What is added last: [x, y].";
-        about: Form::Point, "The centre of scaling and turning; [0, 0] if left out.";
-        points: Form::Either(&[Form::Words(&[ALL]), Form::List(&Form::Whole(0, None), 0, None)]),
-            "The points that move: `all`, or their numbers from 0 in the order in which they are \
-             written; all but the two ends, if left out.";
-    ]],
-    ways: &[],
-    hint: "move: {rotate: tilt, about: [1/2, 1]}",
-};
+mapping! {
+    /// A move of points of a generator, as written.
+    struct MoveDocument: MOVE = "a move", "move: {rotate: tilt, about: [1/2, 1]}";
+    rotate: Option<WrittenNumber> = Form::Number, "An angle in degrees, counter-clockwise.";
+    scale: Option<[WrittenNumber; 2]> = Form::Either(&[Form::Number, Form::Point]),
+        "A factor, or one along x and one along y.";
+    shift: Option<WrittenPoint> = Form::Point, "What is added last: [x, y].";
+    about: Option<WrittenPoint> = Form::Point,
+        "The centre of scaling and turning; [0, 0] if left out.";
+    points: WhichPoints =
+        Form::Either(&[Form::Words(&[ALL]), Form::List(&Form::Whole(0, None), 0, None)]),
+        "The points that move: `all`, or their numbers from 0 in the order in which they are \
+         written; all but the two ends, if left out.";
+}
 
 /// Notations of a generator.
 pub(super) const GENERATOR_OF: Form = Form::Either(&[
@@ -132,22 +132,22 @@ pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<N
 }
 
 fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
-    let part = PartDocument {
-        placement: Placement::Stays,
-        entries: Vec::new(),
-        closed: false,
-        connected: true,
-        place: node.place.clone(),
-    };
     let mut generator = GeneratorDocument {
         random: Vec::new(),
         moves: Vec::new(),
         parts: Vec::new(),
         place: node.place.clone(),
     };
+    let part = |entries: Option<_>, connected| PartDocument {
+        placement: Placement::Stays,
+        entries: entries.unwrap_or_default(),
+        closed: false,
+        connected,
+        place: node.place.clone(),
+    };
     if let Value::Sequence(_) = node.value {
-        let entries = read_entries(reader, node);
-        generator.parts.push(PartDocument { entries, ..part });
+        let entries = Vec::from_node(reader, node);
+        generator.parts.push(part(entries, true));
         return generator;
     }
     if reader.is_component(node) {
@@ -158,41 +158,35 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
     };
     generator.random = read_random(reader, fields.take("random"));
     generator.moves = read_moves(reader, fields.take("move"));
-    let connected = fields.take("connected");
-    match fields.take("parts") {
-        Some(parts) => {
-            if fields.take("elements").is_some() {
-                reader.error_with_hint(
-                    fields.place_of("elements"),
-                    "`parts` and `elements` cannot stand together",
-                    "put the elements into a part of their own: - elements: [...]",
-                );
-            }
-            if let Some(connected) = connected {
-                reader.error_with_hint(
-                    &connected.place,
-                    "`connected` belongs to a part where there are parts",
-                    "- {connected: false, elements: [...]}",
-                );
-            }
-            let hint = "parts: [{elements: [...]}, {seeds: true, elements: [...]}]";
-            let list = reader.filled(parts, "a list of parts", "part", hint);
-            let parts = list.iter().filter_map(|part| read_part(reader, part));
-            generator.parts.extend(parts);
+    let Some(parts) = fields.take("parts") else {
+        if fields.take("elements").is_none() {
+            let message = "a generator needs `elements`";
+            let hint = "elements: [[0, 0], [1, 0]]";
+            reader.error_with_hint(&fields.place.first_line(), message, hint);
         }
-        None => {
-            if fields.take("elements").is_none() {
-                let message = "a generator needs `elements`";
-                let hint = "elements: [[0, 0], [1, 0]]";
-                reader.error_with_hint(&fields.place.first_line(), message, hint);
-            }
-            generator.parts.push(PartDocument {
-                connected: reader.flag(&fields, "connected"),
-                entries: listed_entries(reader, &fields),
-                ..part
-            });
-        }
+        let connected = fields.read(reader, "connected").unwrap_or(true);
+        let entries = fields.read(reader, "elements");
+        generator.parts.push(part(entries, connected));
+        return generator;
+    };
+    if fields.take("elements").is_some() {
+        reader.error_with_hint(
+            fields.place_of("elements"),
+            "`parts` and `elements` cannot stand together",
+            "put the elements into a part of their own: - elements: [...]",
+        );
     }
+    if let Some(connected) = fields.take("connected") {
+        reader.error_with_hint(
+            &connected.place,
+            "`connected` belongs to a part where there are parts",
+            "- {connected: false, elements: [...]}",
+        );
+    }
+    let hint = "parts: [{elements: [...]}, {seeds: true, elements: [...]}]";
+    let list = reader.filled(parts, "a list of parts", "part", hint);
+    let parts = list.iter().filter_map(|part| read_part(reader, part));
+    generator.parts.extend(parts);
     generator
 }
 
@@ -201,7 +195,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     let seeds = fields.take("seeds");
     // An unreadable value may have been meant as true.
     let unreadable = seeds.is_some_and(|node| !matches!(node.value, Value::Bool(_)));
-    let seeds = reader.flag(&fields, "seeds") || unreadable;
+    let seeds = fields.read(reader, "seeds").unwrap_or(false) || unreadable;
     let mut placement = if seeds {
         Placement::Seeds
     } else {
@@ -225,7 +219,7 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
             ),
         }
     }
-    let closed = reader.flag(&fields, "closed");
+    let closed = fields.read(reader, "closed").unwrap_or(false);
     if let (true, false, Some(node)) = (closed, seeds, fields.take("closed")) {
         reader.error_with_hint(
             &node.place,
@@ -235,9 +229,9 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     }
     Some(PartDocument {
         placement,
-        entries: listed_entries(reader, &fields),
+        entries: fields.read(reader, "elements")?,
         closed: closed && seeds,
-        connected: reader.flag(&fields, "connected"),
+        connected: fields.read(reader, "connected")?,
         place: node.place.clone(),
     })
 }
@@ -270,30 +264,24 @@ fn read_moves(reader: &mut Reader, node: Option<&Node>) -> Vec<MoveDocument> {
 }
 
 fn read_move(reader: &mut Reader, node: &Node) -> Option<MoveDocument> {
-    let fields = reader.fields(node, &MOVE)?;
-    if let Value::Mapping(entries) = &node.value
-        && entries.is_empty()
-    {
+    let moved = MoveDocument::from_node(reader, node)?;
+    if matches!(&node.value, Value::Mapping(entries) if entries.is_empty()) {
         reader.error_with_hint(&node.place, "this move moves nothing", MOVE.hint);
     }
-    let scale = fields.take("scale").map(|node| pair(reader, node));
-    let points = match fields.take("points") {
-        None => WhichPoints::Inner,
-        Some(Node {
-            value: Value::Text(text),
-            ..
-        }) if text == ALL => WhichPoints::All,
-        Some(node) => {
-            let list = reader.list(node, "a list of point numbers, or `all`", "points: [1, 2]");
-            WhichPoints::Numbers(list.iter().map(|entry| reader.number(entry)).collect())
+    Some(moved)
+}
+
+impl FromNode for WhichPoints {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        if matches!(&node.value, Value::Text(text) if text == ALL) {
+            return Some(Self::All);
         }
-    };
-    Some(MoveDocument {
-        rotate: reader.optional_number(fields.take("rotate")),
-        scale,
-        shift: reader.optional_point(fields.take("shift")),
-        about: reader.optional_point(fields.take("about")),
-        points,
-        place: node.place.clone(),
-    })
+        let list = reader.list(node, "a list of point numbers, or `all`", "points: [1, 2]");
+        let numbers = list.iter().map(|entry| reader.number(entry));
+        Some(Self::Numbers(numbers.collect()))
+    }
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self::Inner)
+    }
 }

@@ -1,6 +1,7 @@
 //! Reading of iterated function systems.
 
 use crate::catalogue::Shelf;
+use crate::document::MetadataDocument;
 use crate::document::Written;
 use crate::document::WrittenPoint;
 use crate::document::ifs::{
@@ -12,12 +13,13 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, keys, way};
 use crate::kind::Kind;
 
-use super::metadata::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
-use super::set::{CONDENSATION, SET, pair, read_initial, read_set};
+use super::set::{CONDENSATION, SET, read_initial, read_set};
+use super::{KindTable, OfKind};
 
 /// Keys of an iterated function system.
-pub(in crate::document) const IFS: Shape = Shape {
+const IFS: Shape = Shape {
     what: "an iterated function system",
     keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
     ways: &[
@@ -133,37 +135,38 @@ const INTERPOLATION: Shape = Shape {
     hint: "interpolate: {points: [[0, 0], [1, 1], [2, 0]], scale: 0.3}",
 };
 
-/// Reads a system whose parents are inlined. `complete` states that all of them were found.
-pub(super) fn read_ifs(reader: &mut Reader, node: &Node, complete: bool) -> Option<IfsDocument> {
-    let fields = reader.fields(node, &IFS)?;
-    let heading = read_heading(reader, &fields);
-    let condensation = fields.take("condensation").map_or(&[][..], |node| {
-        let what = "a list of condensation sets";
-        reader.filled(node, what, "condensation set", CONDENSATION.hint)
-    });
-    let condensation: Vec<_> = condensation
-        .iter()
-        .filter_map(|node| {
+impl OfKind for IfsDocument {
+    const TABLE: &'static KindTable = &KindTable {
+        shape: &IFS,
+        about: "An iterated function system: maps that shrink the plane, and what they are applied to.",
+        stand_in: "{maps: [{scale: 0.5}]}",
+    };
+
+    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let condensation = fields.take("condensation").map_or(&[][..], |node| {
+            let what = "a list of condensation sets";
+            reader.filled(node, what, "condensation set", CONDENSATION.hint)
+        });
+        let condensation = condensation.iter().filter_map(|node| {
             let fields = reader.fields(node, &CONDENSATION)?;
             Some(CondensationDocument {
-                weight: reader.optional_number(fields.take("weight")),
+                weight: fields.optional(reader, "weight"),
                 shape: read_set(reader, &fields),
             })
-        })
-        .collect();
-    let mut ifs = IfsDocument {
-        heading,
-        maps: read_maps(reader, &fields),
-        condensation,
-        initial: read_initial(reader, &fields),
-        edges: fields
-            .take("edges")
-            .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
-    };
-    ifs.heading.complete = complete && !reader.names_are_missing;
-    Some(ifs)
+        });
+        let edges = fields.take("edges");
+        Self {
+            heading,
+            condensation: condensation.collect(),
+            maps: read_maps(reader, fields),
+            initial: read_initial(reader, fields),
+            edges: edges
+                .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
+        }
+    }
 }
 
+/// Reads the maps of the one way in which they are given.
 fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
     let ways = ["maps", "vertices", "interpolate"];
     let mut there = ways.iter().filter(|way| fields.take(way).is_some());
@@ -224,7 +227,7 @@ fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> 
     };
     MapDocument {
         name,
-        weight: reader.optional_number(fields.take("weight")),
+        weight: fields.optional(reader, "weight"),
         ..read_placing(reader, &fields)
     }
 }
@@ -249,10 +252,10 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
 
 fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocument> {
     let matrix = fields.take("matrix");
-    let scale = fields.take("scale").map(|node| pair(reader, node));
-    let rotate = fields.take("rotate").map(|node| pair(reader, node));
+    let scale = fields.optional(reader, "scale");
+    let rotate = fields.optional(reader, "rotate");
     let times = reader.optional_complex(fields.take("times"));
-    let conjugate = reader.flag(fields, "conjugate");
+    let conjugate = fields.read(reader, "conjugate")?;
     let ways = [matrix.is_some(), scale.is_some(), times.is_some()];
     let way = ways.iter().position(|there| *there);
     let Some(way) = way.and_then(|way| WAYS_TO_PLACE.get(way)) else {
@@ -294,7 +297,7 @@ pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPo
 fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
     let fields = reader.fields(node, &VERTICES)?;
     let points = read_points(reader, &fields, VERTICES.hint);
-    let shrink = reader.optional_number(fields.take("shrink"));
+    let shrink = fields.optional(reader, "shrink");
     Some(MapsDocument::Vertices {
         points: points?,
         shrink: shrink?,
@@ -310,7 +313,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
         }
         _ => Scales::One(reader.number(node)),
     });
-    let dimension = reader.optional_number(fields.take("dimension"));
+    let dimension = fields.optional(reader, "dimension");
     let scale = match (scale, dimension.map(Scales::Dimension)) {
         (Some(scale), None) | (None, Some(scale)) => scale,
         _ => {

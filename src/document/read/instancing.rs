@@ -2,25 +2,28 @@
 
 use crate::catalogue::Shelf;
 use crate::diagnostic::Place;
+use crate::document::MetadataDocument;
 use crate::document::instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    TintDocument, UnionDocument,
+    UnionDocument,
 };
+use crate::document::mapping::mapping;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
-use crate::document::style::read_colour;
 use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
+use crate::style::Colour;
 
-use super::metadata::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_initial, read_set};
 use super::transform::{TRANSFORMS, read_transforms};
+use super::{KindTable, OfKind};
 
 /// Keys of an instancing structure.
-pub(in crate::document) const INSTANCING: Shape = Shape {
+const INSTANCING: Shape = Shape {
     what: "an instancing structure",
     keys: &[&DESCRIPTION, &INSTANCING_ALONE, &LIKING],
     ways: &[],
@@ -83,51 +86,42 @@ const INSTANCE: Shape = Shape {
     hint: "the name of an object, {object: up, scale: 1/2}, or {segment: [[0, 0], [0, 1]]}",
 };
 
-const TINT: Shape = Shape {
-    what: "a tint",
-    keys: &[&keys![
-        needed color: Form::Colour, "The colour, as CSS writes it."
-            => "a tint needs a `color`";
-        alpha: Form::Number,
-            "How much it covers of what comes from further inside, from 0 to 1; all if left out.";
-    ]],
-    ways: &[],
-    hint: "tint: {color: brown, alpha: 0.5}",
-};
+mapping! {
+    /// A tint as written.
+    struct TintDocument: TINT = "a tint", "tint: {color: brown, alpha: 0.5}";
+    needed color as colour: Option<Colour> = Form::Colour, "The colour, as CSS writes it."
+        => "a tint needs a `color`";
+    alpha: Option<WrittenNumber> = Form::Number,
+        "How much it covers of what comes from further inside, from 0 to 1; all if left out.";
+}
 
-/// Reads a structure whose parents are inlined. `complete` states that all of them were found.
-pub(super) fn read_instancing(
-    reader: &mut Reader,
-    node: &Node,
-    complete: bool,
-) -> Option<InstancingDocument> {
-    let fields = reader.fields(node, &INSTANCING)?;
-    let heading = read_heading(reader, &fields);
-    let objects = match fields.take("objects").map(|node| (&node.value, node)) {
-        Some((Value::Mapping(objects), _)) => objects
-            .iter()
-            .filter_map(|(key, node)| read_object(reader, key, node))
-            .collect(),
-        Some((_, node)) => {
-            reader.mismatch(node, "a mapping of names to objects", UNION.hint);
-            Vec::new()
+impl OfKind for InstancingDocument {
+    const TABLE: &'static KindTable = &KindTable {
+        shape: &INSTANCING,
+        about: "A structure of objects that instance each other, or themselves.",
+        stand_in: "{objects: {object: [{segment: [[0, 0], [1, 0]]}]}, scene: [{segment: [[0, 0], [1, 0]]}]}",
+    };
+
+    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let objects = match fields.take("objects").map(|node| (&node.value, node)) {
+            Some((Value::Mapping(objects), _)) => objects
+                .iter()
+                .filter_map(|(key, node)| read_object(reader, key, node))
+                .collect(),
+            Some((_, node)) => {
+                reader.mismatch(node, "a mapping of names to objects", UNION.hint);
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        let scene = fields.take("scene");
+        Self {
+            heading,
+            objects,
+            scene: scene.and_then(|node| read_union(reader, node)),
+            initial: read_initial(reader, fields),
         }
-        None => Vec::new(),
-    };
-    let scene = fields
-        .take("scene")
-        .and_then(|node| read_union(reader, node));
-    let mut structure = InstancingDocument {
-        heading,
-        objects,
-        scene,
-        initial: read_initial(reader, &fields),
-        tells_colours: fields
-            .take("style")
-            .is_some_and(|style| style.get("color_by").is_some()),
-    };
-    structure.heading.complete = complete && !reader.names_are_missing;
-    Some(structure)
+    }
 }
 
 fn read_object(reader: &mut Reader, key: &Key, node: &Node) -> Option<ObjectDocument> {
@@ -211,15 +205,7 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
     } else if let Some(fields) = reader.fields(node, &INSTANCE) {
         instance.master = read_master(reader, &fields);
         instance.transforms = read_transforms(reader, &fields);
-        instance.tint = fields.take("tint").and_then(|node| {
-            let fields = reader.fields(node, &TINT)?;
-            Some(TintDocument {
-                colour: fields
-                    .take("color")
-                    .and_then(|node| read_colour(reader, node)),
-                alpha: reader.optional_number(fields.take("alpha")),
-            })
-        });
+        instance.tint = fields.optional(reader, "tint");
     }
     instance
 }

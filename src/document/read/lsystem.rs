@@ -1,21 +1,23 @@
 //! Reading of L-systems.
 
 use crate::catalogue::Shelf;
+use crate::document::MetadataDocument;
 use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument};
 use crate::document::node::{Key, Node, Value};
-use crate::document::reader::Reader;
+use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys};
 use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
-use super::metadata::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::turtle::{MEANING, read_symbol};
 use super::word::{Text, Words};
+use super::{KindTable, OfKind};
 
 /// Keys of an L-system.
-pub(in crate::document) const LSYSTEM: Shape = Shape {
+const LSYSTEM: Shape = Shape {
     what: "an L-system",
     keys: &[&DESCRIPTION, &LSYSTEM_ALONE, &LIKING],
     ways: &[],
@@ -81,54 +83,48 @@ const PRODUCTION: Shape = Shape {
 const QUOTE: &str = "a word that begins with a bracket, or with another sign of YAML, needs quotes: \
                      F: \"[+F]F\"";
 
-/// Reads an L-system whose parents are inlined. `complete` states that all of them were found.
-pub(super) fn read_lsystem(
-    reader: &mut Reader,
-    node: &Node,
-    complete: bool,
-) -> Option<LSystemDocument> {
-    let fields = reader.fields(node, &LSYSTEM)?;
-    let heading = read_heading(reader, &fields);
-    let mut number = |key| reader.optional_number(fields.take(key));
-    let (angle, start) = (number("angle"), number("heading"));
-    let (length, thinning) = (number("length"), number("thinning"));
-    let mut words = Words::new(reader);
-    let axiom = fields.take("axiom").and_then(|node| words.of(node));
-    let productions = fields
-        .take("productions")
-        .map_or_else(Vec::new, |node| read_productions(&mut words, node));
-    let symbols = match fields.take("symbols").map(|node| (&node.value, node)) {
-        None => Vec::new(),
-        Some((Value::Mapping(symbols), _)) => symbols
-            .iter()
-            .filter_map(|(key, node)| read_symbol(&mut words, key, node))
-            .collect(),
-        Some((_, node)) => {
-            let hint = "symbols: {G: draw, \"*\": {turn: 36}}";
-            let what = "a mapping of symbols to actions";
-            words.reader.mismatch(node, what, hint);
-            Vec::new()
+impl OfKind for LSystemDocument {
+    const TABLE: &'static KindTable = &KindTable {
+        shape: &LSYSTEM,
+        about: "An L-system: a word, what replaces its symbols, and what a turtle draws of it.",
+        stand_in: "{axiom: F, productions: {}}",
+    };
+
+    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let [angle, start, length, thinning] =
+            ["angle", "heading", "length", "thinning"].map(|key| fields.optional(reader, key));
+        let mut words = Words::new(reader);
+        let axiom = fields.take("axiom").and_then(|node| words.of(node));
+        let productions = fields.take("productions");
+        let productions =
+            productions.map_or_else(Vec::new, |node| read_productions(&mut words, node));
+        let symbols = match fields.take("symbols").map(|node| (&node.value, node)) {
+            None => Vec::new(),
+            Some((Value::Mapping(symbols), _)) => symbols
+                .iter()
+                .filter_map(|(key, node)| read_symbol(&mut words, key, node))
+                .collect(),
+            Some((_, node)) => {
+                let hint = "symbols: {G: draw, \"*\": {turn: 36}}";
+                let what = "a mapping of symbols to actions";
+                words.reader.mismatch(node, what, hint);
+                Vec::new()
+            }
+        };
+        let ignored = fields.take("ignore").and_then(|node| words.of(node));
+        let ignored = ignored.into_iter().flat_map(|word| word.modules);
+        Self {
+            heading,
+            angle,
+            start,
+            length,
+            thinning,
+            axiom,
+            productions,
+            symbols,
+            ignored: ignored.map(|module| module.character).collect(),
         }
-    };
-    let ignored = fields.take("ignore").and_then(|node| words.of(node));
-    let ignored = ignored.into_iter().flat_map(|word| word.modules);
-    let ignored = ignored.map(|module| module.character).collect();
-    let mut system = LSystemDocument {
-        heading,
-        angle,
-        start,
-        length,
-        thinning,
-        axiom,
-        productions,
-        symbols,
-        ignored,
-        tells_colours: fields
-            .take("style")
-            .is_some_and(|style| style.get("color_by").is_some()),
-    };
-    system.heading.complete = complete && !reader.names_are_missing;
-    Some(system)
+    }
 }
 
 fn read_productions(words: &mut Words<'_>, node: &Node) -> Vec<ProductionDocument> {
@@ -168,7 +164,7 @@ fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocum
                 return None;
             }
             let fields = words.reader.fields(node, &PRODUCTION)?;
-            let weight = words.reader.optional_number(fields.take("weight"));
+            let weight = fields.optional(words.reader, "weight");
             (fields.take("production")?, weight)
         }
         _ => (node, None),
@@ -271,7 +267,7 @@ fn read_alternative(
         return None;
     }
     let fields = words.reader.fields(node, &ALTERNATIVE)?;
-    let weight = words.reader.optional_number(fields.take("weight"));
+    let weight = fields.optional(words.reader, "weight");
     Some((words.of(fields.take("to")?)?, weight))
 }
 

@@ -5,7 +5,7 @@ use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
-use crate::document::style::{STYLE, VIEW, read_style, read_view};
+use crate::document::style::{STYLE, VIEW};
 use crate::metadata::Description;
 use crate::metadata::MOST_STEPS;
 
@@ -35,15 +35,21 @@ pub(super) const LIKING: [Member; 5] = keys![
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.
-pub(super) fn read_heading(reader: &mut Reader, fields: &Fields<'_>) -> MetadataDocument {
+pub(in crate::document) fn read_heading(
+    reader: &mut Reader,
+    fields: &Fields<'_>,
+) -> MetadataDocument {
     MetadataDocument {
         description: read_description(reader, fields),
         params: read_params(reader, fields.take("params")),
-        steps: reader.optional_number(fields.take("steps")),
-        dimension: reader.optional_number(fields.take("dimension")),
-        hausdorff_dimension: reader.optional_number(fields.take("hausdorff_dimension")),
-        style: read_style(reader, fields.take("style")),
-        view: read_view(reader, fields.take("view")),
+        steps: fields.optional(reader, "steps"),
+        dimension: fields.optional(reader, "dimension"),
+        hausdorff_dimension: fields.optional(reader, "hausdorff_dimension"),
+        sets_colours: fields
+            .take("style")
+            .is_some_and(|style| style.get("color_by").is_some()),
+        style: fields.read(reader, "style").unwrap_or_default(),
+        view: fields.read(reader, "view").unwrap_or_default(),
         complete: false,
         place: fields.place.clone(),
     }
@@ -74,15 +80,13 @@ fn read_description(reader: &mut Reader, fields: &Fields<'_>) -> Description {
         );
         reader.error_with_hint(&format.place, message, "format: 1");
     }
-    let mut text = |key| fields.take(key).and_then(|node| reader.text(node));
-    let (title, about, source) = (text("title"), text("about"), text("source"));
     let tags = fields.take("tags").map_or(&[][..], |node| {
         reader.list(node, "a list of tags", "tags: [curve, koch]")
     });
     Description {
-        title,
-        about,
-        source,
+        title: fields.optional(reader, "title"),
+        about: fields.optional(reader, "about"),
+        source: fields.optional(reader, "source"),
         tags: tags.iter().filter_map(|tag| reader.text(tag)).collect(),
     }
 }

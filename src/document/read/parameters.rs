@@ -70,7 +70,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
     let Some(fields) = reader.fields(node, &PARAMETER) else {
         return vec![parameter];
     };
-    parameter.about = fields.take("about").and_then(|node| reader.text(node));
+    parameter.about = fields.optional(reader, "about");
     let limits = ["min", "max"].map(|name| fields.take(name));
     let Some(value) = fields.take("value") else {
         let message = format!("parameter '{}' has no value", key.name);
@@ -93,7 +93,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
         return parts(parameter, value, limits);
     }
     parameter.value = reader.number(value);
-    [parameter.min, parameter.max] = limits.map(|node| reader.optional_number(node));
+    [parameter.min, parameter.max] = limits.map(|node| node.map(|node| reader.number(node)));
     vec![parameter]
 }
 

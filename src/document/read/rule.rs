@@ -1,18 +1,19 @@
 //! Reading of production rules.
 
 use crate::catalogue::Shelf;
-use crate::document::node::Node;
-use crate::document::reader::Reader;
-use crate::document::rule::{InitiatorDocument, RuleDocument};
+use crate::document::MetadataDocument;
+use crate::document::reader::{Fields, Reader};
+use crate::document::rule::RuleDocument;
 use crate::document::shape::{Form, Member, Shape, keys, way};
 use crate::kind::Kind;
 
-use super::base_element::{BASE_ELEMENT_OF, read_base_element};
-use super::elements::{ELEMENTS, INITIATOR, read_initiator};
+use super::base_element::BASE_ELEMENT_OF;
+use super::elements::{ELEMENTS, INITIATOR, InitiatorDocument, read_initiator};
 use super::generator::{GENERATOR_OF, read_generators};
-use super::metadata::{DESCRIPTION, LIKING, read_heading};
+use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::select::{SELECTION_OF, read_select};
+use super::{KindTable, OfKind};
 
 /// Keys of a production rule.
 pub(in crate::document) const RULE: Shape = Shape {
@@ -49,24 +50,24 @@ const RULE_ALONE: [Member; 8] = keys![
         "What an element looks like: a name from the library, or an outline. A line, if left out.";
 ];
 
-/// Reads a rule whose parents and components are inlined. `complete` states that all of them were
-/// found.
-pub(super) fn read_rule(reader: &mut Reader, node: &Node, complete: bool) -> Option<RuleDocument> {
-    let fields = reader.fields(node, &RULE)?;
-    let initiator = match fields.take("initiator") {
-        Some(node) => read_initiator(reader, node),
-        None => InitiatorDocument::missing(fields.place),
+impl OfKind for RuleDocument {
+    const TABLE: &'static KindTable = &KindTable {
+        shape: &RULE,
+        about: "A production rule: what the growth starts from, and what replaces an element.",
+        stand_in: "{initiator: {elements: [[0, 0], [0.5, 0]]}, generator: {elements: [[0, 0], [0.5, 0]]}}",
     };
-    let heading = read_heading(reader, &fields);
-    let mut rule = RuleDocument {
-        heading,
-        initiator,
-        generators: read_generators(reader, &fields),
-        select: fields.take("select").map(|node| read_select(reader, node)),
-        base_element: fields
-            .take("base_element")
-            .and_then(|node| read_base_element(reader, node)),
-    };
-    rule.heading.complete = complete && !reader.names_are_missing;
-    Some(rule)
+
+    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let initiator = match fields.take("initiator") {
+            Some(node) => read_initiator(reader, node),
+            None => InitiatorDocument::listed(Vec::new(), fields.place),
+        };
+        Self {
+            heading,
+            initiator,
+            generators: read_generators(reader, fields),
+            select: fields.take("select").map(|node| read_select(reader, node)),
+            base_element: fields.optional(reader, "base_element"),
+        }
+    }
 }

@@ -1,9 +1,11 @@
 //! Reading of the selection of generators.
 
+use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
 use crate::document::rule::SelectDocument;
 use crate::document::shape::{Form, Shape, keys, way};
+use crate::document::{Written, WrittenNumber};
 
 use super::parameters::written;
 
@@ -24,18 +26,17 @@ const SELECTION: Shape = Shape {
            {by_index: [NAME, NAME]}, or {at_random: {NAME: WEIGHT}}",
 };
 
-const CASE: Shape = Shape {
-    what: "a case of the selection",
-    keys: &[&keys![
-        when: Form::Expression,
-            "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, `step` \
-             and `length`. The last case has none.";
-        needed use: Form::Text, "The generator that replaces the element."
-            => "this case names no generator";
-    ]],
-    ways: &[],
-    hint: "- {when: age == 3, use: NAME}, and in the end - {use: NAME}",
-};
+mapping! {
+    /// A case of a selection, as written.
+    struct CaseDocument: CASE = "a case of the selection",
+        "- {when: age == 3, use: NAME}, and in the end - {use: NAME}";
+    when: Option<WrittenNumber> = Form::Expression,
+        "A condition such as `age == 3` or `odd(i)`, of the parameters and of `i`, `age`, `step` \
+         and `length`. The last case has none.";
+    needed use as generator: Option<Written<String>> = Form::Text,
+        "The generator that replaces the element."
+        => "this case names no generator";
+}
 
 /// Notations of a selection.
 pub(super) const SELECTION_OF: Form = Form::Either(&[
@@ -54,12 +55,7 @@ pub(super) fn read_select(reader: &mut Reader, node: &Node) -> SelectDocument {
             return unknown(node);
         }
         let cases = entries.iter().map(|entry| {
-            let Some(fields) = reader.fields(entry, &CASE) else {
-                return (None, None);
-            };
-            let when = reader.optional_number(fields.take("when"));
-            let name = fields.take("use");
-            (when, name.and_then(|name| reader.name(name)))
+            CaseDocument::from_node(reader, entry).unwrap_or_else(|| unknown_case(entry))
         });
         return SelectDocument::Cases(cases.collect(), node.place.clone());
     }
@@ -109,5 +105,13 @@ fn at_random(reader: &mut Reader, weights: &Node) -> SelectDocument {
 
 /// Returns a placeholder for an unreadable selection: a case with an unknown generator.
 fn unknown(node: &Node) -> SelectDocument {
-    SelectDocument::Cases(vec![(None, None)], node.place.clone())
+    SelectDocument::Cases(vec![unknown_case(node)], node.place.clone())
+}
+
+fn unknown_case(node: &Node) -> CaseDocument {
+    CaseDocument {
+        when: None,
+        generator: None,
+        place: node.place.clone(),
+    }
 }

@@ -1,17 +1,17 @@
 //! Reading of plane sets: condensation sets, initial sets and primitives.
 
-use crate::document::ifs::{EllipseDocument, FormDocument, FractalDocument, ShapeDocument};
+use crate::document::ifs::{FormDocument, FractalDocument, ShapeDocument};
+use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, Way, keys, way};
-use crate::document::{Written, WrittenNumber, WrittenPoint};
+use crate::document::{KindDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::PARTS;
 use crate::kind::Kind;
 use crate::metadata::MOST_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
-use super::read_kind;
 
 /// Keys of an initial set.
 pub(super) const SET: Shape = Shape {
@@ -98,29 +98,25 @@ const WAYS: [Way; 7] = [
     way(&[NAMES[6]], &others::<6>(6)),
 ];
 
-const DISK: Shape = Shape {
-    what: "a disk",
-    keys: &[&keys![
-        centre: Form::Point, "Its centre; [0, 0] if left out.";
-        needed radius: Form::Positive, "Its radius, above 0."
-            => "a disk needs a radius";
-    ]],
-    ways: &[],
-    hint: "disk: {centre: [0, 0], radius: 1}",
-};
+mapping! {
+    /// A disk as written.
+    struct DiskDocument: DISK = "a disk", "disk: {centre: [0, 0], radius: 1}";
+    centre: Option<WrittenPoint> = Form::Point, "Its centre; [0, 0] if left out.";
+    needed radius: WrittenNumber = Form::Positive, "Its radius, above 0."
+        => "a disk needs a radius";
+}
 
-const ELLIPSE: Shape = Shape {
-    what: "an ellipse",
-    keys: &[&keys![
-        centre: Form::Point, "Its centre; [0, 0] if left out.";
-        needed axes: Form::Either(&[Form::Number, Form::Point]),
-            "Its half axes: from the centre to the right, and upwards."
-            => "an ellipse needs its half axes";
-        rotate: Form::Number, "By how much it is turned, in degrees, counter-clockwise.";
-    ]],
-    ways: &[],
-    hint: "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}",
-};
+mapping! {
+    /// An ellipse as written.
+    struct EllipseDocument: ELLIPSE = "an ellipse",
+        "ellipse: {centre: [0, 0], axes: [2, 1], rotate: 30}";
+    centre: Option<WrittenPoint> = Form::Point, "Its centre; [0, 0] if left out.";
+    needed axes: [WrittenNumber; 2] = Form::Either(&[Form::Number, Form::Point]),
+        "Its half axes: from the centre to the right, and upwards."
+        => "an ellipse needs its half axes";
+    rotate: Option<WrittenNumber> = Form::Number,
+        "By how much it is turned, in degrees, counter-clockwise.";
+}
 
 /// Reads the key `initial` of a file.
 pub(super) fn read_initial(reader: &mut Reader, fields: &Fields<'_>) -> Option<ShapeDocument> {
@@ -151,8 +147,16 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
     }
     let form = match name {
         "point" => Some(FormDocument::Point(reader.point(node))),
-        "disk" => read_disk(reader, node),
-        "ellipse" => read_ellipse(reader, node),
+        "disk" => DiskDocument::from_node(reader, node).map(|disk| {
+            FormDocument::Ellipse(Box::new(EllipseDocument {
+                centre: disk.centre,
+                axes: [disk.radius.clone(), disk.radius],
+                rotate: None,
+                place: disk.place,
+            }))
+        }),
+        "ellipse" => EllipseDocument::from_node(reader, node)
+            .map(|ellipse| FormDocument::Ellipse(Box::new(ellipse))),
         "fractal" => read_fractal(reader, fields, node),
         _ => read_outline(reader, name, node),
     };
@@ -184,30 +188,10 @@ fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocu
     })
 }
 
-fn read_disk(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
-    let fields = reader.fields(node, &DISK)?;
-    let radius = reader.optional_number(fields.take("radius"))?;
-    Some(FormDocument::Ellipse(Box::new(EllipseDocument {
-        centre: read_centre(reader, &fields),
-        axes: [radius.clone(), radius],
-        rotate: None,
-    })))
-}
-
-fn read_ellipse(reader: &mut Reader, node: &Node) -> Option<FormDocument> {
-    let fields = reader.fields(node, &ELLIPSE)?;
-    let axes = pair(reader, fields.take("axes")?);
-    Some(FormDocument::Ellipse(Box::new(EllipseDocument {
-        centre: read_centre(reader, &fields),
-        axes,
-        rotate: reader.optional_number(fields.take("rotate")),
-    })))
-}
-
 /// Reads a fractal whose file has been inlined in place of its name.
 fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option<FormDocument> {
-    let steps = reader.optional_number(fields.take("steps"));
-    let seed = reader.optional_number(fields.take("seed"));
+    let steps = fields.optional(reader, "steps");
+    let seed = fields.optional(reader, "seed");
     let set = fields.take("set");
     let set = set.map_or_else(Vec::new, |node| read_values(reader, node));
     let map = fields.take("map").and_then(|node| {
@@ -228,7 +212,7 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
         _ => Kind::Rule,
     };
     let mut inside = reader.inside();
-    let file = read_kind(&mut inside, kind, node, true);
+    let file = KindDocument::read(&mut inside, kind, node, true);
     let is_sound = inside.is_sound(node);
     reader.diagnostics.extend(inside.diagnostics);
     Some(FormDocument::Fractal(Box::new(FractalDocument {
@@ -273,20 +257,4 @@ fn read_value(
         (Written { value, place }, number)
     };
     PARTS.into_iter().zip([x, y]).map(part).collect()
-}
-
-fn read_centre(reader: &mut Reader, fields: &Fields<'_>) -> WrittenPoint {
-    reader
-        .optional_point(fields.take("centre"))
-        .unwrap_or_else(|| WrittenPoint::origin(fields.place))
-}
-
-/// Reads two numbers, or one number that stands for both.
-pub(super) fn pair(reader: &mut Reader, node: &Node) -> [WrittenNumber; 2] {
-    if let Value::Sequence(_) = &node.value {
-        let point = reader.point(node);
-        return [point.x, point.y];
-    }
-    let number = reader.number(node);
-    [number.clone(), number]
 }

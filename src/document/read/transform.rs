@@ -6,7 +6,6 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys};
 
 use super::ifs::read_matrix;
-use super::set::pair;
 
 /// Keys that transform.
 pub(super) const TRANSFORMS: [Member; 5] = keys![
@@ -56,7 +55,7 @@ pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<T
     let mut transforms = Vec::new();
     for (name, node) in fields.in_order() {
         let transform = match name {
-            "scale" => TransformDocument::Scale(pair(reader, node)),
+            "scale" => TransformDocument::Scale(reader.pair(node)),
             "rotate" => TransformDocument::Rotate(reader.number(node)),
             "translate" => TransformDocument::Translate(reader.point(node)),
             "matrix" => match read_matrix(reader, node) {

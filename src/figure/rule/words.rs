@@ -2,8 +2,8 @@
 
 use crate::diagnostic::Place;
 use crate::document::{
-    GeneratorDocument, MoveDocument, RuleDocument, SelectDocument, WhichPoints, Written,
-    WrittenNumber, WrittenPoint,
+    CaseDocument, GeneratorDocument, MoveDocument, RuleDocument, SelectDocument, WhichPoints,
+    WrittenPoint,
 };
 use crate::expression::{Dependence, Expression};
 use crate::metadata::Parameter;
@@ -18,9 +18,12 @@ pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
         None if document.generators.len() > 1 => vec!["every side names its own".into()],
         None => Vec::new(),
         Some(SelectDocument::Cases(cases, _)) => {
-            let line = |(when, name): &(Option<WrittenNumber>, Option<Written<String>>)| {
-                let name = name.as_ref().map_or("?", |name| name.value.as_str());
-                match when {
+            let line = |case: &CaseDocument| {
+                let name = case
+                    .generator
+                    .as_ref()
+                    .map_or("?", |name| name.value.as_str());
+                match &case.when {
                     Some(when) => format!("{}: {name}", when.value),
                     None if cases.len() == 1 => format!("always: {name}"),
                     None => format!("otherwise: {name}"),

@@ -1,16 +1,13 @@
 //! Resolution of the selection of generators.
 
 use crate::diagnostic::{did_you_mean, listed};
-use crate::document::{Entry, RuleDocument, SelectDocument, Written, WrittenNumber};
+use crate::document::{CaseDocument, Entry, RuleDocument, SelectDocument, Written, WrittenNumber};
 use crate::expression::Scope;
 
 use super::OfRule;
 use crate::diagnostic::Place;
 use crate::resolve::{MOST_MISTAKES, Resolver};
 use crate::rule::Selection;
-
-/// A condition, if there is one, and the name of a generator, if it could be read.
-type Case = (Option<WrittenNumber>, Option<Written<String>>);
 
 impl Resolver<OfRule> {
     pub(super) fn generator_named(&mut self, name: &Written<String>) -> Option<usize> {
@@ -72,10 +69,15 @@ impl Resolver<OfRule> {
         (entries.len() == weights.len()).then_some(Selection::AtRandom(entries))
     }
 
-    fn cases(&mut self, written: &[Case], moment: &Scope) -> Option<Selection> {
+    fn cases(&mut self, written: &[CaseDocument], moment: &Scope) -> Option<Selection> {
         let mut cases = Vec::new();
         let mut otherwise = None;
-        for (when, name) in written {
+        for CaseDocument {
+            when,
+            generator: name,
+            ..
+        } in written
+        {
             let generator = name.as_ref().and_then(|name| self.generator_named(name));
             let condition = when.as_ref().map(|when| self.condition(when, moment));
             match (condition, otherwise) {
@@ -92,7 +94,7 @@ impl Resolver<OfRule> {
                 }
             }
         }
-        let last = written.last().and_then(|(when, _)| when.as_ref());
+        let last = written.last().and_then(|case| case.when.as_ref());
         if let (None, Some(when)) = (otherwise, last) {
             let message = "the selection can fall through: its last case has a condition";
             let hint = "end with a case that has none: - {use: NAME}";
