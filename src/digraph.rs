@@ -100,3 +100,28 @@ pub(crate) fn parts<E: Edge>(size: usize, edges: &[E]) -> (Vec<usize>, Vec<Part<
 pub(crate) fn count(component: &[usize]) -> usize {
     component.iter().max().map_or(0, |most| most + 1)
 }
+
+/// Returns whether the product of the factors along every loop is below 1, after so many rounds of relaxation;
+/// an edge leads from a vertex to another by a factor. `false` if that is not certain.
+pub(crate) fn all_loops_shrink(
+    vertices: usize,
+    edges: &[(usize, usize, f64)],
+    rounds: usize,
+) -> bool {
+    /// Below 1 by so much that rounding does not matter.
+    const LEAST: f64 = 1.0 - 1e-9;
+    let logarithms = edges.iter().map(|(.., factor)| libm::log(factor / LEAST));
+    let logarithms: Vec<f64> = logarithms.collect();
+    let mut largest = vec![0.0; vertices];
+    (0..=rounds).any(|_| {
+        let mut has_settled = true;
+        for (&(from, to, _), logarithm) in edges.iter().zip(&logarithms) {
+            let along = largest[from] + logarithm;
+            if along > largest[to] {
+                largest[to] = along;
+                has_settled = false;
+            }
+        }
+        has_settled
+    })
+}

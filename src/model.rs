@@ -47,6 +47,18 @@ macro_rules! models {
             fn from(model: $model) -> Self {
                 Self::$kind(model.into())
             }
+        }
+
+        impl TryFrom<Model> for $model {
+            type Error = Model;
+
+            /// Returns a model of another kind as it is.
+            fn try_from(model: Model) -> Result<Self, Model> {
+                match model {
+                    Model::$kind(model) => Ok(Arc::unwrap_or_clone(model)),
+                    model => Err(model),
+                }
+            }
         })*
     };
 }

@@ -149,6 +149,11 @@ impl<K> Resolver<K> {
         self.diagnostics
             .push(Diagnostic::error(message).at(place).hint(hint));
     }
+
+    fn warn(&mut self, place: &Place, message: impl Into<String>, hint: &str) {
+        self.diagnostics
+            .push(Diagnostic::warning(message).at(place).hint(hint));
+    }
 }
 
 /// Returns a value as an integer from 0 to `most`; `None` if it is not one.

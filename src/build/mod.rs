@@ -98,10 +98,8 @@ pub use set::SetBuilder;
 pub use structure::{InstanceBuilder, StructureBuilder, UnionBuilder};
 pub use system::SystemBuilder;
 
-use std::sync::Arc;
-
 use crate::catalogue::Catalogue;
-use crate::diagnostic::{Diagnostics, Source};
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
 use crate::metadata::{Description, Parameter};
@@ -222,10 +220,7 @@ impl RuleBuilder {
     /// Returns all mistakes: an empty list of elements, a missing or unknown generator, a number that
     /// is not finite, an invalid expression, and so on.
     pub fn build(&self) -> Result<Rule, Diagnostics> {
-        let rule = resolved(&self.document()?)?.into_rule();
-        Ok(Arc::unwrap_or_clone(rule.unwrap_or_else(|| {
-            unreachable!("what is built says no other kind")
-        })))
+        built(&self.document()?)
     }
 }
 
@@ -241,8 +236,11 @@ fn read(entries: &Entries, named: &[(&str, &Entries)]) -> Result<Document, Diagn
     Document::read(&Source::new(NAME, text), &Catalogue::embedded())
 }
 
-/// Resolves a built document and discards its warnings.
-fn resolved(document: &Document) -> Result<Model, Diagnostics> {
-    let (model, _doubts) = document.resolve(&[])?;
-    Ok(model)
+/// Resolves a built document as a model of its kind, and discards the warnings.
+fn built<M: TryFrom<Model, Error = Model>>(document: &Document) -> Result<M, Diagnostics> {
+    let (model, _warnings) = document.resolve(&[])?;
+    M::try_from(model).map_err(|model| {
+        let message = format!("this is {}", model.kind().full_name());
+        Diagnostic::error(message).into()
+    })
 }

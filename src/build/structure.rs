@@ -1,18 +1,16 @@
 //! Builder of instancing structures.
 
-use std::sync::Arc;
-
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::document::node::Value;
 use crate::instancing::Instancing;
 use crate::metadata::{Description, Parameter};
-use crate::model::{Kind, Model};
+use crate::model::Kind;
 use crate::style::{Colour, Style, View};
 
 use super::metadata::of_all_kinds;
 use super::written::{self, Entries, colour_text, sequence};
-use super::{NumberText, PointText, SetBuilder, read, resolved};
+use super::{NumberText, PointText, SetBuilder, built, read};
 
 /// Transforms in the order of application.
 #[derive(Clone, Debug, Default)]
@@ -209,9 +207,6 @@ impl StructureBuilder {
     ///
     /// Returns all mistakes: unknown objects, loops that do not contract, and so on.
     pub fn build(&self) -> Result<Instancing, Diagnostics> {
-        let Model::Instancing(structure) = resolved(&self.document()?)? else {
-            unreachable!("what is built says its kind")
-        };
-        Ok(Arc::unwrap_or_clone(structure))
+        built(&self.document()?)
     }
 }

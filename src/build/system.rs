@@ -1,18 +1,16 @@
 //! Builder of iterated function systems.
 
-use std::sync::Arc;
-
 use crate::diagnostic::Diagnostics;
 use crate::document::Document;
 use crate::document::node::Value;
 use crate::ifs::System;
 use crate::metadata::{Description, Parameter};
-use crate::model::{Kind, Model};
+use crate::model::Kind;
 use crate::style::{Style, View};
 
 use super::metadata::of_all_kinds;
 use super::written::{self, Entries, sequence};
-use super::{MapBuilder, NumberText, PointText, SetBuilder, read, resolved};
+use super::{MapBuilder, NumberText, PointText, SetBuilder, built, read};
 
 /// Builder of an iterated function system. Setting a key again replaces its value; maps, condensation
 /// sets and edges accumulate.
@@ -175,9 +173,6 @@ impl SystemBuilder {
     ///
     /// Returns all mistakes: no maps, maps that do not contract, and so on.
     pub fn build(&self) -> Result<System, Diagnostics> {
-        let Model::Ifs(system) = resolved(&self.document()?)? else {
-            unreachable!("what is built says its kind")
-        };
-        Ok(Arc::unwrap_or_clone(system))
+        built(&self.document()?)
     }
 }

@@ -117,6 +117,7 @@ Examples:
 ";
 
 /// Result of a measurement of any kind.
+#[derive(Default)]
 struct Measured {
     /// Name in messages.
     name: String,

@@ -22,10 +22,7 @@ pub(super) fn labels(
         env!("CARGO_PKG_VERSION"),
         command(loaded, subcommand, options)
     );
-    for parameter in &loaded.model.metadata().parameters {
-        provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
-    }
-    provenance.push_str(&loaded.document.to_yaml());
+    add_content(&mut provenance, loaded);
     let about = description.about.as_deref().unwrap_or_default().trim();
     render::Labels {
         title,
@@ -40,10 +37,7 @@ pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
     let mut provenance = format!("# kfrac {}\n", env!("CARGO_PKG_VERSION"));
     for loaded in [a, b] {
         provenance.push_str(&format!("---\n# {}\n", quoted(&loaded.name)));
-        for parameter in &loaded.model.metadata().parameters {
-            provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
-        }
-        provenance.push_str(&loaded.document.to_yaml());
+        add_content(&mut provenance, loaded);
     }
     render::Labels {
         title: format!("{} and {}", a.name, b.name),
@@ -53,6 +47,14 @@ pub(super) fn labels_of_two(a: &Loaded, b: &Loaded) -> render::Labels {
         ),
         provenance,
     }
+}
+
+/// Adds the values of the parameters and the inlined file.
+fn add_content(provenance: &mut String, loaded: &Loaded) {
+    for parameter in &loaded.model.metadata().parameters {
+        provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
+    }
+    provenance.push_str(&loaded.document.to_yaml());
 }
 
 /// Returns the command that reproduces the picture from the resolved rule.

@@ -158,10 +158,11 @@ pub(super) fn print_as(
     value: &impl Serialize,
     text: impl FnOnce() -> String,
 ) -> Result<(), Failure> {
-    Ok(match is_json {
-        true => print_json(value)?,
-        false => print(&text())?,
-    })
+    let printed = match is_json {
+        true => print_json(value),
+        false => print(&text()),
+    };
+    Ok(printed?)
 }
 
 /// Writes a text to a file or to standard output.

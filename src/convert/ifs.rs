@@ -61,12 +61,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
         let initial = set(&structure.shapes[shape], &system.initial);
         initial.map(Entries::value)
     });
-    let initial = match initial {
-        Some(Err(refusal)) if keeps == Keeps::Approximants => return Err(refusal),
-        // The limit set does not depend on the initial set.
-        Some(initial) => initial.ok(),
-        None => None,
-    };
+    let initial = keeps.initial(initial)?;
     let count = system.maps.len();
     let edges = (system.edges.len() < count * count).then(|| edges(&system.edges, count));
     Ok(Entries::default()

@@ -26,11 +26,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
             return Err(Refusal::Steps(what));
         }
     };
-    let initial = match initial {
-        Some(Err(refusal)) if keeps == Keeps::Approximants => return Err(refusal),
-        Some(initial) => initial.ok(),
-        None => None,
-    };
+    let initial = keeps.initial(initial)?;
     let mut entries = Entries::default();
     let mut objects = Entries::default();
     for (number, object) in structure.objects.iter().enumerate() {

@@ -38,6 +38,15 @@ fn letter(number: usize) -> Result<char, Refusal> {
         .ok_or(Refusal::TooManySymbols(letters))
 }
 
+/// Returns the letter of a symbol, which is added to the known ones if it is new.
+fn letter_of<S: PartialEq>(symbols: &mut Vec<S>, symbol: S) -> Result<char, Refusal> {
+    let known = symbols.iter().position(|known| *known == symbol);
+    letter(known.unwrap_or_else(|| {
+        symbols.push(symbol);
+        symbols.len() - 1
+    }))
+}
+
 /// Converts an angle to degrees, rounded to a simple fraction that differs only by rounding.
 fn degrees(radians: f64) -> f64 {
     const MOST_PARTS: u32 = 60;

@@ -42,6 +42,16 @@ pub enum Keeps {
     Approximants,
 }
 
+impl Keeps {
+    /// Returns the initial set; where approximants are kept, it must not be refused.
+    fn initial<T>(self, initial: Option<Result<T, Refusal>>) -> Result<Option<T>, Refusal> {
+        match initial {
+            Some(Err(refusal)) if self == Self::Approximants => Err(refusal),
+            initial => Ok(initial.and_then(Result::ok)),
+        }
+    }
+}
+
 /// An error in a conversion.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

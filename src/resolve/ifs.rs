@@ -1,6 +1,6 @@
 //! Resolution of iterated function systems.
 
-use crate::diagnostic::{Diagnostic, did_you_mean};
+use crate::diagnostic::did_you_mean;
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
 use crate::expression::{Affine, Program, Symbols};
 use crate::ifs::{
@@ -252,8 +252,7 @@ impl Resolver<OfIfs> {
                     contraction.length
                 );
                 let hint = "it can be grown by a number of steps, but its limit is not known";
-                self.diagnostics
-                    .push(Diagnostic::warning(message).at(&place).hint(hint));
+                self.warn(&place, message, hint);
                 Some(())
             }
         }

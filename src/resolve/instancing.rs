@@ -6,7 +6,7 @@ mod loops;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::diagnostic::{Diagnostic, Place, did_you_mean, listed};
+use crate::diagnostic::{Place, did_you_mean, listed};
 use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
     ShapeDocument, TransformDocument, UnionDocument, WrittenNumber,
@@ -427,8 +427,7 @@ impl Resolver<OfInstancing> {
             if !reached.contains(&number) {
                 let message = format!("the scene does not lead to '{}'", object.name.place.text());
                 let hint = "leave the object out, or instance it";
-                let warning = Diagnostic::warning(message).at(&object.name.place);
-                self.diagnostics.push(warning.hint(hint));
+                self.warn(&object.name.place, message, hint);
             }
         }
     }

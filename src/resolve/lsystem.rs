@@ -6,7 +6,6 @@ mod check;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::diagnostic::Diagnostic;
 use crate::document::{
     LSystemDocument, ModuleDocument, ProductionDocument, WordDocument, WrittenNumber,
 };
@@ -93,7 +92,7 @@ impl Resolver<OfLSystem> {
             system.heading.style.color_by = ColorBy::Tint;
         }
         self.check_weights(document, &system);
-        self.warn(document, &system);
+        self.warn_of_unused(document, &system);
         Some(system)
     }
 
@@ -253,11 +252,6 @@ impl Resolver<OfLSystem> {
                 self.error(&number.place, message);
             }
         }
-    }
-
-    fn warning(&mut self, module: &ModuleDocument, message: String, hint: &str) {
-        let warning = Diagnostic::warning(message).at(&module.place);
-        self.diagnostics.push(warning.hint(hint));
     }
 }
 

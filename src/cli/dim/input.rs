@@ -58,21 +58,20 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     } else {
         Box::new(open_file(path)?)
     };
-    let mut head = Vec::new();
-    input
-        .by_ref()
-        .take(1 << 12)
-        .read_to_end(&mut head)
-        .with_context(cannot)?;
+    let read = |input: &mut dyn Read, most: u64| -> anyhow::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        input
+            .take(most)
+            .read_to_end(&mut bytes)
+            .with_context(cannot)?;
+        Ok(bytes)
+    };
+    let head = read(&mut input, 1 << 12)?;
     let kind = Kind::of(path, &head);
     let mut whole = Cursor::new(head).chain(input);
     match kind {
         Kind::Picture => {
-            let mut bytes = Vec::new();
-            whole
-                .take(MOST_BYTES)
-                .read_to_end(&mut bytes)
-                .with_context(cannot)?;
+            let bytes = read(&mut whole, MOST_BYTES)?;
             let picture = Raster::read(&bytes, arguments.channel);
             drop(bytes);
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
@@ -87,11 +86,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
         }
         Kind::Rule => {
             let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
-            let mut bytes = Vec::new();
-            whole
-                .take(most)
-                .read_to_end(&mut bytes)
-                .with_context(cannot)?;
+            let bytes = read(&mut whole, most)?;
             let source = if is_standard {
                 Source::read("<stdin>", bytes)?
             } else {
@@ -144,14 +139,8 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
         name: loaded.name.clone(),
         title: title.unwrap_or_else(|| loaded.name.clone()),
         set: "the limit set of the fertile elements".into(),
-        unit: None,
         exact: Some(dimensions_of_graph(&graph)),
-        counting: BoxCounting::default(),
-        spectrum: Vec::new(),
-        spectrum_known: None,
-        measure: None,
-        lacunarity: Vec::new(),
-        warnings: Vec::new(),
+        ..Measured::default()
     };
     let set = match LimitSet::of(&graph) {
         Ok(set) => set,
@@ -247,13 +236,10 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Meas
             picture.width, picture.height
         ),
         unit: Some("pixels"),
-        exact: None,
         counting,
-        spectrum: Vec::new(),
-        spectrum_known: None,
-        measure: None,
         lacunarity: Masses::of_pixels(&pixels, [0; 2]).lacunarity(),
         warnings,
+        ..Measured::default()
     };
     let orders = &arguments.orders;
     let counted = measured.counting.estimate;
@@ -291,14 +277,7 @@ fn of_points(
         name: name.into(),
         title: name.into(),
         set: format!("{count} points"),
-        unit: None,
-        exact: None,
-        counting: BoxCounting::default(),
-        spectrum: Vec::new(),
-        spectrum_known: None,
-        measure: None,
-        lacunarity: Vec::new(),
-        warnings: Vec::new(),
+        ..Measured::default()
     };
     let points = Points::new(points).with_context(|| name.to_owned())?;
     measured.sampled(&points, base, 0.0, arguments);

@@ -15,7 +15,7 @@ use crate::rule::{BaseElement, Piece};
 use super::super::number;
 use super::super::structure::{Placed, Structure};
 use super::super::{Keeps, Refusal};
-use super::{degrees, letter};
+use super::{degrees, letter, letter_of};
 
 /// A symbol: an object, or a shape that is kept, with its appearance.
 #[derive(PartialEq)]
@@ -153,12 +153,7 @@ impl Writer<'_> {
             object: placed.object,
             look,
         };
-        let known = self.symbols.iter().position(|known| *known == symbol);
-        let number = known.unwrap_or_else(|| {
-            self.symbols.push(symbol);
-            self.symbols.len() - 1
-        });
-        letter(number)
+        letter_of(&mut self.symbols, symbol)
     }
 }
 

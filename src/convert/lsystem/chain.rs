@@ -9,7 +9,7 @@ use crate::geometry::DVec2;
 
 use super::super::number;
 use super::super::structure::{Placed, Structure};
-use super::{degrees, letter};
+use super::{degrees, letter, letter_of};
 
 /// Relative tolerance of comparisons.
 const ROUNDING: f64 = 1e-9;
@@ -204,7 +204,7 @@ impl Writer {
                 backwards: inner.backwards != of.backwards,
                 mirrored: inner.mirrored != of.mirrored,
             };
-            string.push(self.letter(symbol)?);
+            string.push(letter_of(&mut self.symbols, symbol).ok()?);
         }
         self.turn(&mut string, -heading);
         Some(string)
@@ -220,14 +220,5 @@ impl Writer {
             ("-", right)
         };
         string.push_str(&turn.repeat(usize::try_from(count).unwrap_or_default()));
-    }
-
-    fn letter(&mut self, symbol: Symbol) -> Option<char> {
-        let known = self.symbols.iter().position(|known| *known == symbol);
-        let number = known.unwrap_or_else(|| {
-            self.symbols.push(symbol);
-            self.symbols.len() - 1
-        });
-        letter(number).ok()
     }
 }

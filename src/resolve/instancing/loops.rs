@@ -1,7 +1,6 @@
 //! Check that the loops of an instancing graph contract.
 
-use crate::diagnostic::Diagnostic;
-use crate::digraph::components;
+use crate::digraph::{all_loops_shrink, components};
 use crate::document::InstancingDocument;
 use crate::geometry::{DMat2, stretch};
 use crate::ifs::{Contraction, Verdict};
@@ -25,13 +24,6 @@ struct Edge {
     linear: DMat2,
 }
 
-impl Edge {
-    /// Returns the largest factor by which the instance stretches a vector.
-    fn stretch(&self) -> f64 {
-        stretch(&self.linear)
-    }
-}
-
 impl Resolver<OfInstancing> {
     /// Refuses a structure with a loop that does not contract, and warns if the verdict is undecided.
     pub(super) fn check_loops(
@@ -40,7 +32,12 @@ impl Resolver<OfInstancing> {
         structure: &Instancing,
     ) -> Option<()> {
         let edges = edges(structure);
-        if shrink_by_stretch(&edges, structure.objects.len()) {
+        let objects = structure.objects.len();
+        let stretches = edges
+            .iter()
+            .map(|edge| (edge.from, edge.to, stretch(&edge.linear)));
+        let rounds = objects.min(MOST_LOOKS / edges.len().max(1));
+        if all_loops_shrink(objects, &stretches.collect::<Vec<_>>(), rounds) {
             return Some(());
         }
         let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
@@ -53,8 +50,7 @@ impl Resolver<OfInstancing> {
         if ways.sum::<usize>() > MOST_WAYS {
             let message = "there are too many ways to tell whether all loops contract";
             let place = &document.heading.place;
-            let warning = Diagnostic::warning(message).at(place).hint(UNKNOWN);
-            self.diagnostics.push(warning);
+            self.warn(place, message, UNKNOWN);
             return Some(());
         }
         let after = edges.iter().map(|edge| outer[edge.from].clone()).collect();
@@ -81,35 +77,11 @@ impl Resolver<OfInstancing> {
                     "ways of up to {} instances do not tell whether all loops contract",
                     contraction.length
                 );
-                let warning = Diagnostic::warning(message).at(place).hint(UNKNOWN);
-                self.diagnostics.push(warning);
+                self.warn(place, message, UNKNOWN);
                 Some(())
             }
         }
     }
-}
-
-/// Returns whether every loop contracts by the largest stretches of its instances, a sufficient
-/// condition: the longest paths under the logarithms of the stretches converge (Bellman 1958) if and
-/// only if the product along every loop of n instances is at most the n-th power of `LEAST`.
-fn shrink_by_stretch(edges: &[Edge], objects: usize) -> bool {
-    /// A loop of n instances must contract by the n-th power of this factor.
-    const LEAST: f64 = 1.0 - 1e-9;
-    let stretches = edges.iter().map(|edge| libm::log(edge.stretch() / LEAST));
-    let stretches: Vec<f64> = stretches.collect();
-    let mut largest = vec![0.0; objects];
-    let rounds = objects.min(MOST_LOOKS / edges.len().max(1));
-    (0..=rounds).any(|_| {
-        let mut has_settled = true;
-        for (edge, stretch) in edges.iter().zip(&stretches) {
-            let along = largest[edge.from] + stretch;
-            if along > largest[edge.to] {
-                largest[edge.to] = along;
-                has_settled = false;
-            }
-        }
-        has_settled
-    })
 }
 
 /// Returns the instances of objects in objects that lie on loops.

@@ -60,7 +60,7 @@ impl Resolver<OfLSystem> {
 
     /// Warns of symbols that never occur, of productions that never apply, and of systems that draw
     /// nothing.
-    pub(super) fn warn(&mut self, document: &LSystemDocument, system: &LSystem) {
+    pub(super) fn warn_of_unused(&mut self, document: &LSystemDocument, system: &LSystem) {
         if self.incomplete {
             return;
         }
@@ -82,7 +82,7 @@ impl Resolver<OfLSystem> {
                 if number.is_some_and(seen) {
                     let message = format!("contexts do not see '{}'", module.character);
                     let hint = "it is one of those to `ignore`, so that this never fits";
-                    self.warning(module, message, hint);
+                    self.warn(&module.place, message, hint);
                 }
             }
         }
@@ -102,7 +102,7 @@ impl Resolver<OfLSystem> {
                 .and_then(|word| word.modules.first())
         {
             let hint = "F draws; symbols: {G: draw} lets another symbol draw as well";
-            self.warning(first, "nothing that comes of this draws".into(), hint);
+            self.warn(&first.place, "nothing that comes of this draws", hint);
         }
     }
 
@@ -130,7 +130,7 @@ impl Resolver<OfLSystem> {
                 format!("leave {what} out, or use the symbol"),
             ),
         };
-        self.warning(module, message, &hint);
+        self.warn(&module.place, message, &hint);
     }
 
     /// Warns of productions that are hidden by an earlier one that always applies.
@@ -148,7 +148,11 @@ impl Resolver<OfLSystem> {
                     );
                     let hint = "give both a weight and one of them is drawn, or this one a condition \
                                 and write it first";
-                    self.warning(&document.productions[number].predecessor, message, hint);
+                    self.warn(
+                        &document.productions[number].predecessor.place,
+                        message,
+                        hint,
+                    );
                 } else if always.is_none()
                     && production.condition.is_none()
                     && !production.has_context()

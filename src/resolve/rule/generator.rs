@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::digraph::all_loops_shrink;
 use crate::document::{Entry, GeneratorDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::{Program, Scope};
 
@@ -104,10 +105,12 @@ impl Resolver<OfRule> {
         for element in parts.iter().flat_map(|part| &part.elements) {
             let from = numbers::value(&points[element.from]);
             if from.is_some() && from == numbers::value(&points[element.to]) {
-                let warning = Diagnostic::warning("this element has no length")
-                    .at(&written[element.to].place)
-                    .hint("it ends where it starts");
-                self.diagnostics.push(warning);
+                let place = &written[element.to].place;
+                self.warn(
+                    place,
+                    "this element has no length",
+                    "it ends where it starts",
+                );
             }
         }
     }
@@ -148,8 +151,6 @@ impl Resolver<OfRule> {
 /// Returns whether the lengths along every cycle of generators have a product below 1, for every choice
 /// that the selection admits: the largest products of lengths over all paths converge (Bellman 1958).
 pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> bool {
-    /// Tolerance for rounded lengths: a cycle with product 1 must not count as shrinking.
-    const SLACK: f64 = 1.0 + 1e-9;
     let candidates = selection.candidates();
     let mut ways = Vec::new();
     for (from, generator) in generators.iter().enumerate() {
@@ -162,24 +163,14 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
             else {
                 return false;
             };
-            let length = (end - start).length() * SLACK;
+            let length = (end - start).length();
             match element.generator {
                 Some(to) => ways.push((from, to, length)),
                 None => ways.extend(candidates.iter().map(|&to| (from, to, length))),
             }
         }
     }
-    let mut longest = vec![1.0; generators.len()];
-    (0..=generators.len()).any(|_| {
-        let mut has_settled = true;
-        for &(from, to, length) in &ways {
-            if longest[from] * length > longest[to] {
-                longest[to] = longest[from] * length;
-                has_settled = false;
-            }
-        }
-        has_settled
-    })
+    all_loops_shrink(generators.len(), &ways, generators.len())
 }
 
 /// Returns whether the coordinates of a point are written as exactly these constants.
