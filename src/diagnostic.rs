@@ -106,15 +106,15 @@ impl fmt::Display for Diagnostic {
 impl std::error::Error for Diagnostic {}
 
 /// Length in bytes beyond which messages and help texts are cut: names in them may have any length.
-const MOST_SAID: usize = 600;
+const MAX_LENGTH: usize = 600;
 
-/// Returns the text, with its middle replaced by ` ... ` if it is longer than [`MOST_SAID`].
+/// Returns the text, with its middle replaced by ` ... ` if it is longer than [`MAX_LENGTH`].
 fn shortened(text: String) -> String {
-    if text.len() <= MOST_SAID {
+    if text.len() <= MAX_LENGTH {
         return text;
     }
-    let start = source::char_boundary(&text, MOST_SAID / 2);
-    let end = source::char_boundary(&text, text.len() - MOST_SAID / 2);
+    let start = source::char_boundary(&text, MAX_LENGTH / 2);
+    let end = source::char_boundary(&text, text.len() - MAX_LENGTH / 2);
     format!("{} ... {}", &text[..start], &text[end..])
 }
 
@@ -157,11 +157,11 @@ impl Diagnostics {
     /// part of a file may be checked several times.
     #[must_use]
     pub(crate) fn without_repeats(self) -> Self {
-        let mut said = HashSet::new();
+        let mut seen = HashSet::new();
         let new = |diagnostic: &Diagnostic| {
             let place = diagnostic.place.as_ref();
             let place = place.map(|place| (place.source().name().to_owned(), place.range()));
-            said.insert((place, diagnostic.message.clone()))
+            seen.insert((place, diagnostic.message.clone()))
         };
         let mut all = self.0;
         all.retain(new);

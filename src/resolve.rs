@@ -29,7 +29,7 @@ use crate::metadata::Metadata;
 use crate::model::Model;
 
 /// Number of mistakes after which expressions and names are not checked further.
-const MOST_MISTAKES: usize = 1000;
+const MAX_MISTAKES: usize = 1000;
 
 impl Document {
     /// Reads a file of any kind from a text.

@@ -246,7 +246,7 @@ impl Arguments {
         bounds.add_all(subjects[1].bounds());
         let canvas = Canvas::fit(&bounds, self.size, MARGIN).map_err(anyhow::Error::from)?;
         let [width, height] = canvas.size().map(|side| side as usize);
-        let most = MOST_POINTS_A_PIXEL.saturating_mul(width.saturating_mul(height));
+        let most = MAX_POINTS_A_PIXEL.saturating_mul(width.saturating_mul(height));
         let pixels = |which: usize| -> Result<PixelSet, Failure> {
             let mut pixels = PixelSet::new(canvas).map_err(anyhow::Error::from)?;
             let visited = subjects[which].visit(pixels.radius(), most, &mut |it| pixels.add(it));
@@ -290,7 +290,7 @@ impl Arguments {
 }
 
 /// Largest number of points per pixel of a picture: more than a cover by discs of half a pixel needs.
-const MOST_POINTS_A_PIXEL: usize = 16;
+const MAX_POINTS_A_PIXEL: usize = 16;
 
 /// Number of steps for which graphs are compiled if limit sets are compared.
 const STEPS: u32 = 64;
@@ -334,7 +334,7 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
     let error = distance.error;
     line(
         "distance",
-        &format!("{} ± {error:.2e}", told(distance.value(), error)),
+        &format!("{} ± {error:.2e}", formatted(distance.value(), error)),
     );
     if !distance.is_reached() {
         let wanted = distance.wanted;
@@ -349,7 +349,7 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
         ("A to B", a, b, distance.there),
         ("B to A", b, a, distance.back),
     ] {
-        let way = told(way, error);
+        let way = formatted(way, error);
         line(
             label,
             &format!("{way} from {} to {}, at most", one.name, other.name),
@@ -372,7 +372,7 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
 }
 
 /// Formats a value with the digits that its error leaves.
-fn told(value: f64, error: f64) -> String {
+fn formatted(value: f64, error: f64) -> String {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

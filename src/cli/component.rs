@@ -44,12 +44,12 @@ impl Component {
         let (line, halves) = (chain(&[0.0, 1.0]), chain(&[0.0, 0.5, 1.0]));
         let name = Value::Text(self.entry.name.clone());
         let own = Node::parse(&self.source).ok();
-        let said = |key: &str| own.as_ref().and_then(|own| own.get(key));
-        let said = |key: &str| said(key).map(|node| node.value.clone());
+        let value_of = |key: &str| own.as_ref().and_then(|own| own.get(key));
+        let value_of = |key: &str| value_of(key).map(|node| node.value.clone());
         let rule = Entries::default()
-            .set_some("title", said("title"))
-            .set_some("about", said("about"))
-            .set_some("source", said("source"));
+            .set_some("title", value_of("title"))
+            .set_some("about", value_of("about"))
+            .set_some("source", value_of("source"));
         let rule = match self.entry.shelf {
             Shelf::Initiators => rule.set("initiator", name).set("generator", halves),
             Shelf::Generators => rule.set("initiator", line).set("generator", name),

@@ -117,7 +117,7 @@ fn text(found: &Counted, unit: f64) -> String {
     line("fractals", &grouped(&found.walked.fractals.into()));
     line("length", &decimal(found.length, unit));
     if !found.bounds.is_empty() {
-        line("bounds", &corners(&found.bounds).told(unit));
+        line("bounds", &corners(&found.bounds).described(unit));
     }
     text
 }

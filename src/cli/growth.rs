@@ -22,10 +22,10 @@ use crate::fractal::Goal;
 
 /// Default limit of the number of elements, where a detail in pixels bounds them: at most as many are drawn
 /// as there are pixels.
-const MOST_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
+const MAX_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
 
 /// Default limit where all elements are held in memory: a gigabyte, at about 200 bytes each.
-const MOST_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
+const MAX_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
 
 /// Options of growth and its limits.
 #[derive(clap::Args)]
@@ -79,13 +79,13 @@ impl GrowthArguments {
             | render::Options {
                 format: render::Format::Dxf,
                 ..
-            } => MOST_PLOTTED,
+            } => MAX_PLOTTED,
             // Their number is bounded by that of pixels.
             render::Options {
                 format: render::Format::Png,
                 detail: Some(_),
                 ..
-            } => MOST_GROWN_TO_DETAIL,
+            } => MAX_GROWN_TO_DETAIL,
             _ => Model::MOST_ELEMENTS,
         };
         self.max_elements.unwrap_or(default)
@@ -224,10 +224,10 @@ fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Size
 /// Estimates the bytes of a PNG, if possible. For a detail, they are those of the first step whose mean
 /// element is as small.
 pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) -> Option<f64> {
-    const MOST_STEPS: u32 = 1_000;
+    const MAX_STEPS: u32 = 1_000;
     let steps = match goal {
-        Goal::Steps(steps, _) => steps.min(MOST_STEPS),
-        Goal::Detail(_) => MOST_STEPS.min(graph.depth().unwrap_or(MOST_STEPS)),
+        Goal::Steps(steps, _) => steps.min(MAX_STEPS),
+        Goal::Detail(_) => MAX_STEPS.min(graph.depth().unwrap_or(MAX_STEPS)),
     };
     let bounds = rough_bounds(graph, steps)?;
     let window = options.view.window.map(|window| window[2].max(window[3]));
@@ -255,13 +255,13 @@ pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) ->
 
 /// Returns the bounding box of an approximant: from the graph, or else by a walk that is not too long.
 pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
-    const MOST_ELEMENTS: u64 = 1_000_000;
+    const MAX_ELEMENTS: u64 = 1_000_000;
     let growth = Growth {
-        most_elements: MOST_ELEMENTS,
+        most_elements: MAX_ELEMENTS,
         ..Growth::steps(steps)
     };
     let walked = || {
-        let small = !graph.draws() && graph.check_size(steps, MOST_ELEMENTS).is_ok();
+        let small = !graph.draws() && graph.check_size(steps, MAX_ELEMENTS).is_ok();
         let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
     };

@@ -47,7 +47,7 @@ Examples:
 
 /// Result for an entry, or for the text between entries.
 #[derive(Serialize)]
-struct Told<'a> {
+struct Report<'a> {
     entry: Option<&'a str>,
     file: Option<String>,
     found: Vec<Row<'a>>,
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         force: arguments.force,
         names: BTreeSet::new(),
     };
-    let mut all_told = true;
+    let mut all_written = true;
     let mut rows = Vec::new();
     for path in &arguments.sources {
         let (source, kind) = open(path)?;
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .hint("an entry is Name { ... }")
                 .into());
         }
-        let mut told = vec![(None, None, stray)];
+        let mut reports = vec![(None, None, stray)];
         for Imported {
             name,
             document,
@@ -81,27 +81,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 Some(document) => written.write(&name, &document.to_yaml(), &mut found)?,
                 None => None,
             };
-            all_told &= file.is_some();
-            told.push((Some(name), file, found));
+            all_written &= file.is_some();
+            reports.push((Some(name), file, found));
         }
         if arguments.json {
-            rows.extend(told);
+            rows.extend(reports);
         } else {
-            say(path, &told, &arguments.output);
+            report(path, &reports, &arguments.output);
         }
     }
     if arguments.json {
-        let told = rows.iter().map(|(entry, file, found)| Told {
+        let reports = rows.iter().map(|(entry, file, found)| Report {
             entry: entry.as_deref(),
             file: file
                 .as_ref()
                 .map(|file: &PathBuf| file.display().to_string()),
             found: found.iter().map(|found| row("", found)).collect(),
         });
-        let told = told.filter(|told| told.entry.is_some() || !told.found.is_empty());
-        output::print_json(&told.collect::<Vec<_>>())?;
+        let reports = reports.filter(|report| report.entry.is_some() || !report.found.is_empty());
+        output::print_json(&reports.collect::<Vec<_>>())?;
     }
-    if all_told {
+    if all_written {
         Ok(())
     } else {
         Err(Failure::Reported)
@@ -111,12 +111,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
 
 /// Prints the diagnostics of a file and the number of entries that were written.
-fn say(path: &Path, told: &[Entry], folder: &Path) {
+fn report(path: &Path, reports: &[Entry], folder: &Path) {
     // Each entry is reported separately, because a list of diagnostics is abbreviated after its first ones.
-    for (_, _, found) in told.iter().filter(|(_, _, found)| !found.is_empty()) {
+    for (_, _, found) in reports.iter().filter(|(_, _, found)| !found.is_empty()) {
         text::print_diagnostics(found);
     }
-    let entries = told.iter().filter(|(name, ..)| name.is_some());
+    let entries = reports.iter().filter(|(name, ..)| name.is_some());
     let (written, left): (Vec<&Entry>, Vec<&Entry>) =
         entries.partition(|(_, file, _)| file.is_some());
     let of = match left.len() {

@@ -58,7 +58,7 @@ Examples:
 ";
 
 /// Largest number of steps: beyond, the numbers alone would fill a disk.
-const MOST_STEPS: u32 = 10_000;
+const MAX_STEPS: u32 = 10_000;
 
 #[derive(Serialize)]
 struct Info<'a> {
@@ -103,9 +103,9 @@ pub(super) struct Corners {
 
 impl Corners {
     /// Formats the corners to twelve decimals of `unit`.
-    pub(super) fn told(&self, unit: f64) -> String {
-        let told = |corner: [f64; 2]| corner.map(|value| decimal(value, unit));
-        let [[a, b], [c, d]] = [self.min, self.max].map(told);
+    pub(super) fn described(&self, unit: f64) -> String {
+        let formatted = |corner: [f64; 2]| corner.map(|value| decimal(value, unit));
+        let [[a, b], [c, d]] = [self.min, self.max].map(formatted);
         format!("[{a}, {b}] to [{c}, {d}]")
     }
 }
@@ -130,7 +130,7 @@ impl Dimension {
         });
         let similarity = similarity.or_else(|| self.note.clone());
         let own = self.exact.as_ref().and_then(|known| {
-            let told = match (known.value, known.upper_bound) {
+            let formatted = match (known.value, known.upper_bound) {
                 (Some(value), _) => decimal(value, 1.0),
                 (None, Some(bound)) => {
                     format!("at most {} ({})", decimal(bound, 1.0), known.method)
@@ -138,9 +138,9 @@ impl Dimension {
                 (None, None) => return None,
             };
             let form = known.closed_form.as_ref();
-            let form = form.filter(|form| known.value.is_some() && **form != told);
+            let form = form.filter(|form| known.value.is_some() && **form != formatted);
             let form = form.map(|form| format!(" = {form}")).unwrap_or_default();
-            Some(format!("Hausdorff dimension {told}{form}"))
+            Some(format!("Hausdorff dimension {formatted}{form}"))
         });
         [Some(similarity.unwrap_or_else(|| "unknown".into())), own]
     }
@@ -200,8 +200,8 @@ fn number(value: f64) -> serde_json::Value {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
     let steps = steps::choose(arguments.steps, &loaded)?;
-    if steps > MOST_STEPS {
-        let message = format!("info forecasts no more than {MOST_STEPS} steps");
+    if steps > MAX_STEPS {
+        let message = format!("info forecasts no more than {MAX_STEPS} steps");
         return Err(Failure::Usage(message));
     }
     let graph = loaded.compile(steps)?;
@@ -292,11 +292,16 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
 
 /// Multiplies measures by all factors; a result beyond the range of doubles becomes `None`.
 fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<Option<f64>>> {
-    let told = |value: f64| {
+    let formatted = |value: f64| {
         let value = factors.iter().fold(value, |value, factor| value * factor);
         Some(value).filter(|value| value.is_finite())
     };
-    Some(measures?.into_iter().map(|it| it.and_then(told)).collect())
+    Some(
+        measures?
+            .into_iter()
+            .map(|it| it.and_then(formatted))
+            .collect(),
+    )
 }
 
 /// Forecast of an approximant.
@@ -399,11 +404,11 @@ fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     if let Some(bounds) = &info.bounds {
         line(
             "bounds",
-            &format!("{} at step {}", bounds.told(unit), info.steps),
+            &format!("{} at step {}", bounds.described(unit), info.steps),
         );
     }
     if let Some(bounds) = &info.limit_bounds {
-        line("", &format!("{} in the limit", bounds.told(unit)));
+        line("", &format!("{} in the limit", bounds.described(unit)));
     }
     text.push('\n');
     match &info.elements {

@@ -101,14 +101,14 @@ pub(super) struct Paper {
     pub(super) unit: Unit,
 }
 
-const MOST_UNITS: u32 = 1_000_000;
+const MAX_UNITS: u32 = 1_000_000;
 
 /// Parses the size of a picture in pixels.
 pub(super) fn size(text: &str) -> Result<Size, String> {
     let side = |text: &str| match text.parse::<u32>() {
-        Ok(side) if (1..=MOST_UNITS).contains(&side) => Ok(side),
+        Ok(side) if (1..=MAX_UNITS).contains(&side) => Ok(side),
         _ => Err(format!(
-            "a side is a whole number of pixels from 1 to {MOST_UNITS}"
+            "a side is a whole number of pixels from 1 to {MAX_UNITS}"
         )),
     };
     sides(text, side)
@@ -120,7 +120,7 @@ pub(super) fn paper(text: &str) -> Result<Paper, String> {
         let unit = Unit::Pixel;
         return Ok(Paper { size, unit });
     }
-    let most = f64::from(MOST_UNITS);
+    let most = f64::from(MAX_UNITS);
     let side = |text: &str| {
         let tenths = text.strip_suffix("mm").and_then(|number| {
             let tenths = number.parse::<f64>().ok()? * 10.0;
@@ -135,9 +135,9 @@ pub(super) fn paper(text: &str) -> Result<Paper, String> {
         )]
         tenths.map(|tenths| tenths as u32).ok_or_else(|| {
             format!(
-                "a side is a whole number of pixels from 1 to {MOST_UNITS}, or of millimetres with \
+                "a side is a whole number of pixels from 1 to {MAX_UNITS}, or of millimetres with \
                  one decimal at most and up to {}mm: 200mm, 210mmx297mm",
-                MOST_UNITS / 10
+                MAX_UNITS / 10
             )
         })
     };

@@ -11,10 +11,10 @@ use super::{Failure, text};
 use crate::fractal::Goal;
 
 /// Largest number of elements of a light SVG, or of all approximants of a sheet together.
-pub(super) const MOST_ELEMENTS: u64 = 50_000;
+pub(super) const MAX_ELEMENTS: u64 = 50_000;
 
 /// Largest size of a light SVG in bytes.
-const MOST_BYTES: u64 = 2_000_000;
+const MAX_BYTES: u64 = 2_000_000;
 
 /// Details in pixels, in ascending order, of which the first that is light enough is taken.
 const DETAILS: [f64; 36] = [
@@ -32,7 +32,7 @@ pub(super) struct Draft {
 
 impl Write for Draft {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if (self.bytes.len() + bytes.len()) as u64 > MOST_BYTES {
+        if (self.bytes.len() + bytes.len()) as u64 > MAX_BYTES {
             self.is_too_long = true;
             return Err(io::ErrorKind::FileTooLarge.into());
         }
@@ -47,14 +47,14 @@ impl Write for Draft {
 
 /// Writes a file that must be light; returns `None` if it has too many elements or bytes.
 ///
-/// `write` must grow no more than [`MOST_ELEMENTS`] and returns their number.
+/// `write` must grow no more than [`MAX_ELEMENTS`] and returns their number.
 pub(super) fn draft<T>(
     write: impl FnOnce(&mut Draft) -> Result<(T, u64), RenderError>,
 ) -> Result<Option<(T, Draft)>, RenderError> {
     let mut draft = Draft::default();
     match write(&mut draft) {
         Ok((written, elements)) => {
-            Ok((elements <= MOST_ELEMENTS && !draft.is_too_long).then_some((written, draft)))
+            Ok((elements <= MAX_ELEMENTS && !draft.is_too_long).then_some((written, draft)))
         }
         Err(_) if draft.is_too_long => Ok(None),
         Err(RenderError::Walk(WalkError::TooManyElements { .. } | WalkError::TooLong { .. })) => {
@@ -96,7 +96,7 @@ pub(super) fn nearest<T>(
             return Ok(drafted);
         }
     }
-    let too_large = graph.check_size(goal.steps(), MOST_ELEMENTS).err();
+    let too_large = graph.check_size(goal.steps(), MAX_ELEMENTS).err();
     let deepest = too_large.filter(|_| !is_part).map(|error| error.deepest);
     let fewer = match deepest {
         Some(deepest) => deepest.map_or(0, |deepest| deepest + 1).min(goal.steps()),
@@ -134,8 +134,8 @@ pub(super) fn first_that_is_light<T>(
 pub(super) fn tell(drawn: &str, more: &str) {
     text::print_message(&format!(
         "note: {drawn}, to limit the SVG to {} elements and {}; {more}",
-        grouped(&MOST_ELEMENTS.into()),
-        bytes(MOST_BYTES),
+        grouped(&MAX_ELEMENTS.into()),
+        bytes(MAX_BYTES),
     ));
 }
 

@@ -86,9 +86,9 @@ pub(super) fn write<T>(
         bytes: 0,
     };
     let shows_progress = !quiet && out.inner.is_file();
-    let told = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
+    let written = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
     out.inner.finish()?;
-    Ok((told, out.bytes))
+    Ok((written, out.bytes))
 }
 
 /// Creates a folder and its missing parents.

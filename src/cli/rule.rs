@@ -301,10 +301,10 @@ impl RuleArguments {
             }
         }
         let left = system.omitting(&maps).map_err(|errors| {
-            let said: Vec<_> = errors.iter().map(ToString::to_string).collect();
+            let messages: Vec<_> = errors.iter().map(ToString::to_string).collect();
             usage(format!(
                 "--omit: of the remaining maps, {}",
-                said.join("; ")
+                messages.join("; ")
             ))
         })?;
         Ok(Model::Ifs(left.into()))
@@ -336,12 +336,12 @@ fn check_setting(
             let errors = diagnostics
                 .iter()
                 .filter(|diagnostic| diagnostic.severity() == Severity::Error);
-            let said: Vec<_> = errors.map(Diagnostic::message).collect();
+            let messages: Vec<_> = errors.map(Diagnostic::message).collect();
             let message = format!(
                 "--set {}={}: {}",
                 setting.name,
                 setting.value,
-                said.join("; ")
+                messages.join("; ")
             );
             Err(Failure::Usage(message))
         }

@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     let steps = match &arguments.steps {
         Some(steps) => steps.clone(),
-        None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MOST_CELLS - 1)),
+        None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MAX_CELLS - 1)),
     };
     let last = steps.largest();
     let sheet_to = |step: u32| {
@@ -188,7 +188,7 @@ impl Arguments {
                         let step = last - u32::try_from(fewer).unwrap_or(0);
                         let sheet = sheet_to(step)?;
                         let drafted = light::draft(|out| {
-                            let cells = sheet.cells(growth, Some(light::MOST_ELEMENTS), None);
+                            let cells = sheet.cells(growth, Some(light::MAX_ELEMENTS), None);
                             let written = sheet::write(&cells, *columns, &sheet.options, out)?;
                             Ok(((written, cells.len()), written.elements))
                         });

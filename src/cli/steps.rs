@@ -13,7 +13,7 @@ pub(super) fn parse(text: &str) -> Result<u32, String> {
 }
 
 /// Largest number of approximants on a sheet by default.
-pub(super) const MOST_CELLS: u32 = 12;
+pub(super) const MAX_CELLS: u32 = 12;
 
 /// Several numbers of steps, at least one.
 #[derive(Clone, Debug, PartialEq)]

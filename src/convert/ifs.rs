@@ -23,7 +23,7 @@ use super::structure::{Placed, Structure};
 use super::{Keeps, Refusal};
 
 /// Limit of the number of maps.
-const MOST_MAPS: usize = 1_000;
+const MAX_MAPS: usize = 1_000;
 
 /// An iterated function system with a digraph.
 #[derive(Default)]
@@ -310,8 +310,8 @@ fn vertices(
                     }
                 }
             }
-            if maps > MOST_MAPS {
-                return Err(Refusal::TooManyMaps(MOST_MAPS));
+            if maps > MAX_MAPS {
+                return Err(Refusal::TooManyMaps(MAX_MAPS));
             }
             vertices.push(Vertex {
                 copy,
@@ -369,8 +369,8 @@ fn expanded(structure: &Structure) -> Result<Expanded, Refusal> {
                 }
                 _ => made.push(placed),
             }
-            if made.len() + open.len() > MOST_MAPS {
-                return Err(Refusal::TooManyMaps(MOST_MAPS));
+            if made.len() + open.len() > MAX_MAPS {
+                return Err(Refusal::TooManyMaps(MAX_MAPS));
             }
         }
         Ok(made)

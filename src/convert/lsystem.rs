@@ -49,10 +49,10 @@ fn letter_of<S: PartialEq>(symbols: &mut Vec<S>, symbol: S) -> Result<char, Refu
 
 /// Converts an angle to degrees, rounded to a simple fraction that differs only by rounding.
 fn degrees(radians: f64) -> f64 {
-    const MOST_PARTS: u32 = 60;
+    const MAX_PARTS: u32 = 60;
     const ROUNDING: f64 = 1e-12;
     let angle = radians.to_degrees();
-    let simple = (1..=MOST_PARTS).map(f64::from).find_map(|part| {
+    let simple = (1..=MAX_PARTS).map(f64::from).find_map(|part| {
         let nearest = (angle * part).round() / part;
         ((nearest - angle).abs() <= ROUNDING * 360.0).then_some(nearest)
     });

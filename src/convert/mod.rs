@@ -80,7 +80,7 @@ const STEPS: u32 = 64;
 /// Step at which an L-system is converted if its steps differ in kind and its file does not specify one.
 const DEEPEST: u32 = 12;
 /// Limit of the number of elements at that step.
-const MOST_ELEMENTS: u64 = 20_000;
+const MAX_ELEMENTS: u64 = 20_000;
 
 /// Converts a model to a document of another kind.
 ///
@@ -93,7 +93,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
     }
-    let steps = match model.as_kind().deepest(DEEPEST, MOST_ELEMENTS) {
+    let steps = match model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
         Some(deepest) => model.metadata().steps.unwrap_or(deepest),
         None => STEPS,
     };

@@ -4,14 +4,14 @@
 const MAX_CHARS: usize = 64;
 
 /// Maximum number of candidates that are compared with a name.
-const MOST_CANDIDATES: usize = 1000;
+const MAX_CANDIDATES: usize = 1000;
 /// Maximum number of names in a list.
-const MOST_LISTED: usize = 30;
+const MAX_LISTED: usize = 30;
 
-/// Joins names with commas for a message. Names beyond [`MOST_LISTED`] are replaced by `...`.
+/// Joins names with commas for a message. Names beyond [`MAX_LISTED`] are replaced by `...`.
 pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
-    let mut shown: Vec<&str> = names.by_ref().take(MOST_LISTED).collect();
+    let mut shown: Vec<&str> = names.by_ref().take(MAX_LISTED).collect();
     if names.next().is_some() {
         shown.push("...");
     }
@@ -41,7 +41,7 @@ pub(crate) fn nearest<'a>(
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
     let wanted = folded(name)?;
-    let candidates: Vec<&str> = candidates.into_iter().take(MOST_CANDIDATES).collect();
+    let candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES).collect();
     let beginning = || {
         let same = |candidate: &&&str| {
             let letters = candidate.chars().zip(name.chars());

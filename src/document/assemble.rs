@@ -18,9 +18,9 @@ use super::shape::{Form, Shape};
 use super::yaml::{Budget, Size};
 
 /// Maximum length of a chain of parents.
-const MOST_PARENTS: usize = 32;
+const MAX_PARENTS: usize = 32;
 /// Number of missing components after which no more are looked up.
-const MOST_MISSING: usize = 100;
+const MAX_MISSING: usize = 100;
 
 /// Inlines everything that the file in `source` names. Returns the result, its kind, and whether all
 /// names were resolved, or `None` if the text cannot be read as a file of any kind.
@@ -164,7 +164,7 @@ impl Assembly<'_> {
     fn kind_of(&mut self, entries: &Entries) -> Option<Kind> {
         let written = entries.iter().find(|(key, _)| key.name == "kind");
         let known = |name: &str| Kind::ALL.into_iter().find(|kind| kind.name() == name);
-        let said = match written {
+        let written_kind = match written {
             None => Kind::Rule,
             Some((_, node)) => match &node.value {
                 Value::Text(name) if known(name).is_some() => known(name)?,
@@ -179,16 +179,23 @@ impl Assembly<'_> {
             },
         };
         match self.kind {
-            Some(kind) if kind != said => {
+            Some(kind) if kind != written_kind => {
                 let place = self.extending.clone()?;
-                let message = format!("this is of kind '{}', not '{}'", said.name(), kind.name());
-                let hint = format!("a file extends one of its own kind: kind: {}", said.name());
+                let message = format!(
+                    "this is of kind '{}', not '{}'",
+                    written_kind.name(),
+                    kind.name()
+                );
+                let hint = format!(
+                    "a file extends one of its own kind: kind: {}",
+                    written_kind.name()
+                );
                 self.error(&place, message, &hint);
                 None
             }
             _ => {
-                self.kind = Some(said);
-                Some(said)
+                self.kind = Some(written_kind);
+                Some(written_kind)
             }
         }
     }
@@ -237,8 +244,8 @@ impl Assembly<'_> {
             self.error(&parent.place, format!("'{name}' extends itself"), &hint);
             return None;
         }
-        if self.chain.len() > MOST_PARENTS {
-            let message = format!("more than {MOST_PARENTS} rules extend each other");
+        if self.chain.len() > MAX_PARENTS {
+            let message = format!("more than {MAX_PARENTS} rules extend each other");
             self.error(&parent.place, message, "write the rule out");
             return None;
         }
@@ -330,7 +337,7 @@ impl Assembly<'_> {
                 known.generation = known.generation.max(generation);
                 known.node.clone()
             }
-            None if self.missing == MOST_MISSING => None,
+            None if self.missing == MAX_MISSING => None,
             None => {
                 let found = self.find(name, shelf, &node.place);
                 self.missing += usize::from(found.is_none());

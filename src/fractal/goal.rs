@@ -133,11 +133,11 @@ pub fn proposed_steps(
     compile: impl Fn(u32) -> Result<Graph, CompileError>,
 ) -> Result<u32, CompileError> {
     const DEEPEST: u32 = 12;
-    const MOST_ELEMENTS: u64 = 20_000;
+    const MAX_ELEMENTS: u64 = 20_000;
     if let Some(steps) = model.metadata().steps {
         return Ok(steps);
     }
-    if let Some(deepest) = model.as_kind().deepest(DEEPEST, MOST_ELEMENTS) {
+    if let Some(deepest) = model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
         return Ok(deepest);
     }
     let graph = compile(DEEPEST)?;
@@ -146,11 +146,11 @@ pub fn proposed_steps(
     }
     if let Some(depth) = model.as_kind().ends()
         && depth <= Goal::MOST_STEPS
-        && graph.check_size(depth, MOST_ELEMENTS).is_ok()
+        && graph.check_size(depth, MAX_ELEMENTS).is_ok()
     {
         return Ok(depth);
     }
-    Ok(match graph.check_size(DEEPEST, MOST_ELEMENTS) {
+    Ok(match graph.check_size(DEEPEST, MAX_ELEMENTS) {
         Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
     })

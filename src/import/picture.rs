@@ -9,7 +9,7 @@ use zune_jpeg::{
 };
 
 /// Limit of the number of pixels.
-const MOST_PIXELS: u64 = 1 << 30;
+const MAX_PIXELS: u64 = 1 << 30;
 
 /// An error in reading a picture.
 #[derive(Debug, thiserror::Error)]
@@ -25,7 +25,7 @@ pub enum PictureError {
     #[error("the JPEG cannot be read: {0}")]
     Jpeg(String),
     /// The picture has too many pixels.
-    #[error("the picture has {width} x {height} pixels, more than {MOST_PIXELS}")]
+    #[error("the picture has {width} x {height} pixels, more than {MAX_PIXELS}")]
     TooLarge {
         /// Width of the picture.
         width: u64,
@@ -150,11 +150,11 @@ fn is_jpeg(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0xff, 0xd8, 0xff])
 }
 
-/// Returns an error if a picture is empty or has more than [`MOST_PIXELS`] pixels.
+/// Returns an error if a picture is empty or has more than [`MAX_PIXELS`] pixels.
 fn check(width: u64, height: u64) -> Result<(), PictureError> {
     match width.checked_mul(height) {
         Some(0) => Err(PictureError::Empty),
-        Some(pixels) if pixels <= MOST_PIXELS => Ok(()),
+        Some(pixels) if pixels <= MAX_PIXELS => Ok(()),
         _ => Err(PictureError::TooLarge { width, height }),
     }
 }

@@ -8,7 +8,7 @@ use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim};
 use crate::geometry::DVec2;
 
 /// Limit of the number of points in a table; a point takes 16 bytes.
-const MOST_POINTS: usize = 1 << 27;
+const MAX_POINTS: usize = 1 << 27;
 
 /// An error in a table of points. Rows are numbered from 1, the header included.
 #[derive(Debug, thiserror::Error)]
@@ -53,7 +53,7 @@ pub enum TableError {
         text: String,
     },
     /// The table has more points than the limit.
-    #[error("there are more than {MOST_POINTS} points")]
+    #[error("there are more than {MAX_POINTS} points")]
     TooMany,
     /// The table cannot be read.
     #[error("the table cannot be read: {0}")]
@@ -102,7 +102,7 @@ pub fn read_points(
                 found
             }
         };
-        if points.len() == MOST_POINTS {
+        if points.len() == MAX_POINTS {
             return Err(TableError::TooMany);
         }
         let coordinate = |place| coordinate(&record, place, row);
@@ -112,9 +112,9 @@ pub fn read_points(
 }
 
 /// Limit of the number of bytes between two rows: a stream without line ends must not fill the memory.
-const MOST_BYTES: usize = 1 << 24;
+const MAX_BYTES: usize = 1 << 24;
 
-/// A reader that fails where a row is longer than [`MOST_BYTES`].
+/// A reader that fails where a row is longer than [`MAX_BYTES`].
 struct Rows<'a, R> {
     input: R,
     /// The number of bytes since the last row.
@@ -125,8 +125,8 @@ impl<R: Read> Read for Rows<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.input.read(buffer)?;
         self.bytes.set(self.bytes.get() + count);
-        if self.bytes.get() > MOST_BYTES {
-            let message = format!("a row is not to have more than {MOST_BYTES} bytes");
+        if self.bytes.get() > MAX_BYTES {
+            let message = format!("a row is not to have more than {MAX_BYTES} bytes");
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
         Ok(count)
@@ -155,11 +155,11 @@ fn number(field: &[u8]) -> Option<f64> {
 }
 
 fn coordinate(record: &ByteRecord, place: usize, row: u64) -> Result<f64, TableError> {
-    const MOST_CHARACTERS: usize = 40;
+    const MAX_CHARACTERS: usize = 40;
     let field = &record[place];
     let text = || {
         let text = String::from_utf8_lossy(field);
-        text.chars().take(MOST_CHARACTERS).collect()
+        text.chars().take(MAX_CHARACTERS).collect()
     };
     match number(field) {
         Some(value) if value.is_finite() => Ok(value),

@@ -8,7 +8,7 @@ use crate::ifs::Shape;
 use super::{Resolver, resolve, whole_number};
 
 /// Maximum number of lines, curves and sides in all sets of a file that are fractals.
-const MOST_PIECES: usize = 100_000;
+const MAX_PIECES: usize = 100_000;
 
 impl<K> Resolver<K> {
     /// Grows a fractal and returns the outlines that it draws. Reports a mistake and returns `None`.
@@ -62,7 +62,7 @@ impl<K> Resolver<K> {
         };
         let frame = map.map_or(Some(Frame2::UNIT), |map| map.map(Frame2::from))?;
         let fills = model.metadata().style.fill.is_some();
-        let most = MOST_PIECES.saturating_sub(self.pieces);
+        let most = MAX_PIECES.saturating_sub(self.pieces);
         let message = match outlines(&graph, &growth, frame, fills, most) {
             Ok(drawn) if drawn.is_empty() => {
                 "this fractal draws nothing after so many steps".into()
@@ -72,7 +72,7 @@ impl<K> Resolver<K> {
                 return Some(Shape::Union(drawn.into()));
             }
             Err(WalkError::Visitor(OutlineError::TooMany) | WalkError::TooManyElements { .. }) => {
-                format!("sets that are fractals draw more than {MOST_PIECES} lines in all")
+                format!("sets that are fractals draw more than {MAX_PIECES} lines in all")
             }
             Err(error) => error.to_string(),
         };

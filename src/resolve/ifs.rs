@@ -13,7 +13,7 @@ use super::Resolver;
 use super::numbers::values;
 
 /// Maximum size of a system, with all instances of sets and of maps in maps.
-const MOST_INSTANCES: usize = 2_000_000;
+const MAX_INSTANCES: usize = 2_000_000;
 
 /// State that is specific to systems: none.
 #[derive(Default)]
@@ -81,10 +81,10 @@ impl Resolver<OfIfs> {
                 return None;
             }
         };
-        if ifs.size() > MOST_INSTANCES {
+        if ifs.size() > MAX_INSTANCES {
             let message = "so many sets under so many maps are too much";
             let hint = format!(
-                "of all sets and maps inside all maps there are no more than {MOST_INSTANCES}"
+                "of all sets and maps inside all maps there are no more than {MAX_INSTANCES}"
             );
             self.error_with_hint(&document.heading.place.first_line(), message, hint);
             return None;

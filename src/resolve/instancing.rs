@@ -21,10 +21,10 @@ use crate::style::{ColorBy, Colour};
 use super::Resolver;
 
 /// Maximum number of objects after the expansion of levels.
-const MOST_OBJECTS: usize = 20_000;
+const MAX_OBJECTS: usize = 20_000;
 
 /// Maximum number of instances in all objects, where sides of shapes count as well.
-const MOST_INSTANCES: usize = 250_000;
+const MAX_INSTANCES: usize = 250_000;
 
 /// State that is specific to structures.
 #[derive(Default)]
@@ -130,9 +130,9 @@ impl Resolver<OfInstancing> {
                 slots: level.into_iter().collect(),
             });
             self.kind.unions[number] = union;
-            if self.kind.size > MOST_INSTANCES {
+            if self.kind.size > MAX_INSTANCES {
                 let message = format!(
-                    "with all their levels the objects hold more than {MOST_INSTANCES} instances and \
+                    "with all their levels the objects hold more than {MAX_INSTANCES} instances and \
                      sides of shapes"
                 );
                 let last = objects.last().map_or("", |object| &object.name);
@@ -405,11 +405,10 @@ impl Resolver<OfInstancing> {
             return Some(known);
         }
         let number = self.kind.reached.len();
-        if number >= MOST_OBJECTS {
+        if number >= MAX_OBJECTS {
             if !self.kind.is_too_many {
                 self.kind.is_too_many = true;
-                let message =
-                    format!("'{name}' leads to more than {MOST_OBJECTS} levels of itself");
+                let message = format!("'{name}' leads to more than {MAX_OBJECTS} levels of itself");
                 let hint = format!("an object of one level ends it: {name}(0)");
                 self.error_with_hint(place, message, hint);
             }

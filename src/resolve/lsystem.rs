@@ -17,7 +17,7 @@ use crate::style::ColorBy;
 use super::Resolver;
 
 /// Maximum nesting depth of branches in a right context, which are matched by recursion.
-const MOST_BRANCHES: i32 = 64;
+const MAX_BRANCHES: i32 = 64;
 
 /// State that is specific to L-systems.
 #[derive(Default)]
@@ -169,9 +169,9 @@ impl Resolver<OfLSystem> {
         for (module, &number) in document.right.iter().zip(&right) {
             depth += i32::from(self.kind.symbols[number].is_push());
             depth -= i32::from(self.kind.symbols[number].is_pop());
-            if depth > MOST_BRANCHES {
+            if depth > MAX_BRANCHES {
                 let message = "this context is nested too deeply";
-                let hint = format!("{MOST_BRANCHES} branches at most");
+                let hint = format!("{MAX_BRANCHES} branches at most");
                 self.error_with_hint(&module.place, message, hint);
                 break;
             }

@@ -6,7 +6,7 @@ use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type
 use crate::geometry::DVec2;
 use crate::rule::ElementContext;
 
-use super::{MOST_MISTAKES, Resolver};
+use super::{MAX_MISTAKES, Resolver};
 
 impl<K> Resolver<K> {
     /// Compiles a number in a scope. Reports a mistake and returns an unknown program.
@@ -27,7 +27,7 @@ impl<K> Resolver<K> {
         result: Type,
         scope: &Scope,
     ) -> Program {
-        if part.is_unknown() || self.mistakes >= MOST_MISTAKES {
+        if part.is_unknown() || self.mistakes >= MAX_MISTAKES {
             return Program::unknown();
         }
         let names = part.names().into_iter();

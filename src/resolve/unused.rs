@@ -8,7 +8,7 @@ use crate::document::{MetadataDocument, ParameterDocument};
 use crate::expression::PARTS;
 
 /// Maximum number of parameters for which a similar name is searched.
-const MOST_COMPARED: usize = 100;
+const MAX_COMPARED: usize = 100;
 
 /// Returns warnings of the parameters in a file that none of its expressions uses. Parameters of its
 /// parents and components are excluded, because other files may use them.
@@ -34,7 +34,7 @@ pub(super) fn parameters(
         .filter(|name| Arc::ptr_eq(name.place.source(), source));
     unused.enumerate().map(move |(number, name)| {
         let known = used.iter().map(|it| it.called().value.as_str());
-        let meant = did_you_mean(&name.value, known.filter(|_| number < MOST_COMPARED));
+        let meant = did_you_mean(&name.value, known.filter(|_| number < MAX_COMPARED));
         let hint = meant.unwrap_or_else(|| "leave it out, or use it in an expression".into());
         let message = format!("nothing uses the parameter '{}'", name.value);
         Diagnostic::warning(message).at(&name.place).hint(hint)

@@ -36,7 +36,7 @@ pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
 }
 
 /// Largest size of a picture file in bytes.
-const MOST_BYTES: u64 = 1 << 31;
+const MAX_BYTES: u64 = 1 << 31;
 
 pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Measured, Failure> {
     let path = &arguments.rule;
@@ -71,7 +71,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     let mut whole = Cursor::new(head).chain(input);
     match kind {
         Kind::Picture => {
-            let bytes = read(&mut whole, MOST_BYTES)?;
+            let bytes = read(&mut whole, MAX_BYTES)?;
             let picture = Raster::read(&bytes, arguments.channel);
             drop(bytes);
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
@@ -172,12 +172,12 @@ fn of_growth(
     steps: u32,
     mut measured: Measured,
 ) -> Result<Measured, Failure> {
-    const MOST_POINTS: usize = 1 << 20;
+    const MAX_POINTS: usize = 1 << 20;
     let growth = Growth {
         seed: arguments.seed,
         ..Growth::steps(steps)
     };
-    let grown = match grown(graph, &growth, MOST_POINTS) {
+    let grown = match grown(graph, &growth, MAX_POINTS) {
         Ok(grown) => grown,
         Err(error) => return Ok(measured.without(&error)),
     };
@@ -300,11 +300,11 @@ impl Measured {
 
     /// Sets the spectrum. For order 0, the result of box counting is used.
     fn tell(&mut self, spectrum: Vec<Generalised>) {
-        let told = |it: Generalised| match it.order {
+        let formatted = |it: Generalised| match it.order {
             0.0 => Generalised::of_boxes(&self.counting),
             _ => it,
         };
-        self.spectrum = spectrum.into_iter().map(told).collect();
+        self.spectrum = spectrum.into_iter().map(formatted).collect();
         Generalised::fall(&mut self.spectrum);
     }
 

@@ -380,14 +380,14 @@ fn known(text: &mut String, exact: &GraphDimensions) {
     let mut line = |label: &str, value: &str| {
         let _ = writeln!(text, "{label:<22}{value}");
     };
-    let told = |value: f64, form: Option<&String>| match form {
+    let formatted = |value: f64, form: Option<&String>| match form {
         Some(form) => format!("{value:.12} = {form}"),
         None => format!("{value:.12}"),
     };
     if let Some(dimensions) = &exact.dimensions {
         if let Some(similar) = &dimensions.similarity {
             let form = similar.closed_form.as_ref();
-            line("similarity dimension", &told(similar.value, form));
+            line("similarity dimension", &formatted(similar.value, form));
         }
         if let Some(affinity) = &dimensions.affinity {
             let bound = format!("at most {:.4} (Falconer 1988)", affinity.upper_bound);
@@ -401,7 +401,7 @@ fn known(text: &mut String, exact: &GraphDimensions) {
             method,
         } = &dimensions.hausdorff;
         let own = match (value, upper_bound) {
-            (Some(value), _) => told(*value, closed_form.as_ref()),
+            (Some(value), _) => formatted(*value, closed_form.as_ref()),
             (None, Some(bound)) => format!("at most {bound:.6}"),
             (None, None) => "not decided".into(),
         };
@@ -410,11 +410,11 @@ fn known(text: &mut String, exact: &GraphDimensions) {
         line("overlap", &overlap.to_string());
         if let Some(boundary) = &dimensions.boundary {
             let form = boundary.closed_form.as_ref();
-            let own = boundary.value.map(|value| told(value, form));
+            let own = boundary.value.map(|value| formatted(value, form));
             line("boundary", own.as_ref().unwrap_or(&boundary.method));
         }
         if let Some(drawn) = exact.drawn {
-            line("all that is drawn", &told(drawn, None));
+            line("all that is drawn", &formatted(drawn, None));
         }
     }
     for note in &exact.notes {

@@ -68,14 +68,14 @@ impl Series {
         );
         for (value, known) in &self.samples {
             let hausdorff = known.dimensions.as_ref().map(|it| &it.hausdorff);
-            let told =
+            let formatted =
                 |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.12}"));
             // Writing to a string does not fail.
             let _ = writeln!(
                 text,
                 "{value:>14}  {:>14}  {:>14}  {}",
-                told(similarity(known)),
-                told(hausdorff.and_then(|it| it.value)),
+                formatted(similarity(known)),
+                formatted(hausdorff.and_then(|it| it.value)),
                 hausdorff.map_or("-".into(), |it| it.overlap.to_string()),
             );
         }

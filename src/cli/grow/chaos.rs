@@ -66,7 +66,7 @@ impl Named for Method {
 }
 
 /// Largest number of points that can be requested.
-const MOST_POINTS: u64 = 1_000_000_000_000;
+const MAX_POINTS: u64 = 1_000_000_000_000;
 
 /// Parses a number of points with an optional suffix k, M or G.
 fn points(text: &str) -> Result<u64, String> {
@@ -79,7 +79,7 @@ fn points(text: &str) -> Result<u64, String> {
     let points = number.parse::<f64>().map(|number| number * factor);
     match points {
         #[expect(clippy::cast_precision_loss, reason = "the limit is exact")]
-        Ok(points) if points > MOST_POINTS as f64 && points.is_finite() => {
+        Ok(points) if points > MAX_POINTS as f64 && points.is_finite() => {
             Err("too many points: the limit is 1000G".into())
         }
         #[expect(
@@ -390,7 +390,7 @@ impl<'a> ChaosGame<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_POINTS, points};
+    use super::{MAX_POINTS, points};
 
     #[test]
     fn points_are_counted_in_thousands_millions_and_milliards() {
@@ -399,7 +399,7 @@ mod tests {
             ("500k", 500_000),
             ("2.5M", 2_500_000),
             ("1e7", 10_000_000),
-            ("1000G", MOST_POINTS),
+            ("1000G", MAX_POINTS),
         ] {
             assert_eq!(points(text), Ok(number), "{text}");
         }

@@ -163,7 +163,7 @@ impl<'a> Drawing<'a> {
         let nearest = light::nearest(self.goal, &graph, is_part, by_steps, |goal| {
             let graph = self.loaded.compile_for(goal.steps(), color_by)?;
             let drafted = light::draft(|out| {
-                let most = Some(light::MOST_ELEMENTS);
+                let most = Some(light::MAX_ELEMENTS);
                 let picture = self.draw(goal, graph, most, None, out)?;
                 Ok((picture, picture.elements))
             });

@@ -15,7 +15,7 @@ use super::{degrees, letter, letter_of};
 const ROUNDING: f64 = 1e-9;
 
 /// Limit of the number of parts of a turn.
-const MOST_PARTS: i32 = 360;
+const MAX_PARTS: i32 = 360;
 
 /// A symbol: the object that replaces a line, and the traversal of the line.
 #[derive(Clone, Copy, PartialEq)]
@@ -168,7 +168,7 @@ fn starts_at_origin(placed: &[Placed], chain: &[Line]) -> bool {
 
 /// Returns the least number of parts of a turn, from 3, of which all turns are multiples.
 fn parts(turns: impl Iterator<Item = f64> + Clone) -> Option<i32> {
-    (3..=MOST_PARTS).find(|&parts| {
+    (3..=MAX_PARTS).find(|&parts| {
         turns.clone().all(|turn| {
             let units = turn * f64::from(parts);
             (units - units.round()).abs() <= ROUNDING

@@ -6,18 +6,18 @@ use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
 use crate::document::yaml::Size;
 
-use super::{Assembly, MOST_MISSING, assemble_within, is_same_file};
+use super::{Assembly, MAX_MISSING, assemble_within, is_same_file};
 
 /// Maximum nesting depth of fractals in fractals.
-const MOST_DEEP: usize = 8;
+const MAX_DEEP: usize = 8;
 /// Maximum number of fractals that are inlined into one file, nested ones included.
-const MOST_FRACTALS: usize = 1000;
+const MAX_FRACTALS: usize = 1000;
 
 impl Assembly<'_> {
     /// Replaces the name of a fractal by the content of its file, or by an empty text if that is not
     /// possible.
     pub(super) fn inline_fractal(&mut self, node: &mut Node) {
-        let found = if self.missing < MOST_MISSING {
+        let found = if self.missing < MAX_MISSING {
             self.fractal(node)
         } else {
             None
@@ -35,9 +35,9 @@ impl Assembly<'_> {
     /// its name.
     fn fractal(&mut self, node: &Node) -> Option<Node> {
         *self.fractals += 1;
-        if *self.fractals > MOST_FRACTALS {
+        if *self.fractals > MAX_FRACTALS {
             let message =
-                format!("all fractals together are made of more than {MOST_FRACTALS} others");
+                format!("all fractals together are made of more than {MAX_FRACTALS} others");
             self.error(&node.place, message, "let fewer sets be fractals");
             return None;
         }
@@ -88,8 +88,8 @@ impl Assembly<'_> {
             self.error(&node.place, format!("'{name}' is made of itself"), &hint);
             return None;
         }
-        if self.around.len() >= MOST_DEEP {
-            let message = format!("more than {MOST_DEEP} fractals are made of each other");
+        if self.around.len() >= MAX_DEEP {
+            let message = format!("more than {MAX_DEEP} fractals are made of each other");
             self.error(&node.place, message, "write the sets out");
             return None;
         }

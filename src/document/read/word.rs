@@ -10,10 +10,10 @@ use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 
 /// Maximum number of modules in all words of a file.
-const MOST_MODULES: usize = 250_000;
+const MAX_MODULES: usize = 250_000;
 
 /// Number of mistakes in a word after which it is not read further.
-const MOST_MISTAKES: usize = 20;
+const MAX_MISTAKES: usize = 20;
 
 /// A text with the source spans of its parts.
 #[derive(Clone, Copy)]
@@ -140,8 +140,8 @@ impl<'r> Words<'r> {
             let start = at + blanks;
             let end = start + character.len_utf8();
             let place = text.at(start..end);
-            if self.modules == MOST_MODULES {
-                let message = format!("the words hold more than {MOST_MODULES} modules");
+            if self.modules == MAX_MODULES {
+                let message = format!("the words hold more than {MAX_MODULES} modules");
                 self.error(&place, message, "a few more steps make long words");
                 return (modules, false);
             }
@@ -169,7 +169,7 @@ impl<'r> Words<'r> {
                 place: text.at(start..text.trimmed(start..next).end),
             });
             at = next;
-            if self.reader.diagnostics.len() >= mistakes + MOST_MISTAKES {
+            if self.reader.diagnostics.len() >= mistakes + MAX_MISTAKES {
                 return (modules, false);
             }
         }

@@ -99,9 +99,9 @@ impl Axis {
         reason = "exponents of doubles are small"
     )]
     fn powers(&self) -> Vec<Tick> {
-        const MOST_LABELS: f64 = 9.0;
+        const MAX_LABELS: f64 = 9.0;
         let (first, last) = (self.from.floor() as i32, self.to.ceil() as i32);
-        let every = ((self.to - self.from) / MOST_LABELS).ceil().max(1.0) as i32;
+        let every = ((self.to - self.from) / MAX_LABELS).ceil().max(1.0) as i32;
         let few = self.to - self.from < 1.5;
         let mut ticks = Vec::new();
         for exponent in first..=last {

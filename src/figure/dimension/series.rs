@@ -44,8 +44,8 @@ impl Plot for Series<'_> {
     fn draw<S: Surface>(&self, pad: &mut Pad<'_, S>) -> io::Result<()> {
         let values = self.dimensions.iter();
         let across = Axis::linear(values.clone().map(|(value, _)| *value), [LEFT, RIGHT]);
-        let told = values.clone().filter_map(|(_, dimension)| *dimension);
-        let up = Axis::linear(told, [PANEL[1], PANEL[0]]);
+        let known = values.clone().filter_map(|(_, dimension)| *dimension);
+        let up = Axis::linear(known, [PANEL[1], PANEL[0]]);
         frame(pad, &across, &up, PANEL, true)?;
         let at = |value: f64, dimension: f64| DVec2::new(across.at(value), up.at(dimension));
         // A line joins neighbouring values that both have a dimension.

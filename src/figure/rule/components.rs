@@ -14,7 +14,7 @@ use super::{ink, lines, words};
 /// Width of text beside generators, in pixels.
 const WORDS_WIDTH: f64 = 215.0;
 /// Limit of the number of lines of text.
-const MOST_LINES: usize = 40;
+const MAX_LINES: usize = 40;
 
 /// Number of draws shown behind the typical one of a random generator.
 const DRAWS: u32 = 6;
@@ -46,7 +46,7 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
     let both = rule.generators().iter().zip(written);
     for (number, (generator, document)) in both.enumerate() {
         let moment = moment(rule, number);
-        let said = words::generator(generator, document, &moment);
+        let description = words::generator(generator, document, &moment);
         let draws = if generator.is_random() { DRAWS } else { 0 };
         let draws = (0..draws).map(|draw| {
             let (mut scratch, mut points) = (Vec::new(), Vec::new());
@@ -58,7 +58,7 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
             parts: generator.parts(),
             points: generator.typical(&moment),
             draws: draws.collect(),
-            named: said.named,
+            named: description.named,
             replaces: true,
             common,
         };
@@ -72,7 +72,7 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
             let name = Block::text(font, name, WORDS, true);
             drawn = Block::column(vec![name, drawn], 2.0, true);
         }
-        panels.push((drawn, paragraphs(&said.lines, font)));
+        panels.push((drawn, paragraphs(&description.lines, font)));
     }
     let widths = panels.iter().map(|(drawn, _)| drawn.size.x);
     let widest = widths.fold(0.0, f64::max);
@@ -90,8 +90,8 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
 
 /// Returns paragraphs of text, wrapped; lines beyond the limit are replaced by an ellipsis.
 fn paragraphs(lines: &[String], font: &Font) -> Block {
-    let more = (lines.len() > MOST_LINES).then(|| "…".into());
-    let blocks = lines.iter().take(MOST_LINES).chain(more.as_ref());
+    let more = (lines.len() > MAX_LINES).then(|| "…".into());
+    let blocks = lines.iter().take(MAX_LINES).chain(more.as_ref());
     let blocks = blocks.map(|line| {
         let lines = font.wrap(&shortened(line), WORDS, WORDS_WIDTH);
         Block::text(font, lines, WORDS, false)

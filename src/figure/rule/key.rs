@@ -8,7 +8,7 @@ use super::super::text::Font;
 use super::block::{Block, Item, Outline};
 use super::ink::{self, Kind};
 use super::page::SMALL;
-use super::panel::MOST_MARKS;
+use super::panel::MAX_MARKS;
 use super::{marks, words};
 
 /// Returns samples of the lines that occur, each with its meaning, for all components or for those of one
@@ -103,9 +103,9 @@ pub(super) fn notes(rule: &Rule) -> Vec<String> {
     }
     let generators = rule.generators().iter().map(|it| it.elements().count());
     let mut counts = generators.chain([rule.initiator().elements.len()]);
-    if counts.any(|count| count > MOST_MARKS) {
+    if counts.any(|count| count > MAX_MARKS) {
         notes.push(format!(
-            "Components of more than {MOST_MARKS} elements have no marks."
+            "Components of more than {MAX_MARKS} elements have no marks."
         ));
     }
     notes

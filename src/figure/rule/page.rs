@@ -29,7 +29,7 @@ const LEAST_WIDTH: f64 = 480.0;
 const LEAST_COLUMN: f64 = 96.0;
 
 /// Limit of the number of characters in a text; longer ones are truncated.
-const MOST_CHARACTERS: usize = 600;
+const MAX_CHARACTERS: usize = 600;
 
 /// Lays out a rule, or the components of one shelf, under a title.
 pub(super) fn page(
@@ -100,9 +100,9 @@ pub(super) fn plural(count: usize, one: &'static str, several: &'static str) -> 
     if count == 1 { one } else { several }
 }
 
-/// Returns a text, truncated to [`MOST_CHARACTERS`] characters and an ellipsis.
+/// Returns a text, truncated to [`MAX_CHARACTERS`] characters and an ellipsis.
 pub(super) fn shortened(text: &str) -> String {
-    let mut shortened: String = text.chars().take(MOST_CHARACTERS).collect();
+    let mut shortened: String = text.chars().take(MAX_CHARACTERS).collect();
     if shortened.len() < text.len() {
         shortened.push('…');
     }

@@ -10,7 +10,7 @@ use super::lines::{arrowhead, flattened, outline};
 use super::marks::{self, Anchor, Mark, Obstacle};
 
 /// Limit of the number of elements that are drawn with marks.
-pub(super) const MOST_MARKS: usize = 400;
+pub(super) const MAX_MARKS: usize = 400;
 
 /// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
@@ -200,7 +200,7 @@ impl<'a> Panel<'a> {
     }
 
     fn marks(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Mark> {
-        if drawn.len() > MOST_MARKS {
+        if drawn.len() > MAX_MARKS {
             return Vec::new();
         }
         let place = |point: DVec2| map.transform_point2(point);
@@ -227,7 +227,7 @@ impl<'a> Panel<'a> {
             });
         }
         marks.retain(|mark| mark.fertile || !mark.number.is_empty());
-        for &number in self.named.iter().take(MOST_MARKS) {
+        for &number in self.named.iter().take(MAX_MARKS) {
             let point = self.points[number];
             if point.is_finite() {
                 marks.push(Mark {

@@ -25,17 +25,17 @@ const OBJECT: f64 = 170.0;
 const WIDTH: f64 = 640.0;
 
 /// Limit of the number of objects shown.
-const MOST_OBJECTS: usize = 24;
+const MAX_OBJECTS: usize = 24;
 /// Limit of the number of levels shown of one name.
-const MOST_LEVELS: usize = 3;
+const MAX_LEVELS: usize = 3;
 
 /// Limit of the number of instances shown in a panel.
-const MOST_INSTANCES: usize = 400;
+const MAX_INSTANCES: usize = 400;
 /// Limit of the number of named instances in a panel.
-const MOST_NAMES: usize = 40;
+const MAX_NAMES: usize = 40;
 
 /// Limit of the number of characters in a name; longer ones are truncated.
-const MOST_CHARACTERS: usize = 16;
+const MAX_CHARACTERS: usize = 16;
 
 /// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
@@ -85,7 +85,7 @@ fn shown(structure: &Instancing) -> Vec<usize> {
         let name = object.name.split('(').next().unwrap_or_default();
         let seen = levels.entry(name).or_default();
         *seen += 1;
-        if *seen <= MOST_LEVELS && shown.len() < MOST_OBJECTS {
+        if *seen <= MAX_LEVELS && shown.len() < MAX_OBJECTS {
             shown.push(number);
         }
     }
@@ -99,7 +99,7 @@ fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
         .map(|&number| &structure.objects()[number].instances);
     let instances = panels
         .chain([&structure.scene])
-        .flat_map(|instances| instances.iter().take(MOST_INSTANCES));
+        .flat_map(|instances| instances.iter().take(MAX_INSTANCES));
     let mut numbers: Vec<usize> = instances
         .filter_map(|instance| match instance.master {
             Master::Object(number) => Some(number),
@@ -108,7 +108,7 @@ fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
         .collect();
     numbers.sort_unstable();
     numbers.dedup();
-    numbers.truncate(MOST_INSTANCES);
+    numbers.truncate(MAX_INSTANCES);
     let boxes = Graph::boxes_of(structure, &numbers);
     let both = numbers.into_iter().zip(boxes);
     both.filter_map(|(number, bounds)| Some((number, bounds?)))
@@ -130,7 +130,7 @@ struct Drawn<'a> {
 impl<'a> Plan<'a> {
     /// Returns the panel of a list of instances, with sides of at most `side` pixels.
     fn panel(&self, instances: &'a [ObjectInstance], side: f64) -> Block {
-        let drawn = instances.iter().take(MOST_INSTANCES);
+        let drawn = instances.iter().take(MAX_INSTANCES);
         let drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
         let bounds = drawn.iter().fold(Bounds::EMPTY, |mut bounds, drawn| {
             bounds.add_all(&bounds_of(&drawn.outline));
@@ -189,7 +189,7 @@ impl<'a> Plan<'a> {
             .collect();
         let mut placed: Vec<Bounds> = Vec::new();
         let mut unnamed = Vec::new();
-        let is_crowded = objects().count() > MOST_NAMES;
+        let is_crowded = objects().count() > MAX_NAMES;
         for drawn in objects() {
             let Master::Object(number) = drawn.instance.master else {
                 continue;
@@ -279,11 +279,11 @@ fn bounds_of(outline: &Outline) -> Bounds {
     bounds
 }
 
-/// Returns a name, truncated to [`MOST_CHARACTERS`] characters.
+/// Returns a name, truncated to [`MAX_CHARACTERS`] characters.
 fn cut(name: &str) -> String {
-    if name.chars().count() <= MOST_CHARACTERS {
+    if name.chars().count() <= MAX_CHARACTERS {
         return name.into();
     }
-    let start: String = name.chars().take(MOST_CHARACTERS - 1).collect();
+    let start: String = name.chars().take(MAX_CHARACTERS - 1).collect();
     start + "…"
 }

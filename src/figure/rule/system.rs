@@ -19,7 +19,7 @@ const MOST: DVec2 = DVec2::new(380.0, 380.0);
 const SMALL: f64 = 0.55;
 
 /// Limit of the number of maps that are drawn with numbers.
-const MOST_NUMBERS: usize = 100;
+const MAX_NUMBERS: usize = 100;
 
 /// Lays out a system under a title.
 pub(super) fn page(system: &System, title: &str) -> Block {
@@ -164,7 +164,7 @@ impl<'a> Plan<'a> {
                 None,
             ));
         }
-        if self.ifs.maps().len() <= MOST_NUMBERS {
+        if self.ifs.maps().len() <= MAX_NUMBERS {
             for (number, it) in self.ifs.maps().iter().enumerate() {
                 let name = it.name.clone().unwrap_or_else(|| (number + 1).to_string());
                 let mut bounds = Bounds::EMPTY;

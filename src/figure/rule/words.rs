@@ -10,7 +10,7 @@ use crate::metadata::Parameter;
 use crate::rule::{ElementContext, Generator, Placement};
 
 /// Limit of the number of points that are described one by one.
-const MOST_POINTS: usize = 6;
+const MAX_POINTS: usize = 6;
 
 /// Describes the selection, line by line; returns nothing where there is only one generator.
 pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
@@ -70,10 +70,10 @@ pub(super) fn generator(
     document: &GeneratorDocument,
     moment: &ElementContext,
 ) -> Description {
-    let mut said = Description::default();
+    let mut description = Description::default();
     for (name, distribution) in &document.random {
         let drawn = self::distribution(&distribution.value);
-        said.lines.push(format!("{}: {drawn}", name.value));
+        description.lines.push(format!("{}: {drawn}", name.value));
     }
     let slots = ElementContext::NAMES.len() + generator.variables.len();
     let varies = |&number: &usize| {
@@ -81,24 +81,28 @@ pub(super) fn generator(
         programs.any(|it| (0..slots).any(|slot| it.dependence(slot) != Dependence::None))
     };
     let varying: Vec<_> = (0..generator.points.len()).filter(varies).collect();
-    for &number in varying.iter().take(MOST_POINTS) {
+    for &number in varying.iter().take(MAX_POINTS) {
         let point = &generator.origin.points[number];
         let (x, y) = (written(&point.x.place), written(&point.y.place));
-        said.lines.push(format!("p{number} = ({x}, {y})"));
-        said.named.push(number);
+        description.lines.push(format!("p{number} = ({x}, {y})"));
+        description.named.push(number);
     }
-    if let Some(more @ 1..) = varying.len().checked_sub(MOST_POINTS) {
-        said.lines.push(format!("and {more} more points that vary"));
+    if let Some(more @ 1..) = varying.len().checked_sub(MAX_POINTS) {
+        description
+            .lines
+            .push(format!("and {more} more points that vary"));
     }
     for (written, moving) in document.moves.iter().zip(&generator.moves) {
-        said.lines.push(self::moving(written, &moving.points));
+        description
+            .lines
+            .push(self::moving(written, &moving.points));
         if let WhichPoints::Numbers(_) = written.points {
-            said.named.extend_from_slice(&moving.points);
+            description.named.extend_from_slice(&moving.points);
         }
     }
-    said.named.sort_unstable();
-    said.named.dedup();
-    said.lines.extend(seeds(generator));
+    description.named.sort_unstable();
+    description.named.dedup();
+    description.lines.extend(seeds(generator));
     let depends = |slot: &usize| {
         let mut programs = generator.programs();
         programs.any(|program| program.dependence(*slot) != Dependence::None)
@@ -108,9 +112,11 @@ pub(super) fn generator(
         slots.map(|slot| format!("{} = {}", ElementContext::NAMES[slot], moment.slots()[slot]));
     let values: Vec<_> = values.collect();
     if !values.is_empty() {
-        said.lines.push(format!("drawn for {}", values.join(", ")));
+        description
+            .lines
+            .push(format!("drawn for {}", values.join(", ")));
     }
-    said
+    description
 }
 
 fn distribution(expression: &Expression) -> String {

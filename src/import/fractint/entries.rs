@@ -118,10 +118,10 @@ pub(super) fn of(source: &Arc<Source>, stray: &mut Diagnostics) -> Vec<Entry> {
 /// Returns an entry with the name and the remark before its brace.
 fn named(source: &Arc<Source>, range: Range<usize>) -> Entry {
     let place = trimmed(source, range);
-    let said = &source.text()[place.range()];
-    let (name, remark) = match said.split_once('(') {
+    let line = &source.text()[place.range()];
+    let (name, remark) = match line.split_once('(') {
         Some((name, remark)) => (name, Some(remark.trim_end_matches(')').trim().to_owned())),
-        None => (said, None),
+        None => (line, None),
     };
     let mut found = Diagnostics::default();
     let name = name.trim();
@@ -149,7 +149,7 @@ fn wander(source: &Arc<Source>, range: Range<usize>, stray: &mut Diagnostics) {
 }
 
 fn trimmed(source: &Arc<Source>, range: Range<usize>) -> Place {
-    let said = &source.text()[range.clone()];
-    let start = range.start + said.len() - said.trim_start().len();
-    Place::new(source, start..start + said.trim().len())
+    let line = &source.text()[range.clone()];
+    let start = range.start + line.len() - line.trim_start().len();
+    Place::new(source, start..start + line.trim().len())
 }

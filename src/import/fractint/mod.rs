@@ -84,14 +84,14 @@ fn document(entry: &Entry, own: Entries, found: &mut Diagnostics) -> Option<Docu
         Ok(document) => Some(document),
         Err(mistakes) => {
             // The places of these errors are in a generated text: the entry is reported instead.
-            let said = mistakes.iter().map(|mistake| {
+            let located = mistakes.iter().map(|mistake| {
                 let here = Diagnostic::error(mistake.message()).at(&entry.place);
                 mistake
                     .hint_text()
                     .iter()
                     .fold(here, |here, hint| here.hint(*hint))
             });
-            found.extend(said);
+            found.extend(located);
             None
         }
     }

@@ -21,7 +21,7 @@ fn entries_of(text: &str) -> (Vec<Entry>, Diagnostics) {
 }
 
 /// Returns the messages with the texts at their places.
-fn said(found: &Diagnostics) -> Vec<(&str, &str)> {
+fn messages(found: &Diagnostics) -> Vec<(&str, &str)> {
     let text = |place: &Place| -> std::ops::Range<usize> { place.range() };
     found
         .iter()
@@ -70,7 +70,7 @@ fn entries_have_names_remarks_words_and_comments() {
 fn what_belongs_to_no_entry_is_told() {
     let (entries, stray) = entries_of("lost\nOne { 1\n; { no brace\r\n } found\rTwo { 2");
     assert_eq!(
-        said(&stray),
+        messages(&stray),
         [
             ("this belongs to no entry", "lost"),
             ("this belongs to no entry", "found")
@@ -78,7 +78,7 @@ fn what_belongs_to_no_entry_is_told() {
     );
     let names: Vec<_> = entries.iter().map(|entry| &entry.name[..]).collect();
     assert_eq!(names, ["One", "Two"]);
-    assert_eq!(said(&entries[1].found), [("Two is not closed", "Two")]);
+    assert_eq!(messages(&entries[1].found), [("Two is not closed", "Two")]);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn scales_without_their_numbers_are_told() {
         ("@ takes a number above 0", "@I0"),
         ("this angle is not finite", "/I0"),
     ];
-    assert_eq!(said(&found), expected);
+    assert_eq!(messages(&found), expected);
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
             (
                 &entry.name[..],
                 entry.document.is_some(),
-                said(&entry.found),
+                messages(&entry.found),
             )
         })
         .collect();
@@ -401,7 +401,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
         (
             &entry.name[..],
             entry.document.is_some(),
-            said(&entry.found),
+            messages(&entry.found),
         )
     });
     let expected = [

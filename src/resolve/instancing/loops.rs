@@ -10,10 +10,10 @@ use crate::resolve::Resolver;
 use super::OfInstancing;
 
 /// Maximum number of pairs of successive instances for which contraction is decided.
-const MOST_WAYS: usize = 1_000_000;
+const MAX_WAYS: usize = 1_000_000;
 
 /// Maximum number of relaxations of instances in the test by stretches.
-const MOST_LOOKS: usize = 10_000_000;
+const MAX_LOOKS: usize = 10_000_000;
 
 const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
 
@@ -36,7 +36,7 @@ impl Resolver<OfInstancing> {
         let stretches = edges
             .iter()
             .map(|edge| (edge.from, edge.to, stretch(&edge.linear)));
-        let rounds = objects.min(MOST_LOOKS / edges.len().max(1));
+        let rounds = objects.min(MAX_LOOKS / edges.len().max(1));
         if all_loops_shrink(objects, &stretches.collect::<Vec<_>>(), rounds) {
             return Some(());
         }
@@ -47,7 +47,7 @@ impl Resolver<OfInstancing> {
             outer[edge.to].push(number);
         }
         let ways = edges.iter().map(|edge| outer[edge.from].len());
-        if ways.sum::<usize>() > MOST_WAYS {
+        if ways.sum::<usize>() > MAX_WAYS {
             let message = "there are too many ways to tell whether all loops contract";
             let place = &document.heading.place;
             self.warn(place, message, UNKNOWN);

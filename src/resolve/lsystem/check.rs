@@ -7,7 +7,7 @@ use crate::resolve::Resolver;
 use super::OfLSystem;
 
 /// Maximum number of unbalanced brackets that are reported in a word.
-const MOST_NAMED: usize = 20;
+const MAX_NAMED: usize = 20;
 
 impl Resolver<OfLSystem> {
     /// Reports unbalanced brackets and polygons in a word.
@@ -43,7 +43,7 @@ impl Resolver<OfLSystem> {
             for change in changes {
                 if change > 0 {
                     open.push(module);
-                } else if change < 0 && open.pop().is_none() && named < MOST_NAMED {
+                } else if change < 0 && open.pop().is_none() && named < MAX_NAMED {
                     named += 1;
                     let message = format!("no {what} is open here");
                     let hint = "what a word closes, it has opened: a successor as well";
@@ -51,7 +51,7 @@ impl Resolver<OfLSystem> {
                 }
             }
         }
-        for module in open.into_iter().take(MOST_NAMED) {
+        for module in open.into_iter().take(MAX_NAMED) {
             let message = format!("this {what} is not closed");
             let hint = format!("it ends with '{closing}' in the same word");
             self.error_with_hint(&module.place, message, hint);

@@ -11,7 +11,7 @@ use crate::resolve::{Resolver, whole_number};
 use crate::rule::{ElementContext, Move};
 
 /// Maximum number of moves of a generator: each takes time in every replacement.
-const MOST_MOVES: usize = 1000;
+const MAX_MOVES: usize = 1000;
 
 /// Lists of points that several moves share.
 struct Shared {
@@ -84,7 +84,7 @@ impl Resolver<OfRule> {
         count: usize,
         inner: Vec<usize>,
     ) -> Vec<Move> {
-        if let Some(moving) = document.moves.get(MOST_MOVES) {
+        if let Some(moving) = document.moves.get(MAX_MOVES) {
             let message = format!(
                 "a generator has 1,000 moves at most, this one has {}",
                 document.moves.len()
@@ -96,7 +96,7 @@ impl Resolver<OfRule> {
             all: (0..count).collect(),
             inner: inner.into(),
         };
-        let moves = document.moves.iter().take(MOST_MOVES);
+        let moves = document.moves.iter().take(MAX_MOVES);
         moves
             .map(|moving| self.moving(moving, scope, &shared))
             .collect()

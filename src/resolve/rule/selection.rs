@@ -6,7 +6,7 @@ use crate::expression::Scope;
 
 use super::OfRule;
 use crate::diagnostic::Place;
-use crate::resolve::{MOST_MISTAKES, Resolver};
+use crate::resolve::{MAX_MISTAKES, Resolver};
 use crate::rule::Selection;
 
 impl Resolver<OfRule> {
@@ -15,7 +15,7 @@ impl Resolver<OfRule> {
         if found.is_none()
             && !self.incomplete
             && !self.kind.generator_names.is_empty()
-            && self.mistakes < MOST_MISTAKES
+            && self.mistakes < MAX_MISTAKES
         {
             let known = self.kind.generator_names.iter().map(String::as_str);
             let hint = did_you_mean(&name.value, known.clone())
