@@ -5,8 +5,8 @@ mod parameters;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
-use clap::Command;
 use clap::builder::PossibleValuesParser;
+use clap::{Command, ValueHint};
 use clap_complete::{Shell, generate};
 
 use crate::catalogue::{Catalogue, LibraryFile, Shelf};
@@ -47,28 +47,19 @@ Examples:
       For PowerShell
 ";
 
-/// Commands that take a rule, with the name of that argument.
-const OF_RULES: [(&str, &str); 11] = [
-    ("grow", "rule"),
-    ("sheet", "rule"),
-    ("show", "rule"),
-    ("info", "rule"),
-    ("count", "rule"),
-    ("dim", "rule"),
-    ("cat", "rule"),
-    ("check", "files"),
-    ("convert", "rule"),
-    ("compare", "a"),
-    ("compare", "b"),
-];
+/// Returns the commands that take a rule, with the name of that argument.
+fn rule_arguments() -> Vec<(String, String)> {
+    let command = super::command();
+    let arguments = command.get_subcommands().flat_map(|command| {
+        let paths = { command.get_positionals() }
+            .filter(|argument| argument.get_value_hint() == ValueHint::AnyPath);
+        paths.map(|path| (command.get_name().to_owned(), path.get_id().to_string()))
+    });
+    arguments.collect()
+}
 
 /// Commands that also take a component.
 const OF_COMPONENTS: [&str; 3] = ["show", "cat", "check"];
-
-/// Commands that have `--set`.
-const OF_PARAMETERS: [&str; 8] = [
-    "grow", "sheet", "show", "info", "count", "dim", "convert", "compare",
-];
 
 /// Names in a library.
 #[derive(Default)]
@@ -134,8 +125,8 @@ fn script(shell: Shell, names: Option<&Names>) -> String {
         .map(|sub| sub.get_name().to_owned());
     let mut command = with_values(command.clone(), "man", "command", commands.collect());
     if let Some(names) = names {
-        for (name, argument) in OF_RULES {
-            command = with_values(command, name, argument, names.for_command(name));
+        for (name, argument) in rule_arguments() {
+            command = with_values(command, &name, &argument, names.for_command(&name));
         }
     }
     let mut script = Vec::new();
@@ -165,17 +156,20 @@ fn with_parameters_for_bash(script: &str) -> String {
 
 /// Adds rules, and the parameters of the given rule, besides files.
 fn with_rules_for_fish(mut script: String, names: &Names) -> String {
-    let mut commands = OF_RULES.map(|(command, _)| command).to_vec();
-    commands.dedup();
-    for command in commands {
-        let rules = names.for_command(command).join(" ");
+    let mut commands = rule_arguments();
+    commands.dedup_by(|one, other| one.0 == other.0);
+    for (command, _) in commands {
+        let rules = names.for_command(&command).join(" ");
         // Writing to a string does not fail.
         let _ = writeln!(
             script,
             r#"complete -c kfrac -n "__fish_kfrac_using_subcommand {command}" -a "{rules}""#
         );
     }
-    for command in OF_PARAMETERS {
+    let command = super::command();
+    let has_set = |command: &&Command| command.get_arguments().any(|it| it.get_id() == "set");
+    for command in command.get_subcommands().filter(has_set) {
+        let command = command.get_name();
         let _ = writeln!(
             script,
             r#"complete -c kfrac -n "__fish_kfrac_using_subcommand {command}" -l set -x -a "(kfrac completions --parameters -- (commandline -op) 2>/dev/null)""#
@@ -194,6 +188,7 @@ _kfrac_parameters() {
 }
 
 "#;
+    let rules = rule_arguments();
     let mut with_rules = String::new();
     // Command whose arguments are listed.
     let mut command = "";
@@ -213,8 +208,8 @@ _kfrac_parameters() {
         if is_case {
             command = line.trim_matches(['(', ')']);
         }
-        let rules = OF_RULES.map(|(_, argument)| format!(":{argument} -- "));
-        let wants_rule = rules.iter().any(|rule| line.contains(rule));
+        let mut arguments = rules.iter().map(|(_, argument)| format!(":{argument} -- "));
+        let wants_rule = arguments.any(|argument| line.contains(&argument));
         let function = match OF_COMPONENTS.contains(&command) {
             true => COMPONENTS,
             false => RULES,

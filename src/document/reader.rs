@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Severity, Source, did_yo
 use crate::expression::{Expression, is_name};
 use crate::style::Named;
 
-use super::node::{Node, Value};
+use super::node::{Key, Node, Value};
 use super::shape::{Form, Member, Shape};
 use super::{Written, WrittenNumber, WrittenPoint};
 
@@ -320,6 +320,32 @@ impl Reader {
         }
         let number = self.number(node);
         [number.clone(), number]
+    }
+
+    /// Returns the entries of a mapping of arbitrary names.
+    pub(super) fn entries<'n>(
+        &mut self,
+        node: &'n Node,
+        what: &str,
+        hint: &str,
+    ) -> Option<&'n [(Key, Node)]> {
+        if let Value::Mapping(entries) = &node.value {
+            return Some(entries);
+        }
+        self.mismatch(node, what, hint);
+        None
+    }
+
+    /// Returns the entries of a mapping whose names other values may use.
+    pub(super) fn names<'n>(
+        &mut self,
+        node: &'n Node,
+        what: &str,
+        hint: &str,
+    ) -> &'n [(Key, Node)] {
+        let entries = self.entries(node, what, hint);
+        self.names_are_missing |= entries.is_none();
+        entries.unwrap_or_default()
     }
 
     pub(super) fn list<'n>(&mut self, node: &'n Node, what: &str, hint: &str) -> &'n [Node] {

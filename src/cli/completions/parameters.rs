@@ -9,7 +9,7 @@ use clap::{Arg, Command};
 
 use crate::cli::{command, input, rule};
 
-use super::OF_RULES;
+use super::rule_arguments;
 
 /// Lists the parameters of the rules on a command line, one per line: `NAME=`, a tab, and the description.
 ///
@@ -62,7 +62,7 @@ impl Typed {
     /// assumed to take no value.
     fn read(words: &[OsString]) -> Self {
         let mut typed = Self::default();
-        let program = command();
+        let (program, rules) = (command(), rule_arguments());
         let mut inside: Option<&Command> = None;
         let words = joined(words);
         let mut words = words.iter();
@@ -82,7 +82,7 @@ impl Typed {
                     typed.folders.extend(value.map(PathBuf::from));
                 }
             } else if let Some(command) = inside {
-                let takes = OF_RULES.iter().filter(|(of, _)| *of == command.get_name());
+                let takes = { rules.iter() }.filter(|(of, _)| of == command.get_name());
                 // A shell may repeat the command.
                 let is_command = typed.rules.is_empty() && text == command.get_name();
                 if typed.rules.len() < takes.count() && !is_command {

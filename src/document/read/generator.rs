@@ -106,20 +106,12 @@ pub(super) fn read_generators(reader: &mut Reader, fields: &Fields<'_>) -> Vec<N
         _ => {}
     }
     if let Some(node) = several {
-        match &node.value {
-            Value::Mapping(entries) if entries.is_empty() => {
-                reader.error_with_hint(&node.place, "there is no generator in it", SEVERAL);
-            }
-            Value::Mapping(entries) => generators.extend(
-                entries
-                    .iter()
-                    .map(|(key, node)| (written(key), read_generator(reader, node))),
-            ),
-            _ => {
-                reader.mismatch(node, "a mapping of generators by name", SEVERAL);
-                reader.names_are_missing = true;
-            }
+        let entries = reader.names(node, "a mapping of generators by name", SEVERAL);
+        if matches!(&node.value, Value::Mapping(all) if all.is_empty()) {
+            reader.error_with_hint(&node.place, "there is no generator in it", SEVERAL);
         }
+        let entries = entries.iter();
+        generators.extend(entries.map(|(key, node)| (written(key), read_generator(reader, node))));
     }
     if let Some(node) = one {
         let name = Written {
@@ -238,12 +230,8 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
 
 fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>, WrittenNumber)> {
     let Some(node) = node else { return Vec::new() };
-    let Value::Mapping(entries) = &node.value else {
-        let hint = "random: {tilt: \"uniform(-20, 20)\"}";
-        reader.mismatch(node, "a mapping of variables", hint);
-        reader.names_are_missing = true;
-        return Vec::new();
-    };
+    let hint = "random: {tilt: \"uniform(-20, 20)\"}";
+    let entries = reader.names(node, "a mapping of variables", hint);
     entries
         .iter()
         .map(|(key, node)| (written(key), reader.number(node)))

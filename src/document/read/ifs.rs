@@ -348,10 +348,7 @@ fn read_points(
 fn read_edges(reader: &mut Reader, node: &Node) -> Option<Vec<EdgeDocument>> {
     const HINT: &str = "edges: {1: [1, 2], 2: [1]}: 2 may follow 1, and so on";
     let mut edges = Vec::new();
-    let Value::Mapping(entries) = &node.value else {
-        reader.mismatch(node, "a mapping of maps to those that may follow", HINT);
-        return None;
-    };
+    let entries = reader.entries(node, "a mapping of maps to those that may follow", HINT)?;
     let mut are_read = true;
     for (key, node) in entries {
         let from = || written(key);

@@ -103,17 +103,11 @@ impl OfKind for InstancingDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
-        let objects = match fields.take("objects").map(|node| (&node.value, node)) {
-            Some((Value::Mapping(objects), _)) => objects
-                .iter()
-                .filter_map(|(key, node)| read_object(reader, key, node))
-                .collect(),
-            Some((_, node)) => {
-                reader.mismatch(node, "a mapping of names to objects", UNION.hint);
-                Vec::new()
-            }
-            None => Vec::new(),
-        };
+        let objects = { fields.take("objects") }
+            .and_then(|node| reader.entries(node, "a mapping of names to objects", UNION.hint));
+        let objects = objects.unwrap_or_default().iter();
+        let objects = objects.filter_map(|(key, node)| read_object(reader, key, node));
+        let objects = objects.collect();
         let scene = fields.take("scene");
         Self {
             heading,

@@ -98,19 +98,14 @@ impl OfKind for LSystemDocument {
         let productions = fields.take("productions");
         let productions =
             productions.map_or_else(Vec::new, |node| read_productions(&mut words, node));
-        let symbols = match fields.take("symbols").map(|node| (&node.value, node)) {
-            None => Vec::new(),
-            Some((Value::Mapping(symbols), _)) => symbols
-                .iter()
-                .filter_map(|(key, node)| read_symbol(&mut words, key, node))
-                .collect(),
-            Some((_, node)) => {
-                let hint = "symbols: {G: draw, \"*\": {turn: 36}}";
-                let what = "a mapping of symbols to actions";
-                words.reader.mismatch(node, what, hint);
-                Vec::new()
-            }
-        };
+        let symbols = fields.take("symbols").and_then(|node| {
+            let hint = "symbols: {G: draw, \"*\": {turn: 36}}";
+            let what = "a mapping of symbols to actions";
+            words.reader.entries(node, what, hint)
+        });
+        let symbols = symbols.unwrap_or_default().iter();
+        let symbols = symbols.filter_map(|(key, node)| read_symbol(&mut words, key, node));
+        let symbols = symbols.collect();
         let ignored = fields.take("ignore").and_then(|node| words.of(node));
         let ignored = ignored.into_iter().flat_map(|word| word.modules);
         Self {

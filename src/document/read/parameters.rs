@@ -37,11 +37,7 @@ pub(in crate::document) const PARAMS: Member = key(
 
 pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<ParameterDocument> {
     let Some(node) = node else { return Vec::new() };
-    let Value::Mapping(entries) = &node.value else {
-        reader.mismatch(node, "a mapping of parameters", "params: {angle: 45}");
-        reader.names_are_missing = true;
-        return Vec::new();
-    };
+    let entries = reader.names(node, "a mapping of parameters", "params: {angle: 45}");
     entries
         .iter()
         .flat_map(|(key, node)| read_param(reader, key, node))

@@ -92,9 +92,8 @@ fn by_index(reader: &mut Reader, list: &Node) -> SelectDocument {
 }
 
 fn at_random(reader: &mut Reader, weights: &Node) -> SelectDocument {
-    let Value::Mapping(entries) = &weights.value else {
-        let hint = "at_random: {gen0: 3, gen1: 1}";
-        reader.mismatch(weights, "a mapping of weights", hint);
+    let hint = "at_random: {gen0: 3, gen1: 1}";
+    let Some(entries) = reader.entries(weights, "a mapping of weights", hint) else {
         return unknown(weights);
     };
     let entries = entries

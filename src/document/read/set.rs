@@ -228,17 +228,13 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
 
 /// Reads values of parameters by name.
 fn read_values(reader: &mut Reader, node: &Node) -> Vec<(Written<String>, WrittenNumber)> {
-    match &node.value {
-        Value::Mapping(values) => values
-            .iter()
-            .flat_map(|(key, node)| read_value(reader, written(key), node))
-            .collect(),
-        _ => {
-            let hint = "{fractal: pythagoras, set: {angle: 30}}";
-            reader.mismatch(node, "a mapping of parameters to their values", hint);
-            Vec::new()
-        }
-    }
+    let hint = "{fractal: pythagoras, set: {angle: 30}}";
+    let what = "a mapping of parameters to their values";
+    let values = reader.entries(node, what, hint).unwrap_or_default();
+    let values = values.iter();
+    values
+        .flat_map(|(key, node)| read_value(reader, written(key), node))
+        .collect()
 }
 
 /// Reads the value of a parameter, or the values of the two parts of a complex parameter.
