@@ -49,3 +49,25 @@ pub(super) trait OfKind {
     /// Reads the keys that only this kind has.
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self;
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnostic::{Place, Source};
+    use crate::document::KindDocument;
+    use crate::document::node::Node;
+    use crate::document::reader::Reader;
+    use crate::kind::Kind;
+
+    #[test]
+    fn stand_ins_are_read_without_diagnostics() {
+        for kind in Kind::ALL {
+            let stand_in = KindDocument::table(kind).stand_in;
+            let place = Place::new(&Source::new("extends", "gone"), 0..4);
+            let node = Node::made(stand_in, &place);
+            let mut reader = Reader::default();
+            let read = KindDocument::read(&mut reader, kind, &node, true);
+            assert!(read.is_some_and(|it| it.metadata().complete), "{stand_in}");
+            assert!(reader.diagnostics.is_empty(), "{}", reader.diagnostics);
+        }
+    }
+}
