@@ -145,28 +145,21 @@ impl Loaded {
 
     /// Returns the graph for pictures with a `color_by`, which may need a graph that records more.
     pub(super) fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Failure> {
-        match (&self.model, color_by) {
-            (Model::Ifs(_), ColorBy::LastMap) => {
-                let graph = self.model.with_last_maps_normalised();
-                let graph = graph.map_err(|error| self.model.diagnostic(&error.into()))?;
-                graph.ok_or_else(|| {
-                    let message = format!(
-                        "{} has too many maps and sets to distinguish the map that is applied last",
-                        self.name
-                    );
-                    anyhow::anyhow!(message).into()
-                })
-            }
-            (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) => {
-                let message = format!(
-                    "{} is a rule and has no maps that --color-by {} could distinguish",
-                    self.name,
-                    color_by.name()
-                );
-                Err(anyhow::anyhow!(message).into())
-            }
-            _ => self.compile(steps),
+        if let (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) = (&self.model, color_by) {
+            let message = format!(
+                "{} is a rule and has no maps that --color-by {} could distinguish",
+                self.name,
+                color_by.name()
+            );
+            return Err(anyhow::anyhow!(message).into());
         }
+        let graph = self.model.compile_coloured(color_by, || self.graph(steps));
+        let graph = graph.map_err(|error| self.failure(&error))?;
+        graph.ok_or_else(|| {
+            let name = &self.name;
+            let message = "too many maps and sets to distinguish the map that is applied last";
+            anyhow::anyhow!("{name} has {message}").into()
+        })
     }
 }
 

@@ -256,14 +256,12 @@ impl Fractal {
 
     /// Compiles a graph that has what colours distinguish.
     fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Error> {
-        if color_by == ColorBy::LastMap && matches!(self.model, Model::Ifs(_)) {
-            let graph = self.model.with_last_maps_normalised();
-            let graph = graph.map_err(|error| self.invalid(&error.into()))?;
-            let message =
-                "it has too many maps and sets for colours by the map that is applied last";
-            return graph.ok_or_else(|| Diagnostic::error(message).into());
-        }
-        self.compile(steps).map_err(|error| self.invalid(&error))
+        let graph = self
+            .model
+            .compile_coloured(color_by, || self.compile(steps));
+        let graph = graph.map_err(|error| self.invalid(&error))?;
+        let message = "it has too many maps and sets for colours by the map that is applied last";
+        graph.ok_or_else(|| Diagnostic::error(message).into())
     }
 
     fn invalid(&self, error: &CompileError) -> Error {

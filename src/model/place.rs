@@ -13,6 +13,7 @@
 use crate::geometry::{Bounds, DVec2, Homothety, exponent_of};
 use crate::graph::{CompileError, EXTENTS, FARTHEST, Graph, OutOfRange};
 use crate::ifs::Map;
+use crate::style::ColorBy;
 
 use super::Model;
 
@@ -164,13 +165,30 @@ impl Model {
         })
     }
 
+    /// Compiles the graph that colours by a property need, with `compile` where they need no other than any
+    /// picture. Returns `None` if there are too many maps and sets to distinguish.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Model::place`] and `compile`.
+    pub(crate) fn compile_coloured(
+        &self,
+        color_by: ColorBy,
+        compile: impl FnOnce() -> Result<Graph, CompileError>,
+    ) -> Result<Option<Graph>, CompileError> {
+        match (self, color_by) {
+            (Self::Ifs(_), ColorBy::LastMap) => Ok(self.with_last_maps_normalised()?),
+            _ => compile().map(Some),
+        }
+    }
+
     /// Returns [`Graph::with_last_maps`] of a system in normalised coordinates, or `None` if there are
     /// too many maps, or if the model is not a system.
     ///
     /// # Errors
     ///
     /// As for [`Model::place`].
-    pub fn with_last_maps_normalised(&self) -> Result<Option<Graph>, OutOfRange> {
+    fn with_last_maps_normalised(&self) -> Result<Option<Graph>, OutOfRange> {
         let place = self.place()?;
         let (model, place) = match self.moved(&place) {
             Some(moved) => (moved, place),
