@@ -1,8 +1,8 @@
 //! Benchmark of the short cuts of PNG pictures: `cargo bench --bench short_cuts`.
 //!
-//! Draws ten rules of the library to half a pixel, 2048 pixels wide or high, with all short cuts and without
-//! one each. Rows are named by the rule and by the short cut left out. Rules that take none of a short cut's
-//! ways show the noise.
+//! Draws ten rules of the library to half a pixel, 2048 pixels wide or high, and a tree of one colour to a number
+//! of steps, with all short cuts and without one each. Rows are named by the rule and by the short cut left out.
+//! Rules that take none of a short cut's ways show the noise.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(
@@ -22,6 +22,7 @@ use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::model::Model;
 use kfrac::render::{self, Detail, Format, Options, ShortCut, Size};
+use kfrac::style::ColorBy;
 
 const RULES: [&str; 10] = [
     "dragon",
@@ -33,8 +34,11 @@ const RULES: [&str; 10] = [
     "self-seeding-square",
     "mandala",
     "quadric-koch-18",
-    "h-tree",
+    TREE,
 ];
+
+/// Tree of one colour.
+const TREE: &str = "h-tree";
 
 fn main() {
     divan::main();
@@ -58,7 +62,7 @@ fn cases() -> impl Iterator<Item = Case> {
         .flat_map(move |rule| left_out().map(move |it| Case(rule, it)))
 }
 
-fn graph(name: &str) -> (Graph, Options) {
+fn graph(name: &str) -> (Graph, u32, Options) {
     let catalogue = Catalogue::embedded();
     let source = catalogue.component(Shelf::RULES, name).unwrap();
     let document = Document::read(&source, &catalogue).unwrap();
@@ -73,17 +77,23 @@ fn graph(name: &str) -> (Graph, Options) {
         pixels: 0.5,
         decides_steps: true,
     });
+    let mut steps = 1000;
+    if name == TREE {
+        options.style.color_by = ColorBy::None;
+        options.detail = None;
+        steps = 20;
+    }
     options.threads = NonZero::new(2).unwrap();
-    (Graph::compile(&rule, 1000).unwrap(), options)
+    (Graph::compile(&rule, steps).unwrap(), steps, options)
 }
 
 #[divan::bench(args = cases(), sample_count = 5, sample_size = 1)]
 fn detailed(bencher: Bencher, Case(name, left_out): &Case) {
-    let (graph, mut options) = graph(name);
+    let (graph, steps, mut options) = graph(name);
     if let Some(left_out) = left_out {
         options.short_cuts = options.short_cuts.without(*left_out);
     }
     bencher.bench_local(|| {
-        render::write(&graph, &Growth::steps(1000), &options, &mut io::sink()).unwrap()
+        render::write(&graph, &Growth::steps(steps), &options, &mut io::sink()).unwrap()
     });
 }

@@ -9,6 +9,7 @@ mod forward;
 
 mod base_element;
 mod bounds;
+mod clip;
 mod corners;
 mod direction;
 mod frame;
@@ -27,6 +28,7 @@ pub use glam::{DAffine2, DMat2, DVec2, DVec3};
 pub use homothety::Homothety;
 pub use point::Point;
 
+pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;
 pub(crate) use homothety::exponent_of;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};

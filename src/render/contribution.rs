@@ -3,12 +3,10 @@
 use std::ops::RangeInclusive;
 
 use crate::graph::Object;
-use crate::grow::Subtree;
+use crate::grow::{Element, Subtree};
 
 use super::ShortCut;
 use super::scene::{Pass, Scene};
-use super::sketch::stands_alone;
-use super::sprites::Painted;
 
 /// Elements that a pass paints, as far as they are known before replacement. Elements without painted
 /// descendants are left out.
@@ -21,6 +19,41 @@ pub(super) struct ContributionMask {
     objects: Vec<Part>,
 }
 
+/// Selection of painted elements.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Painted {
+    All,
+    /// Elements born in some steps, from the first to the last.
+    Steps(u32, u32),
+    /// Elements whose objects are of a class.
+    Class(u64),
+}
+
+impl Painted {
+    /// Returns the selection with steps counted from `born`.
+    pub(super) fn since(self, born: u32) -> Self {
+        match self {
+            Self::Steps(first, last) => {
+                let [first, last] = [first, last].map(|step| step.saturating_sub(born));
+                Self::Steps(first, last)
+            }
+            painted => painted,
+        }
+    }
+
+    /// Returns whether an element is selected.
+    pub(super) fn has(self, scene: &Scene<'_>, element: &Element) -> bool {
+        match self {
+            Self::All => true,
+            Self::Steps(first, last) => (first..=last).contains(&element.born),
+            Self::Class(class) => {
+                let object = &scene.graph.objects()[element.object];
+                scene.classes.of_object(object) == Some(class)
+            }
+        }
+    }
+}
+
 /// Part of an object's descendants that is painted.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
@@ -31,7 +64,7 @@ enum Part {
 
 impl ContributionMask {
     pub(super) fn of(scene: &Scene<'_>, pass: Pass) -> Self {
-        let stands_alone = stands_alone(scene);
+        let stands_alone = scene.stands_alone();
         let class = match pass {
             Pass::Class(class) if stands_alone => Some(class),
             _ => None,

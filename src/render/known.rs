@@ -1,10 +1,12 @@
 //! Prepass without a walk: prepasses that the graph determines.
 
 use std::collections::BTreeSet;
+use std::convert::Infallible;
+use std::num::NonZero;
 
 use crate::geometry::{Bounds, Direction};
 use crate::graph::{Graph, Object, Replacement};
-use crate::grow::{Census, Growth};
+use crate::grow::{Census, Growth, WalkError};
 use crate::rule::Placement;
 use crate::style::{ColorBy, ColorProperty, Style};
 
@@ -20,6 +22,21 @@ const MOST_AGES: u32 = 256;
 const MOST_STEPS: u32 = 10_000;
 
 impl<'g> Prepass<'g> {
+    /// Makes the prepass of an approximant: from the graph if it determines everything, otherwise by a walk.
+    /// Colours that depend on steps span `steps` of them.
+    pub(crate) fn of(
+        graph: &'g Graph,
+        growth: &Growth<'_>,
+        style: &'g Style,
+        steps: u32,
+        threads: NonZero<usize>,
+    ) -> Result<Self, WalkError<Infallible>> {
+        match Self::known(graph, growth, style, steps) {
+            Some(known) => Ok(known),
+            None => Self::new(graph, style, steps).walked(growth, threads),
+        }
+    }
+
     /// Computes the prepass of an approximant from the graph, if that determines all of it; if the colour
     /// depends on steps, its classes span `steps` of them.
     pub(super) fn known(

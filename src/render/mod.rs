@@ -14,10 +14,10 @@
 //! Walks leave out subtrees that cannot be seen, outside a window or below a detail; and where colours distinguish
 //! steps, maps or generators, subtrees without elements of the class that is painted. None of this changes a
 //! pixel, and neither threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
-//! drawn as sprites, with small differences: see `sprites`.
+//! drawn as sprites, with small differences: see `png::sprites`. Whatever serves pixels alone lies in `png`, behind
+//! one method of surfaces.
 
 mod bands;
-mod batch;
 mod canvas;
 mod cells;
 mod census;
@@ -25,12 +25,14 @@ mod classes;
 mod contribution;
 mod culling;
 mod density;
+mod display;
+mod drawing;
 mod dxf;
 mod error;
 mod instanced;
 mod known;
 mod layout;
-mod level_of_detail;
+mod paint_key;
 mod painter;
 mod pdf;
 mod pixels;
@@ -40,7 +42,6 @@ mod prepass;
 mod scene;
 mod short_cuts;
 mod sketch;
-mod sprites;
 mod surface;
 mod svg;
 mod tracer;

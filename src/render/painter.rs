@@ -1,20 +1,16 @@
 //! Painter: joins the sketches of a walk's spans to paths, in order.
 
-use std::collections::BTreeSet;
 use std::io;
 
 use crate::grow::Seam;
-use crate::style::{Cap, Colour, Join, Width};
+use crate::style::Colour;
 
-use super::ShortCut;
-use super::batch::BatchBuilder;
-use super::contribution::ContributionMask;
-use super::level_of_detail::LevelOfDetail;
-use super::pen;
+use super::display::{Replay, Step};
+use super::paint_key::{Kind, PaintKey};
+use super::png::Raster;
 use super::scene::{Pass, Scene};
-use super::sketch::{Kind, Line, Mark, PaintKey, SPECK_WIDTHS, Sketch, class_width};
-use super::sprites::Sprites;
-use super::surface::{FINE, Paint, Pen, Position, SpritePaint, Stroke, Surface};
+use super::sketch::{Line, Mark, Sketch};
+use super::surface::{Position, Surface};
 use super::tracer::Tracer;
 
 /// Number of vertices after which the surface may hand on the drawn portion of a path.
@@ -65,127 +61,56 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         }
     }
 
-    /// Returns the simplified outlines, if the surface permits them.
-    pub(super) fn coarse(&self) -> Option<&'a LevelOfDetail> {
-        let is_taken = self.scene.short_cuts.has(ShortCut::LevelOfDetail);
-        let grain = self.tracer.grain().filter(|_| is_taken)?;
-        let coarse = || LevelOfDetail::of(self.scene.graph, grain);
-        self.scene.coarse.get_or_init(coarse).as_ref()
-    }
-
-    /// Returns whether closed base elements that are narrower than a pixel are stroked.
-    pub(super) fn broadens(&self) -> bool {
-        let paint = self.paint(PaintKey {
-            kind: Kind::Polygon,
-            ..PaintKey::TUFTS
-        });
-        paint.stroke.is_none() && self.tracer.broadens(&paint)
-    }
-
-    /// Creates the comb that makes tufts, if the surface permits them.
-    pub(super) fn comb(&self) -> Option<BatchBuilder> {
-        let Width::Relative(width) = self.scene.style.width else {
-            return None;
-        };
-        let stroke = self.paint(PaintKey::TUFTS).stroke?;
-        let below = self.tracer.tufts_below(&stroke);
-        let is_taken = self.scene.short_cuts.has(ShortCut::SegmentBatches);
-        (is_taken && below > 0.0).then(|| BatchBuilder::new(width, stroke.pen, below))
-    }
-
-    /// Creates the sprites of a pass, if every class is painted in one opaque colour, or in two of which that of
-    /// strokes lies on top.
-    pub(super) fn sprites(&mut self, pass: Pass, aim: &ContributionMask) -> Option<Sprites<'a>> {
-        if !Sprites::may_be(self.scene, pass) {
-            return None;
-        }
-        let Scene { classes, style, .. } = self.scene;
-        let kinds = self.kinds();
-        // Areas lie below the strokes of their own path only.
-        let is_one_path = kinds.len() == 1 && pass != Pass::Along && self.scene.has_one_width();
-        let most = if is_one_path { 2 } else { 1 };
-        let all = match pass {
-            Pass::Along => classes.all(),
-            Pass::Areas | Pass::Class(_) => 0..1,
-        };
-        let mut stencil: Option<SpritePaint> = None;
-        for class in all.rev() {
-            if pass == Pass::Along {
-                self.colour = classes.colour(class, style);
-            }
-            let mut inks = BTreeSet::new();
-            for &kind in &kinds {
-                let paint = self.paint(PaintKey {
-                    kind,
-                    ..PaintKey::TUFTS
-                });
-                let own = self.tracer.stencil(&paint)?;
-                stencil = Some(match stencil {
-                    None => own,
-                    Some(all) => SpritePaint {
-                        pen: all.pen.or(own.pen),
-                        outlines: all.outlines || own.outlines,
-                    },
-                });
-                let stroke = paint.stroke.map(|stroke| stroke.colour);
-                inks.extend([paint.fill, stroke].into_iter().flatten().map(Colour::rgba));
-            }
-            if inks.len() > most {
-                return None;
-            }
-        }
-        Sprites::new(self.scene, stencil?, aim.painted(self.scene, pass))
-    }
-
-    /// Returns the kinds of the paths that are drawn.
-    fn kinds(&self) -> Vec<Kind> {
-        let graph = self.scene.graph;
-        let drawn = graph.objects().iter().filter(|object| object.visible);
-        let is_closed = |base_element: usize| graph.base_elements()[base_element].is_closed();
-        let closed: BTreeSet<bool> = drawn.map(|object| is_closed(object.base_element)).collect();
-        let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
-        closed.into_iter().map(kind).collect()
-    }
-
     /// Ends the open path.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.end_path()
     }
 
-    /// Paints the next span of the walk.
+    /// Paints the next span of the walk. Elements that are marked as joined to the preceding one are so only if
+    /// they follow another one or `seam.joined` is set.
     pub(super) fn paint_span(&mut self, sketch: &Sketch, seam: Seam) -> io::Result<()> {
-        let mut points = sketch.points.as_slice();
-        let mut tufts = sketch.tufts.as_slice();
-        let mut sprites = sketch.sprites.as_slice();
+        let mut replay = sketch.replay();
         let mut joined = seam.joined;
-        for mark in &sketch.marks {
-            if let Mark::Tufts(count) = *mark {
-                let (now, rest) = tufts.split_at(count);
-                tufts = rest;
-                self.begin_path(PaintKey::TUFTS)?;
-                self.tracer.tufts(now);
-            }
-            if let Mark::Sprites { look, count } = *mark {
-                let (now, rest) = sprites.split_at(count);
-                sprites = rest;
-                self.begin_path(look)?;
-                self.tracer.sprites(now);
-            }
-            self.mark(mark, joined, &mut points)?;
+        while let Some(step) = replay.next() {
             // A class is not an element yet.
-            joined |= !matches!(mark, Mark::Class(_));
+            let is_class = matches!(step, Step::Other(Mark::Class(_)));
+            match step {
+                Step::Lines(ends) => self.lines(ends)?,
+                Step::Polygons(look, sides, vertices) => {
+                    (self.previous, self.is_first) = (None, false);
+                    self.begin_path(look)?;
+                    self.tracer.polygons(vertices, sides)?;
+                }
+                Step::Batches(batches) => {
+                    self.begin_path(PaintKey::of(Kind::Line))?;
+                    self.put(|raster| raster.batches(batches))?;
+                }
+                Step::Sprites(look, sprites) => {
+                    self.begin_path(look)?;
+                    self.put(|raster| raster.sprites(sprites))?;
+                }
+                Step::Other(mark) => self.mark(mark, joined, &mut replay)?,
+            }
+            joined |= !is_class;
         }
         Ok(())
     }
 
-    /// Paints a mark and the points that belong to it. Elements that are marked as joined to the preceding
-    /// one are so only if `joined` is set.
-    fn mark(&mut self, mark: &Mark, joined: bool, points: &mut &[Position]) -> io::Result<()> {
-        let mut next = || {
-            let (first, rest) = points.split_first().unwrap_or((&[0; 2], &[]));
-            *points = rest;
-            *first
-        };
+    /// Draws what takes no outline, regardless of the position of the pen.
+    fn put(&mut self, draw: impl FnOnce(&mut dyn Raster)) -> io::Result<()> {
+        if let Some(raster) = self.tracer.surface().raster() {
+            draw(raster);
+        }
+        self.hand_on()
+    }
+
+    /// Paints a mark and the points that belong to it.
+    fn mark(
+        &mut self,
+        mark: &Mark,
+        joined: bool,
+        points: &mut Replay<'_, Mark, PaintKey>,
+    ) -> io::Result<()> {
         match *mark {
             Mark::Begin => {
                 self.previous = None;
@@ -195,41 +120,23 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             }
             Mark::End(joined) => return self.end(joined),
             Mark::Class(class) => return self.come_to(class),
-            Mark::Lines(count) => {
-                let (lines, rest) = points.split_at(count.min(points.len()));
-                *points = rest;
-                return self.lines(lines);
-            }
-            Mark::Polygons {
-                look,
-                vertices,
-                count,
-            } => {
-                let (now, rest) = points.split_at((vertices * count).min(points.len()));
-                *points = rest;
-                self.previous = None;
-                self.is_first = false;
-                self.begin_path(look)?;
-                return self.tracer.polygons(now, vertices);
-            }
             Mark::Curve => {
-                let (a, b, end) = (next(), next(), next());
+                let [a, b, end] = [(); 3].map(|()| points.point());
                 self.tracer.curve_to(a, b, end);
                 self.reach(end);
                 return self.hand_on();
             }
-            Mark::Tufts(_) | Mark::Sprites { .. } => return self.hand_on(),
             Mark::Close { returned } => {
                 self.tracer.close(returned);
                 return self.tracer.hand_on();
             }
             Mark::Line(line) => {
                 let joined = joined && line.joined;
-                self.line(&Line { joined, ..line }, next())?;
+                self.line(&Line { joined, ..line }, points.point())?;
             }
             Mark::Area => {
-                let start = next();
-                self.begin_path(PaintKey::AREA)?;
+                let start = points.point();
+                self.begin_path(PaintKey::of(Kind::Area))?;
                 if self.is_first {
                     self.tracer.move_to(start);
                 } else {
@@ -237,14 +144,13 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
                 }
             }
             Mark::Polygon(look) => {
-                let start = next();
                 self.previous = None;
                 self.begin_path(look)?;
-                self.tracer.move_to(start);
+                self.tracer.move_to(points.point());
             }
             Mark::Skip { meets_frame } => {
                 self.previous = Some(Previous {
-                    end: next(),
+                    end: points.point(),
                     meets_frame,
                     drawn: false,
                 });
@@ -272,50 +178,9 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             return Ok(());
         }
         self.end_path()?;
-        let paint = self.paint(look);
-        self.tracer.begin(&paint)?;
+        self.tracer.begin(&look.paint(self.scene, self.colour))?;
         self.look = Some(look);
         Ok(())
-    }
-
-    fn paint(&self, look: PaintKey) -> Paint {
-        let style = self.scene.style;
-        let own = look.colour.or(self.colour);
-        let colour = own.unwrap_or(style.lines());
-        let mut pen = pen(style);
-        let differ =
-            matches!(style.width, Width::Relative(_)) || self.scene.graph.widest().is_some();
-        if differ {
-            pen.width = class_width(look.width) / FINE;
-        }
-        let stroke = |colour| Some(Stroke { colour, pen });
-        let (fill, stroke) = match look.kind {
-            Kind::Line => (None, stroke(colour)),
-            Kind::Ring => (style.fill, stroke(colour)),
-            Kind::Area => (style.fill, None),
-            Kind::Speck => {
-                let colour = own.unwrap_or(style.polygons());
-                let pen = Pen {
-                    width: f64::from(look.width) / SPECK_WIDTHS,
-                    cap: Cap::Round,
-                    join: Join::Round,
-                    dash: 0.0,
-                };
-                (Some(colour), Some(Stroke { colour, pen }))
-            }
-            Kind::Polygon => (
-                Some(own.unwrap_or(style.polygons())),
-                style
-                    .stroke
-                    .filter(|_| style.outlines_polygons())
-                    .and_then(stroke),
-            ),
-        };
-        Paint {
-            fill,
-            stroke,
-            has_holes: false,
-        }
     }
 
     fn end_path(&mut self) -> io::Result<()> {
@@ -385,7 +250,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     fn end(&mut self, joined: bool) -> io::Result<()> {
-        if self.look == Some(PaintKey::AREA) {
+        if self.look == Some(PaintKey::of(Kind::Area)) {
             self.tracer.close(false);
         } else if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
             && previous.drawn

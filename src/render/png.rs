@@ -2,24 +2,34 @@
 //! many vertices, are drawn as coverage by any thread; there may be millions of them. tiny-skia draws the
 //! rest.
 
+mod batch;
 mod buffers;
 mod chunk;
 mod coverage;
 mod encode;
 mod flat;
+mod level_of_detail;
+mod means;
 mod part;
+mod raster;
 mod region;
 mod ring;
 mod skia;
 mod split;
+mod sprites;
 mod stroker;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coverage::{RoundPen, Sprite, SpriteSheet, bounding_within, flattened_within};
+pub(super) use coverage::SegmentBatch;
 pub use encode::PngEncoding;
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
+pub(super) use level_of_detail::LevelOfDetail;
+pub(super) use means::Means;
+pub(super) use raster::PlacedSprite;
+pub(crate) use raster::Raster;
 pub(super) use split::ROWS as BAND_ROWS;
+pub(super) use sprites::{Put, USES};
 
 use std::convert::Infallible;
 use std::io::{self, Write};
@@ -30,16 +40,14 @@ pub(super) use tiny_skia::Pixmap;
 use crate::parallel::{Line, Team};
 use crate::style::Colour;
 
-use self::chunk::Chunk;
-use self::coverage::{HairPen, bounding, flattened, has_room};
+use self::chunk::{Chunk, Command};
+use self::coverage::{SpritePaint, bounding, flattened, has_room};
 use self::part::{Layers, Part};
 use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
 use super::Options;
-use super::surface::{
-    FINE, Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
-};
+use super::surface::{FINE, Paint, Position, Stroke, Surface};
 
 /// Deviation that outlines are permitted, in pixels: twice that of rounding.
 const GRAIN: f64 = 1.0 / FINE;
@@ -186,8 +194,9 @@ impl<'t, 'w> Png<'t, 'w> {
         match self.stroker {
             Some(Stroker::Flat(_)) => self
                 .chunk
+                .list
                 .lines(to.into_iter().inspect(|to| trail.go_to(*to))),
-            Some(_) => self.chunk.lines(to),
+            Some(_) => self.chunk.list.lines(to),
             None => {}
         }
     }
@@ -284,7 +293,7 @@ impl Surface for Png<'_, '_> {
     fn move_to(&mut self, to: Position) {
         self.trail = Trail::of(to);
         if self.stroker.is_some() {
-            self.chunk.start(to);
+            self.chunk.list.push_at(Command::Start, to);
         }
         if self.covers {
             self.end_ring();
@@ -329,7 +338,7 @@ impl Surface for Png<'_, '_> {
     fn close(&mut self) {
         self.stroke([self.trail.start]);
         if let Some(Stroker::Flat(_)) = self.stroker {
-            self.chunk.close();
+            self.chunk.list.push(Command::Close);
         }
         self.trail.at = self.trail.start;
         self.trail.is_open = false;
@@ -340,17 +349,6 @@ impl Surface for Png<'_, '_> {
         } else if self.is_outlined {
             self.outline.close(&mut self.part.pixmap);
         }
-    }
-
-    #[inline]
-    fn polygon(&mut self, vertices: &[Position]) -> bool {
-        if !self.covers || self.stroker.is_some() || !has_room(vertices) {
-            return false;
-        }
-        self.end_ring();
-        self.chunk.polygon(vertices);
-        self.hand_on_chunk();
-        true
     }
 
     #[inline]
@@ -365,7 +363,7 @@ impl Surface for Png<'_, '_> {
     #[inline]
     fn end(&mut self) -> io::Result<()> {
         if let Some(Stroker::Flat(_)) = self.stroker.take() {
-            self.chunk.end();
+            self.chunk.list.push(Command::End);
         }
         if self.covers {
             self.end_ring();
@@ -387,38 +385,8 @@ impl Surface for Png<'_, '_> {
         paint.fill.is_some_and(|fill| fill != fill.opaque())
     }
 
-    fn tufts_below(&self, stroke: &Stroke) -> f64 {
-        let is_plain = stroke.pen.dash == 0.0 && stroke.colour == stroke.colour.opaque();
-        if is_plain && self.part.may_cover() {
-            HairPen::TOO_WIDE
-        } else {
-            0.0
-        }
-    }
-
-    fn grain(&self) -> Option<f64> {
-        Some(GRAIN)
-    }
-
-    fn tufts(&mut self, tufts: &[SegmentBatch]) {
-        self.chunk.tufts(tufts);
-    }
-
-    fn stencil(&mut self, paint: &Paint) -> Option<SpritePaint> {
-        let pen = match paint.stroke.map(|stroke| self.strokers.stroker(stroke.pen)) {
-            None => None,
-            Some(Some(Stroker::Round(pen))) => Some(pen),
-            Some(Some(Stroker::Hair(_) | Stroker::Flat(_)) | None) => return None,
-        };
-        let stroke = paint.stroke.map(|stroke| stroke.colour);
-        let mut inks = [paint.fill, stroke].into_iter().flatten().peekable();
-        let draws = inks.peek().is_some() && inks.all(|ink| ink == ink.opaque());
-        let outlines = paint.fill.is_some() && pen.is_some();
-        (draws && self.part.may_cover()).then_some(SpritePaint { pen, outlines })
-    }
-
-    fn sprites(&mut self, sprites: &[PlacedSprite]) {
-        self.chunk.sprites(sprites);
+    fn raster(&mut self) -> Option<&mut dyn Raster> {
+        Some(self)
     }
 
     fn enter(&mut self, corner: [u32; 2], size: [u32; 2]) -> io::Result<bool> {
@@ -441,5 +409,48 @@ impl Surface for Png<'_, '_> {
             self.outline.move_to_rows(&self.part.rows());
         }
         Ok(())
+    }
+}
+
+impl Raster for Png<'_, '_> {
+    fn polygons(&mut self, vertices: &[Position], sides: usize) -> usize {
+        if !self.covers || self.stroker.is_some() {
+            return 0;
+        }
+        self.end_ring();
+        let polygons = vertices.chunks_exact(sides);
+        let covered = polygons.take_while(|polygon| has_room(polygon));
+        covered
+            .map(|polygon| {
+                self.chunk.polygon(polygon);
+                self.hand_on_chunk();
+            })
+            .count()
+    }
+
+    fn takes_batches(&self, paint: &Paint) -> bool {
+        let is_plain = |Stroke { colour, pen }| pen.dash == 0.0 && colour == colour.opaque();
+        paint.stroke.is_some_and(is_plain) && self.part.may_cover()
+    }
+
+    fn batches(&mut self, batches: &[SegmentBatch]) {
+        self.chunk.list.batches(batches.iter().copied());
+    }
+
+    fn sprite_paint(&mut self, paint: &Paint) -> Option<SpritePaint> {
+        let pen = match paint.stroke.map(|stroke| self.strokers.stroker(stroke.pen)) {
+            None => None,
+            Some(Some(Stroker::Round(pen))) => Some(pen),
+            Some(Some(Stroker::Hair(_) | Stroker::Flat(_)) | None) => return None,
+        };
+        let stroke = paint.stroke.map(|stroke| stroke.colour);
+        let mut inks = [paint.fill, stroke].into_iter().flatten();
+        let outlines = paint.fill.is_some() && pen.is_some();
+        let is_opaque = inks.all(|ink| ink == ink.opaque());
+        (is_opaque && self.part.may_cover()).then_some(SpritePaint { pen, outlines })
+    }
+
+    fn sprites(&mut self, sprites: &[PlacedSprite]) {
+        self.chunk.list.sprites((), sprites);
     }
 }

@@ -29,7 +29,7 @@ pub enum ShortCut {
     Contribution,
     /// Outlines lose the vertices that do not show.
     LevelOfDetail,
-    /// Short thin lines close to each other are drawn as one box.
+    /// Short thin lines of relative width that lie close to each other are drawn as one box.
     SegmentBatches,
     /// Congruent runs of elements share a sprite.
     RunSprites,

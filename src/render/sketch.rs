@@ -8,8 +8,7 @@ mod runs;
 mod speck;
 mod visit;
 
-pub(super) use mark::{Kind, Line, Mark, PaintKey, Sketch, class_width, width_class};
-pub(super) use speck::SPECK_WIDTHS;
+pub(super) use mark::{Line, Mark, Sketch};
 
 use std::sync::Arc;
 
@@ -18,11 +17,11 @@ use crate::grow::{Element, FractalInfo};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, Colour, Width};
 
-use super::batch::BatchBuilder;
 use super::contribution::ContributionMask;
-use super::level_of_detail::LevelOfDetail;
+use super::display::Command;
+use super::paint_key::{Kind, PaintKey, width_class};
+use super::png::Means;
 use super::scene::{Pass, Scene};
-use super::sprites::Sprites;
 use super::surface::{FINE, Position, position};
 
 /// Returns the vertices of a closed outline after the first, if it has no curves. Its last line leads to its
@@ -42,38 +41,15 @@ fn meets_frame(base_element: &BaseElement, reversed: bool) -> [bool; 2] {
     if reversed { [end, start] } else { [start, end] }
 }
 
-/// Returns whether no line leads to the end of an element that a pass does not paint.
-pub(super) fn stands_alone(scene: &Scene<'_>) -> bool {
-    let graph = scene.graph;
-    let mut drawn = graph.objects().iter().filter(|object| object.visible);
-    !graph.joins()
-        || drawn.all(|object| {
-            let base_element = &graph.base_elements()[object.base_element];
-            base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
-        })
-}
-
-/// Means to shorten a pass, each if the surface permits it.
-#[derive(Clone)]
-pub(super) struct Means<'a> {
-    /// Comb that makes tufts.
-    pub(super) comb: Option<Arc<BatchBuilder>>,
-    /// Simplified outlines.
-    pub(super) coarse: Option<&'a LevelOfDetail>,
-    /// Whether closed base elements that are narrower than a pixel are stroked.
-    pub(super) broadens: bool,
-    /// Sprites of congruent runs and colonies.
-    pub(super) sprites: Option<Arc<Sprites<'a>>>,
-    /// Contribution mask of the pass.
-    pub(super) aim: Arc<ContributionMask>,
-}
-
 /// Sketches the spans of a pass.
 pub(super) struct Sketcher<'a> {
     scene: &'a Scene<'a>,
     pass: Pass,
     fractal: FractalInfo,
     pub(super) sketch: Sketch,
+    mask: Arc<ContributionMask>,
+    /// Whether closed base elements that are narrower than a pixel are stroked.
+    broadens: bool,
     means: Means<'a>,
     /// Current class of the sketch, if it holds all classes.
     class: Option<u64>,
@@ -84,12 +60,20 @@ pub(super) struct Sketcher<'a> {
 }
 
 impl<'a> Sketcher<'a> {
-    pub(super) fn new(scene: &'a Scene<'a>, pass: Pass, means: Means<'a>) -> Self {
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        pass: Pass,
+        mask: Arc<ContributionMask>,
+        broadens: bool,
+        means: Means<'a>,
+    ) -> Self {
         Self {
             scene,
             pass,
             fractal: FractalInfo::default(),
             sketch: Sketch::default(),
+            mask,
+            broadens,
             means,
             class: None,
             open: None,
@@ -99,10 +83,7 @@ impl<'a> Sketcher<'a> {
 
     /// Begins the next sketch.
     pub(super) fn clear(&mut self) {
-        self.sketch.marks.clear();
-        self.sketch.points.clear();
-        self.sketch.tufts.clear();
-        self.sketch.sprites.clear();
+        self.sketch.clear();
         self.class = None;
         self.open = None;
     }
@@ -115,19 +96,19 @@ impl<'a> Sketcher<'a> {
     /// Adds a mark that continues nothing.
     fn mark(&mut self, mark: Mark) {
         self.open = None;
-        self.sketch.marks.push(mark);
+        self.sketch.push(mark);
     }
 
     /// Adds a mark of an element that is not drawn. Only the last of successive ones matters.
     fn pass_by(&mut self, mark: Mark) {
-        if let Some(Mark::Skip { .. }) = self.sketch.marks.last() {
+        let last = self.sketch.commands.last();
+        if let Some(Command::Other(Mark::Skip { .. })) = last {
             self.sketch.points.pop();
         }
-        if let Some(last @ (Mark::Skip { .. } | Mark::Break)) = self.sketch.marks.last_mut() {
-            *last = mark;
-        } else {
-            self.mark(mark);
+        if let Some(Command::Other(Mark::Skip { .. } | Mark::Break)) = last {
+            self.sketch.commands.pop();
         }
+        self.mark(mark);
     }
 
     /// Declares the class of the following elements.
@@ -151,12 +132,7 @@ impl<'a> Sketcher<'a> {
 
     #[inline]
     fn go_to(&mut self, end: Position) {
-        self.sketch.points.push(end);
-        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
-            *count += 1;
-        } else {
-            self.sketch.marks.push(Mark::Lines(1));
-        }
+        self.sketch.lines([end]);
     }
 
     #[inline]
@@ -164,7 +140,7 @@ impl<'a> Sketcher<'a> {
         match *piece {
             Piece::Line(end) => self.line_to(end),
             Piece::Cubic(a, b, end) => {
-                self.sketch.marks.push(Mark::Curve);
+                self.sketch.push(Mark::Curve);
                 [a, b, end]
                     .into_iter()
                     .for_each(|point| self.start_at(point));
@@ -180,7 +156,7 @@ impl<'a> Sketcher<'a> {
             0
         };
         let map = *element.frame.map();
-        let narrow = self.means.broadens.then(|| {
+        let narrow = self.broadens.then(|| {
             let map = self.scene.canvas.map(&map);
             speck::width(base_element, &map)
         });
@@ -196,24 +172,23 @@ impl<'a> Sketcher<'a> {
         // All polygons have one orientation, so that overlaps stay filled under the nonzero rule.
         let mirrored = map.matrix2.determinant() < 0.0;
         if let Some(corners) = self.corners(element) {
-            self.polygon_of(look, corners.len());
             let map = self.scene.canvas.map(&map);
             let place = |corner: &DVec2| position(map.transform_point2(*corner) * FINE);
+            let points = self.vertices(look, corners.len());
             if mirrored {
-                self.sketch.points.extend(corners.iter().rev().map(place));
+                points.extend(corners.iter().rev().map(place));
             } else {
-                self.sketch.points.extend(corners.iter().map(place));
+                points.extend(corners.iter().map(place));
             }
             return;
         }
         let backwards = (base_element.signed_area() < 0.0) != mirrored;
         let (start, pieces) = base_element.outline(backwards);
         if let Some(vertices) = vertices(pieces) {
-            self.polygon_of(look, pieces.len());
-            [start]
-                .into_iter()
-                .chain(vertices)
-                .for_each(|vertex| self.start_at(map.transform_point2(vertex)));
+            let canvas = self.scene.canvas;
+            let place = |vertex| position(canvas.pixel(map.transform_point2(vertex)) * FINE);
+            let vertices = [start].into_iter().chain(vertices).map(place);
+            self.vertices(look, pieces.len()).extend(vertices);
             return;
         }
         self.mark(Mark::Polygon(look));
@@ -225,30 +200,21 @@ impl<'a> Sketcher<'a> {
         self.mark(Mark::Close { returned });
     }
 
+    /// Adds a polygon of `sides` vertices, which the caller adds.
+    #[inline]
+    fn vertices(&mut self, look: PaintKey, sides: usize) -> &mut Vec<Position> {
+        self.open = None;
+        self.sketch.polygon(look, sides)
+    }
+
     /// Returns the corners of the simplified outline of an element, in its unit frame, if it is simplified.
     fn corners(&self, element: &Element) -> Option<&'a [DVec2]> {
         let Scene { graph, canvas, .. } = self.scene;
         let object = &graph.objects()[element.object];
         let pixels = element.frame.stretch() * canvas.scale();
-        let coarse = self.means.coarse?;
-        coarse.corners(graph, object.base_element, pixels)
-    }
-
-    /// Adds a polygon of `sides` vertices.
-    #[inline]
-    fn polygon_of(&mut self, look: PaintKey, sides: usize) {
-        match self.sketch.marks.last_mut() {
-            Some(Mark::Polygons {
-                look: last,
-                vertices,
-                count,
-            }) if *last == look && *vertices == sides => *count += 1,
-            _ => self.mark(Mark::Polygons {
-                look,
-                vertices: sides,
-                count: 1,
-            }),
-        }
+        self.means
+            .outlines?
+            .corners(graph, object.base_element, pixels)
     }
 
     /// Continues the outline of a filled fractal, whether it is visible there or not.
@@ -261,7 +227,7 @@ impl<'a> Sketcher<'a> {
         } else {
             self.mark(Mark::Area);
             self.start_at(start);
-            self.open = Some(self.sketch.marks.len() - 1);
+            self.open = Some(self.sketch.commands.len() - 1);
         }
         for piece in pieces {
             self.piece(&piece.transformed(&map));
@@ -279,9 +245,9 @@ impl<'a> Sketcher<'a> {
         let [meets_start, meets_end] = meets_frame(base_element, reversed);
         let (start, pieces) = base_element.outline(reversed);
         let start = self.position(map.transform_point2(start));
-        let open = self.open.map(|open| &mut self.sketch.marks[open]);
+        let open = self.open.map(|open| &mut self.sketch.commands[open]);
         match open {
-            Some(Mark::Line(line)) if element.joined && line.look == look => {
+            Some(Command::Other(Mark::Line(line))) if element.joined && line.look == look => {
                 let shares = line.meets_frame[1] && meets_start;
                 line.meets_frame[1] = meets_end;
                 if !shares {
@@ -294,7 +260,7 @@ impl<'a> Sketcher<'a> {
                     joined: element.joined,
                     meets_frame: [meets_start, meets_end],
                 }));
-                self.open = Some(self.sketch.marks.len() - 1);
+                self.open = Some(self.sketch.commands.len() - 1);
                 self.sketch.points.push(start);
             }
         }

@@ -1,12 +1,11 @@
 //! Surfaces: the interface between drawing and the formats of pictures.
 
 use std::io;
-use std::sync::Arc;
 
 use crate::geometry::DVec2;
 use crate::style::{Cap, Colour, Join};
 
-use super::png::{RoundPen, Sprite};
+use super::png::Raster;
 
 /// Position on a picture, in hundredths of a pixel from the upper left corner, with y down.
 ///
@@ -79,35 +78,6 @@ impl Pen {
     }
 }
 
-/// Thin lines close to each other, drawn as one box that is no larger than a pixel.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SegmentBatch {
-    /// Twice its centre, in hundredths of a pixel.
-    pub(crate) middle: [i32; 2],
-    /// Width and height, in hundredths of a pixel.
-    pub(crate) extent: [u32; 2],
-    /// Area of the lines, in pixels.
-    pub(crate) area: f32,
-    /// Width of the lines, in pixels.
-    pub(crate) width: f32,
-}
-
-/// Sprite, and the pixel on which it is put.
-#[derive(Clone, Debug)]
-pub(crate) struct PlacedSprite {
-    pub(crate) sprite: Arc<Sprite>,
-    pub(crate) pixel: [i64; 2],
-}
-
-/// Means by which sprites are drawn: shapes are filled, and lines are drawn with the pen.
-#[derive(Clone)]
-pub(crate) struct SpritePaint {
-    /// Pen of lines and outlines.
-    pub(crate) pen: Option<Arc<RoundPen>>,
-    /// Whether shapes are outlined.
-    pub(crate) outlines: bool,
-}
-
 /// Destination of drawings: a format of pictures.
 ///
 /// Paths follow one another, each between [`Surface::begin`] and [`Surface::end`]; later ones lie on top.
@@ -130,21 +100,10 @@ pub(crate) trait Surface {
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.
     fn close(&mut self);
-    /// Draws a polygon as a subpath of its own, if the surface has a short way to do so. Its vertices may be
-    /// equal. Returns whether it is drawn.
-    fn polygon(&mut self, _: &[Position]) -> bool {
-        false
-    }
     /// Hands on the drawn portion of the path, if it is large.
     fn hand_on(&mut self) -> io::Result<()>;
     /// Ends the path.
     fn end(&mut self) -> io::Result<()>;
-
-    /// Returns the distance, in pixels, by which outlines may deviate invisibly; `None` if they must be
-    /// exact.
-    fn grain(&self) -> Option<f64> {
-        None
-    }
 
     /// Returns whether areas with this paint that are narrower than a pixel are to be stroked to a width of
     /// one pixel, so that they are visible. `false` if the surface ensures that itself, or draws no areas.
@@ -152,20 +111,11 @@ pub(crate) trait Surface {
         false
     }
 
-    /// Returns the width, in pixels, below which short strokes may be drawn as tufts; 0 unless overridden.
-    fn tufts_below(&self, _: &Stroke) -> f64 {
-        0.0
-    }
-    /// Draws tufts, within a path whose stroke permits them.
-    fn tufts(&mut self, _: &[SegmentBatch]) {}
-
-    /// Returns the stencil of sprites that may be put in paths with this paint, if the surface permits them.
-    /// Pixels that they cover repeatedly are covered once.
-    fn stencil(&mut self, _: &Paint) -> Option<SpritePaint> {
+    /// Returns the surface as one of pixels, which are drawn with less work than paths take; `None` unless
+    /// overridden.
+    fn raster(&mut self) -> Option<&mut dyn Raster> {
         None
     }
-    /// Draws sprites, within a path whose paint permits them.
-    fn sprites(&mut self, _: &[PlacedSprite]) {}
 
     /// Begins a part of the picture: a window with corner and size in pixels. Positions are relative to it,
     /// and nothing is drawn outside. Returns whether any of it is visible; otherwise the part does not begin.

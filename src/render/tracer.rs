@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::render::surface::{
-    Paint, PlacedSprite, Position, SegmentBatch, SpritePaint, Stroke, Surface,
-};
+use crate::render::surface::{Paint, Position, Surface};
 
 /// Traces paths onto a surface. Redundant vertices are left out; a subpath without length becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {
@@ -28,6 +26,11 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
             has_length: false,
             open: false,
         }
+    }
+
+    /// Returns the surface.
+    pub(crate) fn surface(&mut self) -> &mut S {
+        self.surface
     }
 
     /// Begins a path.
@@ -76,20 +79,21 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
     }
 
     /// Draws polygons of `sides` vertices each.
-    pub(crate) fn polygons(&mut self, vertices: &[Position], sides: usize) -> io::Result<()> {
+    pub(crate) fn polygons(&mut self, mut vertices: &[Position], sides: usize) -> io::Result<()> {
         self.finish();
-        for polygon in vertices.chunks_exact(sides) {
-            if self.surface.polygon(polygon) {
-                continue;
-            }
-            if let Some((&start, rest)) = polygon.split_first() {
-                self.move_to(start);
-                rest.iter().for_each(|&vertex| self.line_to(vertex));
-                self.close(false);
-            }
+        loop {
+            let raster = self.surface.raster();
+            let drawn = raster.map_or(0, |raster| raster.polygons(vertices, sides));
+            vertices = &vertices[drawn * sides..];
+            let Some((polygon, rest)) = vertices.split_at_checked(sides.max(1)) else {
+                return self.surface.hand_on();
+            };
+            self.move_to(polygon[0]);
+            polygon[1..].iter().for_each(|&vertex| self.line_to(vertex));
+            self.close(false);
             self.surface.hand_on()?;
+            vertices = rest;
         }
-        self.surface.hand_on()
     }
 
     /// Closes the subpath. `returned` states that its last vertex equals its first, which is then not drawn
@@ -128,36 +132,6 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         self.surface.line_to(to);
         self.pen = to;
         self.has_length = true;
-    }
-
-    /// Returns [`Surface::grain`].
-    pub(crate) fn grain(&self) -> Option<f64> {
-        self.surface.grain()
-    }
-
-    /// Returns [`Surface::broadens`].
-    pub(crate) fn broadens(&self, paint: &Paint) -> bool {
-        self.surface.broadens(paint)
-    }
-
-    /// Returns [`Surface::tufts_below`].
-    pub(crate) fn tufts_below(&self, stroke: &Stroke) -> f64 {
-        self.surface.tufts_below(stroke)
-    }
-
-    /// Draws tufts, regardless of the position of the pen.
-    pub(crate) fn tufts(&mut self, tufts: &[SegmentBatch]) {
-        self.surface.tufts(tufts);
-    }
-
-    /// Returns [`Surface::stencil`].
-    pub(crate) fn stencil(&mut self, paint: &Paint) -> Option<SpritePaint> {
-        self.surface.stencil(paint)
-    }
-
-    /// Draws sprites, regardless of the position of the pen.
-    pub(crate) fn sprites(&mut self, sprites: &[PlacedSprite]) {
-        self.surface.sprites(sprites);
     }
 
     /// Hands on the drawn portion of the path, if it is large.

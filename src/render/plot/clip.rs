@@ -1,6 +1,6 @@
 //! Clipping of lines to windows, and flattening of curves.
 
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, clip};
 use crate::render::surface::Position;
 
 /// Largest distance of a chord from its curve: 0.05 units of the picture.
@@ -41,7 +41,7 @@ impl Window {
         [0, 1].map(|axis| self.origin[axis].saturating_add(position[axis]))
     }
 
-    /// Clips a line to the window (Liang & Barsky 1984); `None` if it lies outside. Ends inside the window are
+    /// Clips a line to the window; `None` if it lies outside. Ends inside the window are
     /// not changed.
     pub(super) fn clip(&self, [from, to]: [Position; 2]) -> Option<[Position; 2]> {
         let holds = |at: Position| {
@@ -50,31 +50,17 @@ impl Window {
         if holds(from) && holds(to) {
             return Some([from, to]);
         }
-        let (mut enter, mut leave) = (0.0, 1.0);
         let start = vector(from);
         let along = vector(to) - start;
-        for axis in 0..2 {
-            let [low, high] = [self.low, self.high].map(vector);
-            if along[axis] == 0.0 {
-                if start[axis] < low[axis] || start[axis] > high[axis] {
-                    return None;
-                }
-                continue;
-            }
-            let [a, b] = [low, high].map(|edge| (edge[axis] - start[axis]) / along[axis]);
-            enter = f64::max(enter, a.min(b));
-            leave = f64::min(leave, a.max(b));
-        }
+        let [enter, leave] = clip(start, along, vector(self.low), vector(self.high))?;
         let at = |part: f64| {
             let inside = nearest(start + along * part);
             [0, 1].map(|axis| inside[axis].clamp(self.low[axis], self.high[axis]))
         };
-        (enter <= leave).then(|| {
-            [
-                if enter > 0.0 { at(enter) } else { from },
-                if leave < 1.0 { at(leave) } else { to },
-            ]
-        })
+        Some([
+            if enter > 0.0 { at(enter) } else { from },
+            if leave < 1.0 { at(leave) } else { to },
+        ])
     }
 }
 

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::parallel::is_cut_short;
-use crate::render::surface::{PlacedSprite, Position, SegmentBatch};
+use crate::render::display::{self, DisplayList, Step};
+use crate::render::surface::Position;
 
 use super::coverage::CoverageBuffer;
 use super::part::Layers;
@@ -13,7 +14,8 @@ use super::stroker::{Hand, Stroker, Trail};
 /// Approximate number of commands or positions of a chunk.
 const MANY: usize = 1 << 14;
 
-enum Command {
+/// Command of a chunk.
+pub(super) enum Command {
     /// Stroker of the following lines.
     Stroker(Stroker),
     /// Beginning of a subpath, at a position.
@@ -23,120 +25,50 @@ enum Command {
     /// Closing or end of a subpath.
     Close,
     End,
-    /// Number of lines, each to a position.
-    Lines(usize),
-    /// Polygons with equal numbers of vertices.
-    Polygons {
-        vertices: usize,
-        count: usize,
-    },
     /// Rows of a region, from the first to the last.
     Region(Arc<Region>, [i64; 2]),
-    /// Number of tufts.
-    Tufts(usize),
-    /// Number of sprites.
-    Sprites(usize),
 }
 
-/// Commands with their operands.
+/// Shapes to be covered.
 #[derive(Default)]
 pub(super) struct Chunk {
     /// Coverage buffers on which the chunk is drawn, once assigned.
     planes: Layers,
-    commands: Vec<Command>,
-    points: Vec<Position>,
-    tufts: Vec<SegmentBatch>,
-    sprites: Vec<PlacedSprite>,
+    pub(super) list: DisplayList<Command, ()>,
 }
 
 impl Chunk {
     pub(super) fn is_empty(&self) -> bool {
-        self.commands.is_empty()
+        self.list.commands.is_empty()
     }
 
     pub(super) fn is_full(&self) -> bool {
-        let most = self.commands.len().max(self.points.len());
-        let apart = self.tufts.len().max(self.sprites.len());
-        most.max(apart) >= MANY || is_cut_short()
-    }
-
-    /// Returns the number of positions.
-    #[cfg(test)]
-    pub(super) fn positions(&self) -> usize {
-        self.points.len()
+        self.list.size() >= MANY || is_cut_short()
     }
 
     #[inline]
     pub(super) fn stroker(&mut self, stroker: Stroker) {
-        self.commands.push(Command::Stroker(stroker));
-    }
-
-    #[inline]
-    pub(super) fn start(&mut self, at: Position) {
-        self.commands.push(Command::Start);
-        self.points.push(at);
-    }
-
-    #[inline]
-    pub(super) fn lines(&mut self, to: impl IntoIterator<Item = Position>) {
-        let before = self.points.len();
-        self.points.extend(to);
-        let count = self.points.len() - before;
-        if let Some(Command::Lines(lines)) = self.commands.last_mut() {
-            *lines += count;
-        } else {
-            self.commands.push(Command::Lines(count));
-        }
-    }
-
-    /// Closes a subpath of lines.
-    pub(super) fn close(&mut self) {
-        self.commands.push(Command::Close);
-    }
-
-    /// Ends a subpath of lines.
-    pub(super) fn end(&mut self) {
-        self.commands.push(Command::End);
+        self.list.push(Command::Stroker(stroker));
     }
 
     /// Adds a polygon that [`CoverageBuffer::shape`] covers.
+    #[inline]
     pub(super) fn polygon(&mut self, polygon: &[Position]) {
-        self.points.extend_from_slice(polygon);
-        let sides = polygon.len();
-        match self.commands.last_mut() {
-            Some(Command::Polygons { vertices, count }) if *vertices == sides => *count += 1,
-            _ => self.commands.push(Command::Polygons {
-                vertices: sides,
-                count: 1,
-            }),
-        }
-    }
-
-    /// Adds some rows of a region.
-    pub(super) fn region(&mut self, region: Arc<Region>, rows: [i64; 2]) {
-        self.commands.push(Command::Region(region, rows));
-    }
-
-    pub(super) fn tufts(&mut self, tufts: &[SegmentBatch]) {
-        self.tufts.extend_from_slice(tufts);
-        self.commands.push(Command::Tufts(tufts.len()));
-    }
-
-    pub(super) fn sprites(&mut self, sprites: &[PlacedSprite]) {
-        self.sprites.extend_from_slice(sprites);
-        self.commands.push(Command::Sprites(sprites.len()));
+        let points = self.list.polygon((), polygon.len());
+        points.extend_from_slice(polygon);
     }
 
     /// Makes `next` continue the current subpath with a stroker.
     pub(super) fn lead_to(&mut self, next: &mut Self, stroker: Stroker, trail: &Trail) {
         let is_flat = matches!(stroker, Stroker::Flat(_));
         next.stroker(stroker);
-        if let (Some(Command::Start), false) = (self.commands.last(), is_flat) {
-            self.commands.pop();
-            self.points.pop();
-            next.start(trail.at);
+        let last = self.list.commands.last();
+        if let (Some(display::Command::Other(Command::Start)), false) = (last, is_flat) {
+            self.list.commands.pop();
+            self.list.points.pop();
+            next.list.push_at(Command::Start, trail.at);
         } else {
-            next.commands.push(Command::GoOn(Box::new(*trail)));
+            next.list.push(Command::GoOn(Box::new(*trail)));
         }
     }
 
@@ -154,77 +86,56 @@ impl Chunk {
             }),
             [None, _] => {}
         }
-        self.commands.clear();
-        self.points.clear();
-        self.tufts.clear();
-        self.sprites.clear();
+        self.list.clear();
     }
 
     fn cover_on(&self, plane: &mut CoverageBuffer, mut strokes: Option<&mut CoverageBuffer>) {
-        let (mut points, mut tufts) = (self.points.as_slice(), self.tufts.as_slice());
-        let mut sprites = self.sprites.as_slice();
-        let mut next = |count: usize| {
-            let (next, rest) = points.split_at(count.min(points.len()));
-            points = rest;
-            next
-        };
-        let (mut hand, mut at) = (None, [0; 2]);
-        for command in &self.commands {
+        let (mut hand, mut at) = (None::<Hand>, [0; 2]);
+        let mut replay = self.list.replay();
+        while let Some(step) = replay.next() {
             let over = strokes.as_deref_mut().unwrap_or(&mut *plane);
-            match command {
-                Command::Stroker(next) => hand = Some(Hand::of(next, over.picture())),
-                Command::Start => {
-                    at = next(1).first().copied().unwrap_or(at);
-                    if let Some(hand) = &mut hand {
-                        hand.start(over, at);
-                    }
-                }
-                Command::GoOn(trail) => {
-                    at = trail.at;
-                    if let Some(hand) = &mut hand {
-                        hand.go_on(over, trail);
-                    }
-                }
-                Command::Lines(count) => {
-                    let lines = next(*count);
-                    if let Some(hand) = &mut hand {
+            match (step, &mut hand) {
+                (Step::Lines(lines), hand) => {
+                    if let Some(hand) = hand {
                         hand.lines(over, at, lines);
                     }
                     at = lines.last().copied().unwrap_or(at);
                 }
-                Command::Close => {
-                    if let Some(hand) = &mut hand {
-                        hand.close(over);
-                    }
-                }
-                Command::End => {
-                    if let Some(hand) = &mut hand {
-                        hand.end(over);
-                    }
-                }
-                Command::Polygons { vertices, count } => {
-                    for polygon in next(vertices * count).chunks_exact(*vertices) {
+                (Step::Polygons((), sides, vertices), _) => {
+                    for polygon in vertices.chunks_exact(sides) {
                         plane.shape(polygon);
                     }
                 }
-                Command::Region(region, rows) => region.cover(plane, *rows),
-                Command::Tufts(count) => {
-                    let (now, rest) = tufts.split_at(*count);
-                    now.iter().for_each(|tuft| {
-                        plane.tuft(tuft.middle, tuft.extent, tuft.area, tuft.width)
-                    });
-                    tufts = rest;
+                (Step::Batches(batches), _) => {
+                    batches.iter().for_each(|batch| plane.batch(batch));
                 }
-                Command::Sprites(count) => {
-                    let (now, rest) = sprites.split_at(*count);
-                    for PlacedSprite { sprite, pixel } in now {
-                        over.sprite(&sprite.strokes, *pixel);
+                (Step::Sprites((), sprites), _) => {
+                    for placed in sprites {
+                        over.sprite(&placed.sprite.strokes, placed.pixel);
                     }
-                    for PlacedSprite { sprite, pixel } in now {
-                        plane.sprite(&sprite.areas, *pixel);
+                    for placed in sprites {
+                        plane.sprite(&placed.sprite.areas, placed.pixel);
                     }
-                    sprites = rest;
                 }
+                (Step::Other(Command::Stroker(next)), hand) => {
+                    *hand = Some(Hand::of(next, over.picture()));
+                }
+                (Step::Other(Command::Region(region, rows)), _) => region.cover(plane, *rows),
+                (Step::Other(Command::Start), hand) => {
+                    at = replay.point();
+                    if let Some(hand) = hand {
+                        hand.start(over, at);
+                    }
+                }
+                (Step::Other(Command::GoOn(trail)), hand) => {
+                    at = trail.at;
+                    if let Some(hand) = hand {
+                        hand.go_on(over, trail);
+                    }
+                }
+                (Step::Other(Command::Close), Some(hand)) => hand.close(over),
+                (Step::Other(Command::End), Some(hand)) => hand.end(over),
+                (Step::Other(Command::Close | Command::End), None) => {}
             }
         }
     }

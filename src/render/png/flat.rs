@@ -1,5 +1,6 @@
 //! Strokes with corners and flat ends, drawn as a polygon for every line, corner and end.
 
+use crate::geometry::{DVec2, clip};
 use crate::render::surface::{FINE, Pen, Position};
 use crate::style::{Cap, Join};
 
@@ -41,13 +42,13 @@ impl FlatPen {
 pub(super) struct FlatStroke {
     pen: FlatPen,
     /// Minimum and maximum of the positions that may be visible.
-    seen: [[f64; 2]; 2],
+    seen: [DVec2; 2],
     /// Rounded offsets of the two sides of horizontal and vertical lines from the centre line.
     sides: [i64; 2],
     start: Position,
     at: Position,
     /// Directions of the first and the last line of the subpath.
-    directions: Option<[[f64; 2]; 2]>,
+    directions: Option<[DVec2; 2]>,
     /// Whether a subpath has begun that is neither closed nor ended.
     is_open: bool,
 }
@@ -59,8 +60,11 @@ impl FlatStroke {
         let beyond = 4.0 * pen.half + PIECE * FINE;
         Self {
             pen,
-            seen: [[-beyond; 2], size.map(|side| side as f64 * FINE + beyond)],
-            sides: [-pen.half, pen.half].map(|side| rounded([side; 2])[0]),
+            seen: [
+                DVec2::splat(-beyond),
+                DVec2::from_array(size.map(|side| side as f64 * FINE + beyond)),
+            ],
+            sides: [-pen.half, pen.half].map(|side| rounded(DVec2::splat(side))[0]),
             start: [0; 2],
             at: [0; 2],
             directions: None,
@@ -118,17 +122,16 @@ impl FlatStroke {
         if !std::mem::take(&mut self.is_open) {
             return;
         }
-        let dot = [[-1.0, 0.0], [1.0, 0.0]];
         let [back, on] = match self.directions {
-            Some([first, last]) => [first.map(|part| -part), last],
-            None => dot,
+            Some([first, last]) => [-first, last],
+            None => [DVec2::NEG_X, DVec2::X],
         };
         self.cap(self.start, back, plane);
         self.cap(self.at, on, plane);
     }
 
     /// Draws a line without its ends, in pieces of limited length.
-    fn piece(&self, from: Position, to: Position, direction: [f64; 2], plane: &mut CoverageBuffer) {
+    fn piece(&self, from: Position, to: Position, direction: DVec2, plane: &mut CoverageBuffer) {
         if let Some(axis) = (0..2).find(|&axis| from[axis] == to[axis]) {
             let mut least = [0, 1].map(|axis| from[axis].min(to[axis]));
             let mut most = [0, 1].map(|axis| from[axis].max(to[axis]));
@@ -138,53 +141,32 @@ impl FlatStroke {
                 return;
             }
         }
-        let across = [-direction[1], direction[0]].map(|part| part * self.pen.half);
+        let across = direction.perp() * self.pen.half;
         let [start, end] = [from, to].map(point);
-        let along = sub(end, start);
-        let Some([first, last]) = self.seen_part(start, along) else {
+        let along = end - start;
+        let Some([first, last]) = clip(start, along, self.seen[0], self.seen[1]) else {
             return;
         };
-        let length = f64::hypot(along[0], along[1]) * (last - first);
+        let length = f64::hypot(along.x, along.y) * (last - first);
         let pieces = (length / (PIECE * FINE)).ceil().max(1.0);
-        let place = |number: f64| {
-            let part = first + (last - first) * number / pieces;
-            [0, 1].map(|axis| start[axis] + part * along[axis])
-        };
+        let place = |number: f64| start + along * (first + (last - first) * number / pieces);
         let (mut before, mut number) = (place(0.0), 0.0);
         while number < pieces {
             number += 1.0;
             let next = place(number);
-            let back = across.map(|part| -part);
             plane.polygon(&[
-                rounded(add(before, across)),
-                rounded(add(next, across)),
-                rounded(add(next, back)),
-                rounded(add(before, back)),
+                rounded(before + across),
+                rounded(next + across),
+                rounded(next - across),
+                rounded(before - across),
             ]);
             before = next;
         }
     }
 
-    /// Returns the part of a line that may be visible, from 0 to 1 (Liang & Barsky 1984).
-    fn seen_part(&self, start: [f64; 2], along: [f64; 2]) -> Option<[f64; 2]> {
-        let (mut first, mut last) = (0.0f64, 1.0f64);
-        for axis in 0..2 {
-            let [low, high] = self.seen.map(|end| end[axis] - start[axis]);
-            if along[axis] == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            let (enters, leaves) = (low / along[axis], high / along[axis]);
-            first = first.max(enters.min(leaves));
-            last = last.min(enters.max(leaves));
-        }
-        (first <= last).then_some([first, last])
-    }
-
     /// Fills the gap between two lines that meet.
-    fn corner(&self, at: Position, [a, b]: [f64; 2], [c, d]: [f64; 2], plane: &mut CoverageBuffer) {
+    fn corner(&self, at: Position, from: DVec2, to: DVec2, plane: &mut CoverageBuffer) {
+        let ([a, b], [c, d]) = (from.to_array(), to.to_array());
         let (cross, dot) = (a * d - b * c, a * c + b * d);
         if cross == 0.0 && dot > 0.0 {
             return;
@@ -212,12 +194,11 @@ impl FlatStroke {
             self.pen.half
         };
         let middle = point(at);
-        let before = [middle[0] - b * side, middle[1] + a * side];
-        let after = [middle[0] - d * side, middle[1] + c * side];
+        let [before, after] = [from, to].map(|way| middle + way.perp() * side);
         let is_sharp = 2.0 > f64::from(MITER_LIMIT * MITER_LIMIT) * (1.0 + dot);
         if self.pen.join == Join::Miter && !is_sharp {
             let far = side / (1.0 + dot);
-            let tip = [middle[0] - (b + d) * far, middle[1] + (a + c) * far];
+            let tip = middle + (from + to).perp() * far;
             plane.polygon(&[at, rounded(before), rounded(tip), rounded(after)]);
         } else {
             plane.polygon(&[at, rounded(before), rounded(after)]);
@@ -225,21 +206,19 @@ impl FlatStroke {
     }
 
     /// Draws the cap beyond the end of a line.
-    fn cap(&self, at: Position, direction: [f64; 2], plane: &mut CoverageBuffer) {
+    fn cap(&self, at: Position, direction: DVec2, plane: &mut CoverageBuffer) {
         match self.pen.cap {
             Cap::Butt => {}
             Cap::Round => self.disc(at, plane),
             Cap::Square => {
-                let on = direction.map(|part| part * self.pen.half);
-                let across = [-on[1], on[0]];
-                let back = across.map(|part| -part);
-                let near = point(at);
-                let far = add(near, on);
+                let on = direction * self.pen.half;
+                let (near, across) = (point(at), on.perp());
+                let far = near + on;
                 plane.polygon(&[
-                    rounded(add(near, across)),
-                    rounded(add(far, across)),
-                    rounded(add(far, back)),
-                    rounded(add(near, back)),
+                    rounded(near + across),
+                    rounded(far + across),
+                    rounded(far - across),
+                    rounded(near - across),
                 ]);
             }
         }
@@ -252,7 +231,7 @@ impl FlatStroke {
         let radius = self.pen.half * (step / libm::sin(step)).sqrt();
         let corners: [Position; DISC] = std::array::from_fn(|number| {
             let (sine, cosine) = libm::sincos(number as f64 * step);
-            rounded(add(middle, [radius * cosine, radius * sine]))
+            rounded(middle + DVec2::new(cosine, sine) * radius)
         });
         plane.polygon(&corners);
     }
@@ -260,19 +239,19 @@ impl FlatStroke {
 
 /// Returns the direction and the length of a line.
 #[inline]
-fn direction(from: Position, to: Position) -> ([f64; 2], f64) {
-    let along = sub(point(to), point(from));
-    let length = if along[0] == 0.0 || along[1] == 0.0 {
-        (along[0] + along[1]).abs()
+fn direction(from: Position, to: Position) -> (DVec2, f64) {
+    let along = point(to) - point(from);
+    let length = if along.x == 0.0 || along.y == 0.0 {
+        (along.x + along.y).abs()
     } else {
-        f64::hypot(along[0], along[1])
+        f64::hypot(along.x, along.y)
     };
-    (along.map(|part| part / length), length)
+    (along / length, length)
 }
 
 #[expect(clippy::cast_precision_loss, reason = "what is seen is exact")]
-fn point(position: Position) -> [f64; 2] {
-    position.map(|fine| fine as f64)
+fn point(position: Position) -> DVec2 {
+    DVec2::from_array(position.map(|fine| fine as f64))
 }
 
 #[inline]
@@ -281,17 +260,9 @@ fn point(position: Position) -> [f64; 2] {
     clippy::cast_precision_loss,
     reason = "what is seen is small"
 )]
-fn rounded(point: [f64; 2]) -> Position {
-    point.map(|fine| {
+fn rounded(point: DVec2) -> Position {
+    point.to_array().map(|fine| {
         let towards_zero = (fine + 0.5) as i64;
         towards_zero - i64::from(fine + 0.5 < towards_zero as f64)
     })
-}
-
-fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
-fn sub(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
 }

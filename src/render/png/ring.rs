@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::render::surface::Position;
 
 use super::Png;
+use super::chunk::Command;
 use super::coverage::{MOST_CORNERS, has_room};
 
 /// Number of vertices of a region above which it is covered before the path ends.
@@ -66,7 +67,9 @@ impl Png<'_, '_> {
             if !self.chunk.is_empty() {
                 self.next_chunk();
             }
-            self.chunk.region(Arc::clone(&region), rows);
+            self.chunk
+                .list
+                .push(Command::Region(Arc::clone(&region), rows));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of PNG drawing: threads, chunks and tufts do not change pixels.
+//! Tests of PNG drawing: threads, chunks and segment batches do not change pixels.
 
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
@@ -275,7 +275,7 @@ fn long_outlines_are_those_of_the_reference() {
                 for vertices in vertices[1..].chunks(1001) {
                     png.lines_to(vertices);
                     png.hand_on().unwrap();
-                    assert!(png.chunk.positions() <= (1 << 14) + 1001);
+                    assert!(png.chunk.list.points.len() <= (1 << 14) + 1001);
                 }
                 png.close();
                 png.end().unwrap();
@@ -347,7 +347,7 @@ generator:
 ";
 
 #[test]
-fn combed_pictures_are_those_where_every_line_is_drawn() {
+fn batched_pictures_are_those_where_every_line_is_drawn() {
     let catalogue = Catalogue::embedded();
     let source = |name: &str| match name {
         "tree" => Source::new("tree.yaml", TREE),
@@ -381,10 +381,10 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
         let growth = Growth::steps(steps);
         let layout = Layout::find(&graph, &growth, &options).unwrap();
         let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
-        let pixels = |is_combed: bool| {
+        let pixels = |is_batched: bool| {
             with_team(NonZero::<usize>::MIN, |team| {
                 let mut png = Png::begin(scene.size(), None, team).unwrap();
-                if is_combed {
+                if is_batched {
                     scene.draw(&mut png, team).unwrap();
                 } else {
                     scene.draw(&mut Plain(&mut png), team).unwrap();
@@ -393,9 +393,9 @@ fn combed_pictures_are_those_where_every_line_is_drawn() {
                 png.part.pixmap.data().to_vec()
             })
         };
-        let (combed, every) = (pixels(true), pixels(false));
-        assert!(combed != every, "{name} is not combed");
-        let shades = combed.iter().zip(&every);
+        let (batched, every) = (pixels(true), pixels(false));
+        assert!(batched != every, "{name} has no batches");
+        let shades = batched.iter().zip(&every);
         let most = shades.map(|(one, other)| one.abs_diff(*other)).max();
         assert!(most <= Some(2), "{name} {steps} {width}: {most:?}");
     }

@@ -1,13 +1,14 @@
 //! Sketches of whole runs of elements.
 
-use std::sync::Arc;
-
 use crate::geometry::DVec2;
 use crate::grow::{Colony, Element, LineElement, Run};
-use crate::render::sprites::{Painted, Put};
+use crate::render::contribution::Painted;
+use crate::render::display::Command;
+use crate::render::paint_key::{Kind, PaintKey, width_class};
+use crate::render::png::{PlacedSprite, Put};
 use crate::render::surface::{FINE, position};
 
-use super::{Kind, Line, Mark, PaintKey, Sketcher, width_class};
+use super::{Line, Mark, Sketcher};
 
 impl Sketcher<'_> {
     /// Draws lines of one class that end in the given points, one after another.
@@ -16,10 +17,7 @@ impl Sketcher<'_> {
         let map = self.scene.canvas.map(run.map());
         let rest = ends[1..].iter();
         let rest = rest.map(|&end| position(map.transform_point2(end) * FINE));
-        self.sketch.points.extend(rest);
-        if let Some(Mark::Lines(count)) = self.sketch.marks.last_mut() {
-            *count += ends.len() - 1;
-        }
+        self.sketch.lines(rest);
     }
 
     /// Draws lines of one class that need not join.
@@ -45,8 +43,8 @@ impl Sketcher<'_> {
                 width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
                 colour: None,
             };
-            let goes_on = match self.open.map(|open| &self.sketch.marks[open]) {
-                Some(Mark::Line(line)) => joined && line.look == look,
+            let goes_on = match self.open.map(|open| &self.sketch.commands[open]) {
+                Some(Command::Other(Mark::Line(line))) => joined && line.look == look,
                 _ => false,
             };
             if !goes_on {
@@ -55,7 +53,7 @@ impl Sketcher<'_> {
                     joined,
                     meets_frame: [true; 2],
                 }));
-                self.open = Some(self.sketch.marks.len() - 1);
+                self.open = Some(self.sketch.commands.len() - 1);
                 self.sketch.points.push(fine(stick.ends[0]));
             }
             self.go_to(fine(stick.ends[1]));
@@ -77,25 +75,24 @@ impl Sketcher<'_> {
         }
     }
 
-    /// Draws lines of one class, short and thin ones as tufts. Returns `false`, and draws nothing, if there
-    /// are no tufts.
-    pub(super) fn tufts(&mut self, run: &Run<'_>, sticks: &[LineElement]) -> bool {
-        let (Some(comb), Some(last)) = (&self.means.comb, sticks.last()) else {
+    /// Draws lines of one class, short and thin ones in segment batches. Returns `false`, and draws nothing, if
+    /// there are none of these.
+    pub(super) fn batches(&mut self, run: &Run<'_>, sticks: &[LineElement]) -> bool {
+        let (Some(builder), Some(last)) = (&self.means.batches, sticks.last()) else {
             return false;
         };
         let map = self.scene.canvas.map(run.map());
-        let (combed, longer) = comb.comb(run.number(), sticks, map.matrix2.x_axis.length());
-        if combed.is_bald() {
+        let scale = map.matrix2.x_axis.length();
+        let (batched, longer) = builder.batched(run.number(), sticks, scale);
+        if batched.is_empty() {
             return false;
         }
-        let apart = combed.apart.iter().flat_map(|apart| {
+        let apart = batched.apart.iter().flat_map(|apart| {
             let lines = sticks[apart.clone()].iter().enumerate();
             lines.map(|(number, stick)| (stick, number > 0 && stick.joined))
         });
         self.draw_sticks(run, apart);
-        let before = self.sketch.tufts.len();
-        self.sketch.tufts.extend(combed.tufts(map, longer));
-        self.mark(Mark::Tufts(self.sketch.tufts.len() - before));
+        self.sketch.batches(batched.placed(map, longer));
         self.pass_by(Mark::Skip { meets_frame: true });
         let end = position(map.transform_point2(last.ends[1]) * FINE);
         self.sketch.points.push(end);
@@ -103,33 +100,17 @@ impl Sketcher<'_> {
     }
 
     /// Draws the part of a colony that is painted, by a sprite or element by element.
-    pub(super) fn stamp_colony(&mut self, colony: &Colony<'_>) {
-        let Some(sprites) = self.means.sprites.as_ref() else {
+    pub(super) fn colony_of(&mut self, colony: &Colony<'_>) {
+        let Some(sprites) = self.means.sprites.clone() else {
             return;
         };
         match sprites.of_colony(self.scene, colony) {
-            Put::Nothing => return,
-            Put::Sprite(placed) => {
-                let kind = sprites.kind();
-                self.sketch.sprites.push(placed);
-                return self.mark_stamps(kind);
+            Put::Nothing => {}
+            Put::Sprite(placed) => self.put(sprites.kind(), placed),
+            Put::Elements => {
+                sprites.see(self.scene, colony, |element| self.see(element));
+                self.pass_by(Mark::Break);
             }
-            Put::Elements => {}
-        }
-        let sprites = Arc::clone(sprites);
-        sprites.see(self.scene, colony, |element| self.see(element));
-        self.pass_by(Mark::Break);
-    }
-
-    /// Adds one sprite to the last mark, or begins a mark.
-    fn mark_stamps(&mut self, kind: Kind) {
-        let look = PaintKey {
-            kind,
-            ..PaintKey::TUFTS
-        };
-        match self.sketch.marks.last_mut() {
-            Some(Mark::Sprites { look: last, count }) if *last == look => *count += 1,
-            _ => self.mark(Mark::Sprites { look, count: 1 }),
         }
     }
 
@@ -142,18 +123,21 @@ impl Sketcher<'_> {
         let graph = self.scene.graph;
         let is_open = |element: &Element| {
             let object = &graph.objects()[element.object];
-            object.visible && !graph.base_elements()[object.base_element].is_closed()
+            object.visible && !self.scene.base_element(object).is_closed()
         };
-        let end = run.last().filter(is_open);
-        self.sketch.sprites.push(placed);
         // Elements that join the run continue at its end; nothing joins runs of closed elements.
-        if let Some(end) = end {
-            self.mark_stamps(Kind::Line);
+        if let Some(end) = run.last().filter(is_open) {
+            self.put(Kind::Line, placed);
             self.pass_by(Mark::Skip { meets_frame: true });
             self.start_at(end.frame.ends()[1]);
         } else {
-            self.mark_stamps(Kind::Polygon);
+            self.put(Kind::Polygon, placed);
         }
         true
+    }
+
+    fn put(&mut self, kind: Kind, sprite: PlacedSprite) {
+        self.open = None;
+        self.sketch.sprites(PaintKey::of(kind), &[sprite]);
     }
 }

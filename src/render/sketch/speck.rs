@@ -2,10 +2,8 @@
 //! stroked, so that area and stroke together are a pixel wide.
 
 use crate::geometry::{DAffine2, DVec2};
+use crate::render::paint_key::SPECK_WIDTHS;
 use crate::rule::{BaseElement, Piece};
-
-/// Number of widths of strokes per pixel.
-pub(in crate::render) const SPECK_WIDTHS: f64 = 8.0;
 
 /// Maximum number of points of an outline that is examined.
 const MOST_POINTS: usize = 32;

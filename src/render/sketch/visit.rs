@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 
 use crate::grow::{Colony, Element, Enter, FractalInfo, Run, Subtree, Taken, Visitor};
 use crate::render::classes::Share;
+use crate::render::contribution::Painted;
 use crate::render::prepass::span;
 use crate::render::scene::{Pass, Scene};
-use crate::render::sprites::Painted;
 use crate::style::Width;
 
 use super::{Mark, Sketcher};
@@ -51,7 +51,7 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.culling.enter(subtree) {
-            Enter::Replace if !self.means.aim.may_paint(self.scene, subtree) => Enter::Skip,
+            Enter::Replace if !self.mask.may_paint(self.scene, subtree) => Enter::Skip,
             enter => enter,
         }
     }
@@ -66,7 +66,7 @@ impl Visitor for Sketcher<'_> {
         let Scene { graph, classes, .. } = self.scene;
         let share = match self.pass {
             Pass::Areas => Share::Some,
-            Pass::Class(_) if self.means.aim.paints_all_of(run.object()) => Share::All,
+            Pass::Class(_) if self.mask.paints_all_of(run.object()) => Share::All,
             Pass::Class(class) => classes.share(run, &self.fractal, graph, class),
             Pass::Along => {
                 let ends = [run.first(), run.last()].map(|element| {
@@ -90,7 +90,7 @@ impl Visitor for Sketcher<'_> {
                 }
             }
             (Share::All, ..) if self.sprite(run, Painted::All) => {}
-            (Share::All, _, Some(sticks)) if self.tufts(run, sticks) => {}
+            (Share::All, _, Some(sticks)) if self.batches(run, sticks) => {}
             (Share::All, Some(ends), _) => {
                 if let Some(first) = run.first() {
                     self.lines(run, ends, &first);
@@ -101,14 +101,13 @@ impl Visitor for Sketcher<'_> {
                     self.sticks(run, sticks, &first);
                 }
             }
-            _ => match (self.pass, self.means.aim.steps.clone()) {
+            _ => match (self.pass, self.mask.steps.clone()) {
                 (_, Some(steps))
                     if self.sprite(run, Painted::Steps(*steps.start(), *steps.end())) => {}
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
                 (Pass::Class(class), None)
-                    if self.means.aim.tells_objects()
-                        && self.sprite(run, Painted::Class(class)) => {}
-                (Pass::Class(class), None) if self.means.aim.stands_alone => {
+                    if self.mask.tells_objects() && self.sprite(run, Painted::Class(class)) => {}
+                (Pass::Class(class), None) if self.mask.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;
                     self.some(run, run.chosen(is_of));
@@ -125,7 +124,7 @@ impl Visitor for Sketcher<'_> {
     }
 
     fn colony(&mut self, colony: &Colony<'_>, _: Taken) -> io::Result<()> {
-        self.stamp_colony(colony);
+        self.colony_of(colony);
         Ok(())
     }
 

@@ -4,6 +4,19 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use super::{CoverageBuffer, FINE, MARGIN, Position, index};
 
+/// Thin lines close to each other, drawn as one box that is no larger than a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SegmentBatch {
+    /// Twice its centre, in hundredths of a pixel.
+    pub(crate) middle: [i32; 2],
+    /// Width and height, in hundredths of a pixel.
+    pub(crate) extent: [u32; 2],
+    /// Area of the lines, in pixels.
+    pub(crate) area: f32,
+    /// Width of the lines, in pixels.
+    pub(crate) width: f32,
+}
+
 /// Maximum length of the pieces of a line, along either axis, in hundredths of a pixel.
 const PIECE: i64 = 25;
 
@@ -125,20 +138,15 @@ impl CoverageBuffer {
         }
     }
 
-    /// Draws hairlines close to each other as a box no larger than a pixel. `middle` is twice its centre,
-    /// `extent` its width and height, in hundredths of a pixel; `area` is the area of the lines and `width`
-    /// their width, in pixels.
+    /// Draws a segment batch.
     #[inline]
-    pub(crate) fn tuft(&mut self, middle: [i32; 2], extent: [u32; 2], area: f32, width: f32) {
+    pub(crate) fn batch(&mut self, batch: &SegmentBatch) {
         if self.hairs.cells.is_empty() {
             self.hairs.make_room(self.cells.len());
         }
-        let extent = extent.map(|extent| i64::from(extent).clamp(1, FINE));
-        self.blot(
-            middle.map(i64::from),
-            extent,
-            area * thickness(width) * UNIT,
-        );
+        let extent = batch.extent.map(|extent| i64::from(extent).clamp(1, FINE));
+        let ink = batch.area * thickness(batch.width) * UNIT;
+        self.blot(batch.middle.map(i64::from), extent, ink);
     }
 
     #[inline]

@@ -24,10 +24,10 @@ use std::sync::atomic::Ordering::Relaxed;
 pub(crate) use area::{MOST_CORNERS, has_room};
 pub(crate) use curve::{bounding, bounding_within, flattened, flattened_within};
 pub(crate) use drain::Drain;
-pub(crate) use hair::HairPen;
 use hair::Hairs;
+pub(crate) use hair::{HairPen, SegmentBatch};
 pub(crate) use pen::RoundPen;
-pub(crate) use sprite::{Sprite, SpriteSheet};
+pub(crate) use sprite::{Sprite, SpritePaint, SpriteSheet};
 
 /// Position in hundredths of a pixel.
 type Position = [i64; 2];

@@ -1,5 +1,7 @@
 //! Round pens: strokes as rows of prints of a disc, which are tabulated.
 
+use crate::geometry::{DVec2, clip};
+
 use super::{CoverageBuffer, FINE, MARGIN, Position, cover, index, mask};
 
 /// Steps per pixel at which the pen can stand, as a power of two.
@@ -208,36 +210,18 @@ impl CoverageBuffer {
 
     /// Returns the part of a line that is near enough to the picture to be visible.
     #[cold]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "what is clipped lies in the box"
+    )]
     pub(super) fn clipped(&self, from: Position, to: Position) -> Option<[Position; 2]> {
-        clipped(from, to, self.picture.map(|side| (side + MARGIN) * FINE))
+        let way = [0, 1].map(|axis| to[axis] - from[axis]);
+        let most = self.picture.map(|side| (side + MARGIN) * FINE);
+        let [start, along, low, high] = [from, way, [-MARGIN * FINE; 2], most]
+            .map(|at| DVec2::from_array(at.map(|fine| fine as f64)));
+        let ends = clip(start, along, low, high)?;
+        Some(ends.map(|part| [0, 1].map(|axis| from[axis] + (along[axis] * part) as i64)))
     }
-}
-
-/// Returns the part of a line that lies in a box (Liang & Barsky 1984).
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "what is clipped lies in the box"
-)]
-fn clipped(from: Position, to: Position, most: [i64; 2]) -> Option<[Position; 2]> {
-    let (mut first, mut last) = (0.0f64, 1.0f64);
-    for axis in 0..2 {
-        let (start, along) = (from[axis] as f64, (to[axis] - from[axis]) as f64);
-        let (low, high) = ((-MARGIN * FINE) as f64 - start, most[axis] as f64 - start);
-        if along == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let (enters, leaves) = (low / along, high / along);
-        first = first.max(enters.min(leaves));
-        last = last.min(enters.max(leaves));
-    }
-    (first <= last).then(|| {
-        [first, last].map(|part| {
-            [0, 1].map(|axis| from[axis] + ((to[axis] - from[axis]) as f64 * part) as i64)
-        })
-    })
 }
 
 /// Returns the number of prints after the first. An approximation of the length within 7 % suffices: the

@@ -28,10 +28,18 @@ pub(crate) struct Print {
     /// Upper left pixel, relative to the pixel on which the print is put.
     corner: [i64; 2],
     /// Number of pixels per row.
-    /// and how many of them are in a row.
     width: usize,
     /// Covered samples of each pixel as bits, row by row.
     cells: Box<[u64]>,
+}
+
+/// Means by which sprites are drawn: shapes are filled, and lines are drawn with the pen.
+#[derive(Clone, Default)]
+pub(crate) struct SpritePaint {
+    /// Pen of lines and outlines.
+    pub(crate) pen: Option<Arc<RoundPen>>,
+    /// Whether shapes are outlined.
+    pub(crate) outlines: bool,
 }
 
 /// Small coverage buffers on which a sprite is drawn.
@@ -40,23 +48,19 @@ pub(crate) struct SpriteSheet {
     areas: CoverageBuffer,
     /// Buffer of strokes, if there is a pen.
     strokes: Option<CoverageBuffer>,
-    /// Pen of lines and outlines.
-    pen: Option<Arc<RoundPen>>,
-    /// Whether areas are outlined.
-    pub(crate) outlines: bool,
+    pub(crate) paint: SpritePaint,
     /// Whether everything could be drawn so far.
     is_whole: bool,
 }
 
 impl SpriteSheet {
     /// Creates an empty sheet of a size in pixels.
-    pub(crate) fn new(size: [u32; 2], pen: Option<Arc<RoundPen>>, outlines: bool) -> Self {
+    pub(crate) fn new(size: [u32; 2], paint: SpritePaint) -> Self {
         let plane = || CoverageBuffer::of_rows(size, 0..size[1]);
         Self {
             areas: plane(),
-            strokes: pen.is_some().then(plane),
-            pen,
-            outlines,
+            strokes: paint.pen.is_some().then(plane),
+            paint,
             is_whole: true,
         }
     }
@@ -68,7 +72,7 @@ impl SpriteSheet {
 
     /// Covers a line through points.
     pub(crate) fn line(&mut self, points: &[Position]) {
-        let (Some(pen), Some(plane)) = (&self.pen, &mut self.strokes) else {
+        let (Some(pen), Some(plane)) = (&self.paint.pen, &mut self.strokes) else {
             self.is_whole = false;
             return;
         };
@@ -104,7 +108,7 @@ impl SpriteSheet {
 
     /// Returns the sprite, if everything could be drawn. `pixel` is the pixel of the sheet that is put on the
     /// pixel of the picture.
-    pub(crate) fn into_stamp(self, pixel: [i64; 2]) -> Option<Sprite> {
+    pub(crate) fn into_sprite(self, pixel: [i64; 2]) -> Option<Sprite> {
         let strokes = self.strokes.map(|plane| Print::of(plane, pixel));
         self.is_whole.then(|| Sprite {
             areas: Print::of(self.areas, pixel),
@@ -176,19 +180,23 @@ mod tests {
     use std::sync::Arc;
 
     use super::super::FINE;
-    use super::{CoverageBuffer, RoundPen, SpriteSheet};
+    use super::{CoverageBuffer, RoundPen, SpritePaint, SpriteSheet};
 
     #[test]
-    fn a_stamp_covers_what_was_drawn_wherever_it_is_put() {
+    fn a_sprite_covers_what_was_drawn_wherever_it_is_put() {
         let pen = Arc::new(RoundPen::new(1.0));
+        let paint = SpritePaint {
+            pen: Some(Arc::clone(&pen)),
+            outlines: true,
+        };
         let square = [[310, 290], [370, 300], [360, 360], [300, 350]];
         let line = [[120, 150], [310, 480], [150, 600]];
         for pixel in [[3, 4], [0, 0], [-3, 2], [9, 9], [40, 4], [-20, -20]] {
-            let mut sheet = SpriteSheet::new([8, 8], Some(Arc::clone(&pen)), true);
+            let mut sheet = SpriteSheet::new([8, 8], paint.clone());
             sheet.polygon(&square);
             sheet.line(&line);
             sheet.outline(&square);
-            let sprite = sheet.into_stamp([2, 2]).unwrap();
+            let sprite = sheet.into_sprite([2, 2]).unwrap();
             let mut placed = [CoverageBuffer::new([12, 12]), CoverageBuffer::new([12, 12])];
             placed[0].sprite(&sprite.areas, pixel);
             placed[1].sprite(&sprite.strokes, pixel);
@@ -212,12 +220,12 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_makes_no_stamp() {
-        let mut sheet = SpriteSheet::new([8, 8], None, false);
+    fn what_cannot_be_drawn_makes_no_sprite() {
+        let mut sheet = SpriteSheet::new([8, 8], SpritePaint::default());
         sheet.polygon(&[[100, 100], [50_000, 100], [300, 20_000], [400, 60_000]]);
-        assert!(sheet.into_stamp([0, 0]).is_none());
-        let mut sheet = SpriteSheet::new([8, 8], None, false);
+        assert!(sheet.into_sprite([0, 0]).is_none());
+        let mut sheet = SpriteSheet::new([8, 8], SpritePaint::default());
         sheet.line(&[[100, 100], [500, 100]]);
-        assert!(sheet.into_stamp([0, 0]).is_none());
+        assert!(sheet.into_sprite([0, 0]).is_none());
     }
 }

@@ -6,7 +6,8 @@ use crate::geometry::{Bounds, DVec2, distance_to_segment};
 use crate::graph::Graph;
 use crate::rule::{BaseElement, Piece};
 
-use super::png::{bounding_within, flattened_within};
+use super::GRAIN;
+use super::coverage::{bounding_within, flattened_within};
 
 /// Maximum number of straight sides of an outline that is not simplified.
 const FEW_SIDES: usize = 8;
@@ -18,22 +19,19 @@ const LEVELS: usize = 16;
 const MOST_TRIES: u32 = 8;
 
 /// Simplified outlines of base elements, by tolerance.
-pub(super) struct LevelOfDetail {
-    /// Largest deviation of an outline that is invisible, in pixels.
-    grain: f64,
+pub(in crate::render) struct LevelOfDetail {
     /// Corners by base element and tolerance; `None` for base elements that are not simplified.
     outlines: Vec<Option<[OnceLock<Vec<DVec2>>; LEVELS]>>,
 }
 
 impl LevelOfDetail {
-    /// Creates the simplified outlines of a graph, for a surface that shows no detail finer than `grain`
-    /// pixels; `None` if no base element needs them.
-    pub(super) fn of(graph: &Graph, grain: f64) -> Option<Self> {
+    /// Creates the simplified outlines of a graph; `None` if no base element needs them.
+    pub(super) fn of(graph: &Graph) -> Option<Self> {
         let levels =
             |base_element| is_fine(base_element).then(|| std::array::from_fn(|_| OnceLock::new()));
         let outlines: Vec<_> = graph.base_elements().iter().map(levels).collect();
         let any = outlines.iter().any(Option::is_some);
-        any.then_some(Self { grain, outlines })
+        any.then_some(Self { outlines })
     }
 
     /// Returns the corners of a base element, in its unit frame, for frames that stretch a unit to at most
@@ -41,14 +39,14 @@ impl LevelOfDetail {
     /// end to end. `None` if the outline is drawn unchanged: it is simple, or the finest tolerance is
     /// too coarse.
     #[inline]
-    pub(super) fn corners(
+    pub(in crate::render) fn corners(
         &self,
         graph: &Graph,
         base_element: usize,
         pixels: f64,
     ) -> Option<&[DVec2]> {
         let levels = self.outlines[base_element].as_ref()?;
-        let level = doublings(graph.unit() * pixels / self.grain);
+        let level = doublings(graph.unit() * pixels / GRAIN);
         let corners = levels.get(level)?;
         let made = || {
             #[expect(clippy::cast_precision_loss, reason = "few levels")]

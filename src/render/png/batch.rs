@@ -1,9 +1,9 @@
-//! Tufts: short thin lines close together in a segment batch, drawn as one shape.
+//! Segment batches: short thin lines close together, drawn as one shape.
 //!
-//! Of lines shorter than a pixel, a picture shows only the area that they cover, and its position. A tuft
+//! Of lines shorter than a pixel, a picture shows only the area that they cover, and its position. A batch
 //! covers the same area as its lines: it is a box with their centroid and with their variances along x and y.
-//! Pictures with tufts are within 2 of 255 shades of those in which every line is drawn. Lines of a fixed
-//! width do not form tufts: many of them may coincide, and a tuft would count the area of each.
+//! Pictures with batches are within 2 of 255 shades of those in which every line is drawn. Lines of a fixed
+//! width do not form batches: many of them may coincide, and a batch would count the area of each.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,105 +11,103 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::grow::LineElement;
+use crate::render::paint_key::{class_width, width_class};
+use crate::render::surface::{FINE, Pen};
 
-use super::sketch::{class_width, width_class};
-use super::surface::{FINE, Pen, SegmentBatch};
+use super::coverage::SegmentBatch;
 
-/// Maximum width of the lines of tufts, in pixels; wider lines are drawn one by one.
+/// Maximum width of the lines of batches, in pixels; wider lines are drawn one by one.
 const THIN: f64 = 0.05;
 /// Maximum length of such lines, in pixels.
 const LONG: f64 = 1.0;
 
-/// Maximum length of the pieces into which lines are cut, and maximum diagonal of the lines of a tuft, in
+/// Maximum length of the pieces into which lines are cut, and maximum diagonal of the lines of a batch, in
 /// pixels.
 const NEAR: f64 = 0.25;
 
-/// Number of scales per octave for which tufts are computed.
+/// Number of scales per octave for which batches are computed.
 const SCALES_AN_OCTAVE: f64 = 64.0;
 
-/// Maximum number of bundles that are kept, over all batches and scales.
+/// Maximum number of batches that are kept, over all blocks and scales.
 const MOST_KEPT: usize = 1 << 17;
 
-/// Combines the lines of the segment batches of one walk into tufts.
-pub(super) struct BatchBuilder {
+/// Combines the lines of the runs of one walk into segment batches.
+pub(in crate::render) struct BatchBuilder {
     /// Logarithm to base 2 of the stroke width of a line of one pixel, in hundredths of a pixel.
     octave: f64,
     /// Length that the caps add to a line, in widths.
     ends: f64,
-    /// Width below which lines form tufts, in pixels.
-    below: f64,
-    /// Results, by number of the batch's block and by scale.
+    /// Results, by number of the run's block and by scale.
     kept: Mutex<Kept>,
 }
 
 #[derive(Default)]
 struct Kept {
-    blocks: BTreeMap<(u64, i32), Arc<Combed>>,
+    blocks: BTreeMap<(u64, i32), Arc<Batched>>,
     bundles: usize,
 }
 
-/// Lines of a segment batch at a scale.
+/// Lines of a run at a scale.
 #[derive(Default)]
-pub(super) struct Combed {
+pub(in crate::render) struct Batched {
     bundles: Vec<Bundle>,
     /// Ranges of lines that are drawn one by one; the others are in bundles.
-    pub(super) apart: Vec<Range<usize>>,
+    pub(in crate::render) apart: Vec<Range<usize>>,
 }
 
-/// Lines of a segment batch that form a tuft.
+/// Lines that form a batch.
 struct Bundle {
     centre: DVec2,
     /// Variances along x and y, and covariance.
     spread: [f32; 3],
-    /// Area and mean width at the scale of the batch, in pixels.
+    /// Area and mean width at the scale of the run, in pixels.
     area: f32,
     width: f32,
 }
 
 impl BatchBuilder {
-    /// Creates a comb for strokes of relative width that are thinner than `below` pixels.
-    pub(super) fn new(width: f64, pen: Pen, below: f64) -> Self {
+    /// Creates a builder for strokes of relative width.
+    pub(super) fn new(width: f64, pen: Pen) -> Self {
         Self {
             octave: libm::log2(width * FINE),
             ends: 2.0 * pen.overshoot(),
-            below: below.min(THIN),
             kept: Mutex::default(),
         }
     }
 
-    /// Combines the lines of block `number` that is drawn at `scale` pixels per unit. Returns the result and
+    /// Combines the lines of block `number`, which is drawn at `scale` pixels per unit. Returns the result and
     /// the ratio of that scale to the one for which it was computed.
-    pub(super) fn comb(
+    pub(in crate::render) fn batched(
         &self,
         number: u64,
         sticks: &[LineElement],
         scale: f64,
-    ) -> (Arc<Combed>, f64) {
+    ) -> (Arc<Batched>, f64) {
         let octave = libm::log2(scale) * SCALES_AN_OCTAVE;
         #[expect(
             clippy::cast_possible_truncation,
             reason = "casts from floats saturate"
         )]
         let step = (octave + 0.5).floor() as i32;
-        let combed_scale = libm::exp2(f64::from(step) / SCALES_AN_OCTAVE);
+        let own_scale = libm::exp2(f64::from(step) / SCALES_AN_OCTAVE);
         let key = (number, step);
         let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let known = kept().blocks.get(&key).cloned();
-        let combed = known.unwrap_or_else(|| {
-            let combed = Arc::new(self.combed(sticks, combed_scale));
+        let batched = known.unwrap_or_else(|| {
+            let batched = Arc::new(self.at(sticks, own_scale));
             let mut kept = kept();
-            if kept.bundles + combed.bundles.len() < MOST_KEPT {
-                kept.bundles += combed.bundles.len() + 1;
-                kept.blocks.insert(key, Arc::clone(&combed));
+            if kept.bundles + batched.bundles.len() < MOST_KEPT {
+                kept.bundles += batched.bundles.len() + 1;
+                kept.blocks.insert(key, Arc::clone(&batched));
             }
-            combed
+            batched
         });
-        (combed, scale / combed_scale)
+        (batched, scale / own_scale)
     }
 
-    fn combed(&self, sticks: &[LineElement], scale: f64) -> Combed {
+    fn at(&self, sticks: &[LineElement], scale: f64) -> Batched {
         let octave = self.octave + libm::log2(scale);
-        let mut combed = Combed::default();
+        let mut batched = Batched::default();
         let mut open = Open::default();
         let mut before = None;
         for (number, stick) in sticks.iter().enumerate() {
@@ -118,10 +116,10 @@ impl BatchBuilder {
             let length = stick.ends[0].distance(stick.ends[1]) * scale;
             let goes_on = stick.joined && before == Some(class);
             before = Some(class);
-            if width >= self.below || length > LONG {
-                match combed.apart.last_mut() {
+            if width >= THIN || length > LONG {
+                match batched.apart.last_mut() {
                     Some(range) if range.end == number => range.end += 1,
-                    _ => combed.apart.push(number..number + 1),
+                    _ => batched.apart.push(number..number + 1),
                 }
                 continue;
             }
@@ -134,31 +132,34 @@ impl BatchBuilder {
             while piece < pieces {
                 let ends = [piece, piece + 1.0].map(|part| from + way * part);
                 if !open.has_room_for(ends, NEAR / scale) {
-                    combed.bundles.extend(open.take());
+                    batched.bundles.extend(open.take());
                 }
                 open.add(ends, area / pieces, width);
                 piece += 1.0;
             }
         }
-        combed.bundles.extend(open.take());
-        combed
+        batched.bundles.extend(open.take());
+        batched
     }
 }
 
-impl Combed {
+impl Batched {
     /// Returns whether all lines are drawn one by one.
-    pub(super) fn is_bald(&self) -> bool {
+    pub(in crate::render) fn is_empty(&self) -> bool {
         self.bundles.is_empty()
     }
 
-    /// Iterates over the tufts of a batch that `map` places on the picture, with lines `longer` times as
-    /// long.
+    /// Iterates over the batches of a run that `map` places on the picture, with lines `longer` times as long.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "casts from floats saturate; single precision is enough"
     )]
-    pub(super) fn tufts(&self, map: DAffine2, longer: f64) -> impl Iterator<Item = SegmentBatch> {
+    pub(in crate::render) fn placed(
+        &self,
+        map: DAffine2,
+        longer: f64,
+    ) -> impl Iterator<Item = SegmentBatch> {
         let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis].map(|axis| axis * FINE);
         let [along, across, both] = [x * x, y * y, x * y * 2.0].map(|square| {
             // The square of a line's length is twelve times its variance.

@@ -2,12 +2,13 @@
 
 use crate::fast_hash::FastSet;
 use crate::geometry::{DAffine2, DMat2, Direction};
-use crate::grow::{Element, Run};
-use crate::render::png::SpriteSheet;
+use crate::grow::Run;
+use crate::render::contribution::Painted;
+use crate::render::png::coverage::{SpritePaint, SpriteSheet};
+use crate::render::png::raster::PlacedSprite;
 use crate::render::scene::Scene;
-use crate::render::surface::{PlacedSprite, SpritePaint};
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Sprites, outline, whole};
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Sprites, outline, whole};
 
 /// Numbers of steps per pixel, along either axis, and maximum numbers of elements of a run: the first of
 /// these for which there are enough runs is used. For strokes there are half as many steps, in the last two
@@ -29,7 +30,7 @@ const FEW_ELEMENTS: u64 = 8;
 /// Maximum number of orientations.
 const MOST_SIDES: usize = 1 << 8;
 
-/// Runs that are stamped.
+/// Runs that are drawn as sprites.
 pub(super) struct Runs {
     /// Maximum number of elements of a run.
     pub(super) longest: u64,
@@ -40,16 +41,16 @@ pub(super) struct Runs {
 
 impl Runs {
     /// Creates the runs of a scene if many are congruent; `worth` is the cost of an element, in simple ones.
-    pub(super) fn of(scene: &Scene<'_>, stencil: &SpritePaint, worth: u64) -> Option<Self> {
+    pub(super) fn of(scene: &Scene<'_>, paint: &SpritePaint, worth: u64) -> Option<Self> {
         let Scene { graph, .. } = scene;
         // Lines of unequal lengths are drawn as fast one by one.
-        let is_filled = stencil.pen.is_none() || stencil.outlines;
+        let is_filled = paint.pen.is_none() || paint.outlines;
         let grids = match graph.even_lengths() {
             Some(_) => GRIDS,
             None if is_filled && graph.is_plain() && graph.is_similar() => UNEVEN_GRIDS,
             None => return None,
         };
-        let part = if stencil.pen.is_none() { 1.0 } else { 0.5 };
+        let part = if paint.pen.is_none() { 1.0 } else { 0.5 };
         let grids = grids.iter();
         let mut grids =
             grids.map(|&(phases, longest)| (phases * part, (longest / worth).max(FEW_ELEMENTS)));
@@ -90,37 +91,15 @@ impl Sprites<'_> {
         self.put(&key, map.translation, phases, |phase| {
             #[expect(clippy::cast_precision_loss, reason = "steps in a small picture")]
             let linear = DMat2::from_cols_array(&key.linear.map(|part| part as f64 / LINEAR));
-            let draw =
-                |map: DAffine2, sheet: &mut SpriteSheet| draw(scene, run, painted, map, sheet);
+            let draw = |map: DAffine2, sheet: &mut SpriteSheet| {
+                let mut points = Vec::new();
+                let moved = run.moved_to(map);
+                let elements = moved.elements();
+                let painted = elements.filter(|element| painted.has(scene, element));
+                painted.for_each(|element| outline(scene, &element, &mut points, sheet));
+            };
             self.drawn(linear, phase, (linear * scene.graph.middle(), reach), draw)
         })
-    }
-}
-
-/// Draws the part of a run that is painted on a sheet; `map` is into the pixels of the sheet.
-fn draw(
-    scene: &Scene<'_>,
-    run: &Run<'_>,
-    painted: Painted,
-    map: DAffine2,
-    sheet: &mut SpriteSheet,
-) {
-    let moved = run.moved_to(map);
-    let mut points = Vec::new();
-    let mut draw = |element: Element| outline(scene, &element, &mut points, sheet);
-    match painted {
-        Painted::All => moved.elements().for_each(draw),
-        Painted::Steps(first, last) => {
-            let born = moved.born_in(first..=last);
-            born.for_each(|(_, element)| draw(element));
-        }
-        Painted::Class(class) => {
-            let of = |element: &Element| {
-                let object = &scene.graph.objects()[element.object];
-                scene.classes.of_object(object) == Some(class)
-            };
-            moved.chosen(of).for_each(|(_, element)| draw(element));
-        }
     }
 }
 

@@ -20,29 +20,31 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 use crate::fast_hash::FastMap;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::Element;
+use crate::render::ShortCut;
+use crate::render::contribution::Painted;
+use crate::render::culling::own_reach;
+use crate::render::paint_key::Kind;
+use crate::render::prepass::overhang;
+use crate::render::scene::{Pass, Scene};
+use crate::render::surface::{FINE, Position, position};
 use crate::rule::Piece;
 use crate::style::{ColorBy, Width};
 
 use self::colonies::Colonies;
-pub(super) use self::colonies::Put;
+pub(in crate::render) use self::colonies::Put;
 use self::runs::Runs;
-use super::ShortCut;
-use super::culling::own_reach;
-use super::png::{Sprite, SpriteSheet};
-use super::prepass::overhang;
-use super::scene::{Pass, Scene};
-use super::sketch::{Kind, stands_alone};
-use super::surface::{FINE, PlacedSprite, Position, SpritePaint, position};
+use super::coverage::{Sprite, SpritePaint, SpriteSheet};
+use super::raster::PlacedSprite;
 
 /// Steps per pixel in which linear parts are quantised.
 const LINEAR: f64 = 4096.0;
 
-/// Minimum number of elements of a run that is stamped; an element with many pieces counts as several.
+/// Minimum number of elements of a run that is drawn as a sprite; an element with many pieces counts as several.
 const FEWEST_IN_RUN: u64 = 4;
 /// Minimum number of elements of a picture with sprites, counted likewise.
 const FEWEST_IN_PICTURE: u64 = 1 << 20;
 
-/// Maximum size of a run that is stamped, in pixels.
+/// Maximum size of a sprite, in pixels.
 const LARGEST: f64 = 32.0;
 
 /// Upper bound of the distance, in pixels, by which filled shapes are drawn beyond their outlines: shapes
@@ -50,7 +52,7 @@ const LARGEST: f64 = 32.0;
 const BROADENED: f64 = 0.75;
 
 /// Minimum average number of uses of a sprite.
-pub(super) const USES: u64 = 3;
+pub(in crate::render) const USES: u64 = 3;
 
 /// Maximum memory of all sprites, in bytes.
 const MOST_MEMORY: usize = 1 << 26;
@@ -78,32 +80,9 @@ enum Of {
 /// Sprites with equal keys, by position in a pixel; `None` for sprites that could not be drawn.
 type Places = [OnceLock<Option<Arc<Sprite>>>];
 
-/// Selection of painted elements.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Painted {
-    All,
-    /// Elements born in some steps, from the first to the last.
-    Steps(u32, u32),
-    /// Elements whose objects are of a class.
-    Class(u64),
-}
-
-impl Painted {
-    /// Returns the selection with steps counted from `born`.
-    fn since(self, born: u32) -> Self {
-        match self {
-            Self::Steps(first, last) => {
-                let [first, last] = [first, last].map(|step| step.saturating_sub(born));
-                Self::Steps(first, last)
-            }
-            painted => painted,
-        }
-    }
-}
-
 /// Sprites of a pass.
-pub(super) struct Sprites<'a> {
-    stencil: SpritePaint,
+pub(in crate::render) struct Sprites<'a> {
+    paint: SpritePaint,
     reach: Reach,
     runs: Option<Runs>,
     colonies: Option<Colonies<'a>>,
@@ -151,33 +130,33 @@ impl<'a> Sprites<'a> {
             ColorBy::Tint => graph.tints(),
             _ => false,
         };
-        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && stands_alone(scene)
+        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && scene.stands_alone()
     }
 
     /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
-        stencil: SpritePaint,
+        paint: SpritePaint,
         painted: Option<Painted>,
     ) -> Option<Self> {
         let Scene { graph, .. } = scene;
         let drawn = graph.objects().iter().filter(|object| object.visible);
-        let pieces = drawn.map(|object| graph.base_elements()[object.base_element].pieces().len());
+        let pieces = drawn.map(|object| scene.base_element(object).pieces().len());
         let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
         let is_large = scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
         if !is_large || graph.has_appearances() {
             return None;
         }
-        let has_pen = stencil.pen.is_some();
+        let has_pen = paint.pen.is_some();
         let reach = Reach::of(scene);
         let has = |short_cut| scene.short_cuts.has(short_cut);
         let painted =
             painted.filter(|_| !scene.culling.is_bounded() && has(ShortCut::ColonySprites));
         let colonies = painted.and_then(|painted| Colonies::of(scene, &reach, painted, has_pen));
-        let runs = Runs::of(scene, &stencil, worth).filter(|_| has(ShortCut::RunSprites));
+        let runs = Runs::of(scene, &paint, worth).filter(|_| has(ShortCut::RunSprites));
         let is_any = runs.is_some() || colonies.is_some();
         is_any.then(|| Self {
-            stencil,
+            paint,
             reach,
             runs,
             colonies,
@@ -186,14 +165,14 @@ impl<'a> Sprites<'a> {
         })
     }
 
-    /// Returns the maximum number of elements of a run, if runs are stamped.
-    pub(super) fn longest_run(&self) -> Option<u64> {
+    /// Returns the maximum number of elements of a run, if runs are drawn as sprites.
+    pub(in crate::render) fn longest_run(&self) -> Option<u64> {
         self.runs.as_ref().map(|runs| runs.longest)
     }
 
     /// Returns the kind of the path in which colonies are put.
-    pub(super) fn kind(&self) -> Kind {
-        if self.stencil.pen.is_some() && !self.stencil.outlines {
+    pub(in crate::render) fn kind(&self) -> Kind {
+        if self.paint.pen.is_some() && !self.paint.outlines {
             Kind::Line
         } else {
             Kind::Polygon
@@ -276,14 +255,13 @@ impl Sprites<'_> {
         #[expect(clippy::cast_precision_loss, reason = "places in a small picture")]
         let shift = DVec2::new(pixel[0] as f64, pixel[1] as f64);
         let side = u32::try_from(whole(2.0 * reach) + 2).ok()?;
-        let SpritePaint { pen, outlines } = &self.stencil;
-        let mut sheet = SpriteSheet::new([side; 2], pen.clone(), *outlines);
+        let mut sheet = SpriteSheet::new([side; 2], self.paint.clone());
         let map = DAffine2 {
             matrix2: linear,
             translation: phase + shift,
         };
         draw(map, &mut sheet);
-        sheet.into_stamp(pixel)
+        sheet.into_sprite(pixel)
     }
 }
 
@@ -298,14 +276,13 @@ fn outline(
     if !object.visible {
         return;
     }
-    let base_element = &scene.graph.base_elements()[object.base_element];
+    let base_element = scene.base_element(object);
     let is_closed = base_element.is_closed();
     let map = element.frame.map();
     let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
-    let coarse = scene.coarse.get().and_then(Option::as_ref);
+    let outlines = scene.outlines.get().and_then(Option::as_ref);
     let stretch = element.frame.stretch();
-    let corners =
-        coarse.and_then(|coarse| coarse.corners(scene.graph, object.base_element, stretch));
+    let corners = outlines.and_then(|all| all.corners(scene.graph, object.base_element, stretch));
     let trace = |points: &mut Vec<Position>, encircles: bool| {
         points.clear();
         if let Some(corners) = corners {
@@ -333,7 +310,7 @@ fn outline(
         return sheet.line(points);
     }
     sheet.polygon(points);
-    if sheet.outlines {
+    if sheet.paint.outlines {
         let is_curve = |piece: &Piece| matches!(piece, Piece::Cubic(..));
         if corners.is_none() && base_element.pieces().iter().any(is_curve) {
             trace(points, false);

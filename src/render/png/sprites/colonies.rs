@@ -5,12 +5,14 @@ use std::convert::Infallible;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::{
     Colony, ColonyKind, ColonyKinds, Element, Enter, FractalInfo, Subtree, Taken, Visitor,
+    WalkError, Walked,
 };
-use crate::render::png::SpriteSheet;
+use crate::render::contribution::Painted;
+use crate::render::png::coverage::SpriteSheet;
+use crate::render::png::raster::PlacedSprite;
 use crate::render::scene::Scene;
-use crate::render::surface::PlacedSprite;
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Painted, Reach, Sprites, outline, whole};
+use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Reach, Sprites, outline, whole};
 
 /// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
@@ -24,7 +26,7 @@ const SEEDED_A_USE: u64 = 12;
 /// Maximum number of elements of a sprite of a whole colony.
 const MOST_ELEMENTS: u64 = 1 << 10;
 
-/// Colonies that are stamped in a pass.
+/// Colonies that are drawn as sprites in a pass.
 pub(super) struct Colonies<'a> {
     kinds: &'a ColonyKinds,
     /// Means by kind.
@@ -135,19 +137,16 @@ impl Means {
             middle,
             radius,
         };
-        let mut census = Census::of(scene);
         let example = kind.example(scene.graph);
-        let whole = example.walk(true, &mut census).ok();
-        let later = painted.meets(&census.births[1]);
-        if whole.is_none() {
-            census = Census::of(scene);
-            if example.walk(false, &mut census).is_err() {
-                return Self::NOTHING;
-            }
+        let mut census = [Census::NOTHING; 2];
+        let whole = count_members(scene, &example, true, &mut census).ok();
+        let later = may_paint(painted, census[1].births);
+        if whole.is_none() && count_members(scene, &example, false, &mut census).is_err() {
+            return Self::NOTHING;
         }
-        let own = painted.meets(&census.births[0]);
+        let own = may_paint(painted, census[0].births);
         let shows = if own { Shows::Own } else { Shows::Nothing };
-        let [elements, seeded] = census.counts;
+        let [elements, seeded] = census.map(|part| part.elements);
         let least = scene.uses * USES_OF_WHOLE.max(seeded / SEEDED_A_USE);
         let is_worth = uses >= least && elements + seeded >= FEWEST_IN_RUN;
         match whole {
@@ -162,13 +161,11 @@ impl Means {
     }
 }
 
-impl Painted {
-    /// Returns whether elements born in some steps, from the first to the last, may be painted.
-    fn meets(self, births: &[u32; 2]) -> bool {
-        match self {
-            Self::Steps(first, last) => first <= births[1] && last >= births[0],
-            Self::All | Self::Class(_) => births[0] <= births[1],
-        }
+/// Returns whether elements born in some steps, from the first to the last, may be painted.
+fn may_paint(painted: Painted, births: [u32; 2]) -> bool {
+    match painted {
+        Painted::Steps(first, last) => first <= births[1] && last >= births[0],
+        Painted::All | Painted::Class(_) => births[0] <= births[1],
     }
 }
 
@@ -211,18 +208,22 @@ impl Sprites<'_> {
         let length = kind.frame.stretch() * scene.canvas.scale();
         self.put(&key, map.translation, colonies.phases, |phase| {
             let linear = turned(&map.matrix2, &key.linear, length);
-            let reach = { &self.reach }.pixels(scene, means.radius, length / scene.canvas.scale());
+            let reach = self
+                .reach
+                .pixels(scene, means.radius, length / scene.canvas.scale());
             let draw = |map: DAffine2, sheet: &mut SpriteSheet| {
                 let mut points = Vec::new();
                 let mut visitor = Members {
-                    scene,
                     scale: scene.canvas.scale(),
-                    painted: colonies.painted,
-                    see: |element: &Element| outline(scene, element, &mut points, sheet),
+                    ..Members::of(scene, colonies.painted, |element: &Element, _| {
+                        outline(scene, element, &mut points, sheet);
+                        Ok::<_, Infallible>(())
+                    })
                 };
                 // The walk cannot fail: its length has been limited before.
-                let moved = colony.moved_to(map);
-                let _ = moved.walk(means.shows == Shows::Any, &mut visitor);
+                let _ = colony
+                    .moved_to(map)
+                    .walk(means.shows == Shows::Any, &mut visitor);
             };
             self.drawn(linear, phase, (linear * means.middle, reach), draw)
         })
@@ -233,17 +234,15 @@ impl Sprites<'_> {
         &self,
         scene: &Scene<'_>,
         colony: &Colony<'_>,
-        see: impl FnMut(&Element),
+        mut see: impl FnMut(&Element),
     ) {
         let Some(colonies) = &self.colonies else {
             return;
         };
-        let mut visitor = Members {
-            scene,
-            scale: 1.0,
-            painted: colonies.painted,
-            see,
-        };
+        let mut visitor = Members::of(scene, colonies.painted, |element: &Element, _| {
+            see(element);
+            Ok::<_, Infallible>(())
+        });
         let is_whole = !matches!(self.takes(colony), Taken::Own { .. });
         let _ = colony.walk(is_whole, &mut visitor);
     }
@@ -263,93 +262,88 @@ fn turned(map: &DMat2, steps: &[i64; 4], length: f64) -> DMat2 {
     DMat2::from_cols(x_axis, x_axis.perp() * across)
 }
 
+/// Number of a colony's elements, and the first and last step in which any of them is born.
+#[derive(Clone, Copy)]
+struct Census {
+    elements: u64,
+    births: [u32; 2],
+}
+
+impl Census {
+    const NOTHING: Self = Self {
+        elements: 0,
+        births: [u32::MAX, 0],
+    };
+}
+
+/// Error that a colony has too many elements.
+struct TooMany;
+
+/// Counts the elements of a colony, or of its first fractal: those of the first fractal, and those of the others.
+fn count_members(
+    scene: &Scene<'_>,
+    colony: &Colony<'_>,
+    is_whole: bool,
+    census: &mut [Census; 2],
+) -> Result<Walked, WalkError<TooMany>> {
+    *census = [Census::NOTHING; 2];
+    let mut visitor = Members::of(scene, Painted::All, |element: &Element, is_seeded| {
+        let Census { elements, births } = &mut census[usize::from(is_seeded)];
+        *elements += 1;
+        *births = [births[0].min(element.born), births[1].max(element.born)];
+        let all: u64 = census.iter().map(|part| part.elements).sum();
+        if all > MOST_ELEMENTS {
+            return Err(TooMany);
+        }
+        Ok(())
+    });
+    colony.walk(is_whole, &mut visitor)
+}
+
 /// Visitor of the painted elements of a colony.
 struct Members<'s, F> {
     scene: &'s Scene<'s>,
     /// Units of the walk per unit of the rule.
     scale: f64,
     painted: Painted,
+    /// Whether the current fractal is not the first.
+    is_seeded: bool,
+    /// Receives the elements, each with whether it is not of the first fractal.
     see: F,
 }
 
-impl<F: FnMut(&Element)> Visitor for Members<'_, F> {
-    type Error = Infallible;
-
-    fn enter(&mut self, subtree: &Subtree) -> Enter {
-        if self
-            .scene
-            .culling
-            .is_short(subtree.frame.stretch() / self.scale)
-        {
-            return Enter::Keep;
-        }
-        match self.painted {
-            Painted::Steps(_, last) if subtree.born >= last => Enter::Skip,
-            _ => Enter::Replace,
-        }
-    }
-
-    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        let is_painted = match self.painted {
-            Painted::All => true,
-            Painted::Steps(first, last) => (first..=last).contains(&element.born),
-            Painted::Class(class) => {
-                let object = &self.scene.graph.objects()[element.object];
-                self.scene.classes.of_object(object) == Some(class)
-            }
-        };
-        if is_painted {
-            (self.see)(element);
-        }
-        Ok(())
-    }
-}
-
-/// Counts the elements of a colony and records their births, for its first fractal and for the others.
-struct Census<'s> {
-    scene: &'s Scene<'s>,
-    is_seeded: bool,
-    counts: [u64; 2],
-    births: [[u32; 2]; 2],
-}
-
-impl<'s> Census<'s> {
-    fn of(scene: &'s Scene<'s>) -> Self {
+impl<'s, F> Members<'s, F> {
+    fn of(scene: &'s Scene<'s>, painted: Painted, see: F) -> Self {
         Self {
             scene,
+            scale: 1.0,
+            painted,
             is_seeded: false,
-            counts: [0; 2],
-            births: [[u32::MAX, 0]; 2],
+            see,
         }
     }
 }
 
-/// Error that a colony has too many elements.
-struct TooMany;
+impl<E, F: FnMut(&Element, bool) -> Result<(), E>> Visitor for Members<'_, F> {
+    type Error = E;
 
-impl Visitor for Census<'_> {
-    type Error = TooMany;
-
-    fn begin(&mut self, fractal: FractalInfo) -> Result<(), TooMany> {
+    fn begin(&mut self, fractal: FractalInfo) -> Result<(), E> {
         self.is_seeded = fractal.number > 0;
         Ok(())
     }
 
     fn enter(&mut self, subtree: &Subtree) -> Enter {
-        if self.scene.culling.is_short(subtree.frame.stretch()) {
-            Enter::Keep
-        } else {
-            Enter::Replace
+        let length = subtree.frame.stretch() / self.scale;
+        match self.painted {
+            _ if self.scene.culling.is_short(length) => Enter::Keep,
+            Painted::Steps(_, last) if subtree.born >= last => Enter::Skip,
+            _ => Enter::Replace,
         }
     }
 
-    fn element(&mut self, element: &Element) -> Result<(), TooMany> {
-        let part = usize::from(self.is_seeded);
-        self.counts[part] += 1;
-        let [first, last] = self.births[part];
-        self.births[part] = [first.min(element.born), last.max(element.born)];
-        if self.counts.iter().sum::<u64>() > MOST_ELEMENTS {
-            return Err(TooMany);
+    fn element(&mut self, element: &Element) -> Result<(), E> {
+        if self.painted.has(self.scene, element) {
+            (self.see)(element, self.is_seeded)?;
         }
         Ok(())
     }
