@@ -15,10 +15,13 @@ use crate::grow::{Growth, Progress, WalkError};
 use crate::parallel::with_team;
 use crate::style::Width;
 
+use super::drawing::Drawing;
+use super::error::RenderError;
 use super::layout::Layout;
+use super::options::Options;
+use super::paint::overhang;
 use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
-use super::prepass::overhang;
-use super::{Drawing, Options, RenderError, Scene};
+use super::scene::Scene;
 
 /// Pixels of a band, and buffers for the next one.
 type Band = Result<(Pixmap, Spare), RenderError>;

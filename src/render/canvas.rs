@@ -6,8 +6,6 @@ use std::ops::Range;
 use crate::geometry::{BEYOND, Bounds, DAffine2, DMat2, DVec2};
 use crate::style::View;
 
-use super::Prepass;
-
 /// Size of a picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
@@ -153,26 +151,6 @@ impl Canvas {
             scale,
             corner: centre - half,
         })
-    }
-
-    /// Creates a canvas that shows the bounding boxes of prepasses at a common scale, or a window.
-    pub(crate) fn of(surveys: &[Prepass<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
-        let mut all = Bounds::EMPTY;
-        for prepass in surveys {
-            all.add_all(&prepass.bounds);
-        }
-        if view.window.is_none() && surveys.iter().any(|prepass| prepass.is_beyond) {
-            return Err(NoRoom::Beyond);
-        }
-        let overhang = surveys.iter().map(Prepass::overhang).fold(0.0, f64::max);
-        let canvas = match view.window {
-            Some(window) => Self::of_window(window, view, size)?,
-            None => Self::fit(&all, size, view.margin + overhang)?,
-        };
-        if !all.is_empty() && !canvas.holds(&all) {
-            return Err(NoRoom::TooClose);
-        }
-        Ok(canvas)
     }
 
     /// Creates a canvas that shows a window: lower left corner, width, height.

@@ -8,7 +8,7 @@ use crate::grow::{Census, Element, FractalInfo, Growth, Kind, WalkError};
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
-use super::Prepass;
+use super::prepass::Prepass;
 
 /// Returns an element of a kind, at an arbitrary place.
 fn element(kind: &Kind, born: u32) -> Element {

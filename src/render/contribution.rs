@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use crate::graph::Object;
 use crate::grow::{Element, Subtree};
 
-use super::ShortCut;
 use super::scene::{Pass, Scene};
+use super::short_cuts::ShortCut;
 
 /// Elements that a pass paints, as far as they are known before replacement. Elements without painted
 /// descendants are left out.

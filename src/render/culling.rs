@@ -8,8 +8,8 @@ use crate::grow::{Enter, Growth, Subtree};
 use crate::rule::Part;
 use crate::style::{Cap, ColorBy, Join, Style, Width};
 
-use super::Classes;
-use super::prepass::relative_overhang;
+use super::classes::Classes;
+use super::paint::relative_overhang;
 
 #[cfg(test)]
 mod tests;

@@ -7,8 +7,10 @@ use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 use crate::chaos::Histogram;
 use crate::style::{Colour, Named, Palette};
 
-use super::png::{PngEncoding, TooManyPixels, write_pixels};
-use super::{Labels, RenderError};
+use super::error::RenderError;
+use super::options::Labels;
+use super::options::PngEncoding;
+use super::png::{TooManyPixels, write_pixels};
 
 /// Mapping of a number of hits to a tone from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Display lists: drawings as commands with their operands, recorded in order and replayed on any thread.
 
+use super::paint::Position;
 use super::png::{PlacedSprite, SegmentBatch};
-use super::surface::Position;
 
 /// Command, with the number of its operands.
 pub(super) enum Command<C, K> {

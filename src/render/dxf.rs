@@ -4,9 +4,11 @@ use std::io::{self, Write};
 
 use crate::style::Colour;
 
+use super::drawing::Drawing;
+use super::options::Labels;
+use super::paint::{FINE, Position};
 use super::plot::Plot;
-use super::surface::{FINE, Position};
-use super::{Drawing, Labels, Unit};
+use super::unit::Unit;
 
 /// Writes a plot.
 pub(super) fn write(

@@ -7,9 +7,11 @@ use crate::grow::WalkError;
 use crate::kind::Kind;
 use crate::zoom::ZoomError;
 
+use super::canvas::NoRoom;
+use super::instanced::NotInstanced;
 #[cfg(doc)]
-use super::Options;
-use super::{NoDetail, NoRoom, NoZoom, NotInstanced, TooManyPixels};
+use super::options::Options;
+use super::png::TooManyPixels;
 
 /// Error of drawing.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +44,42 @@ pub enum RenderError {
     /// The picture cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
+}
+
+/// Reason why a picture cannot be drawn to a detail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoDetail {
+    /// Indices are counted by the walk.
+    #[error("what replaces an element depends on the number of all those before it")]
+    CountsIndex,
+    /// Elements do not shrink below every length.
+    #[error("its elements do not get smaller than any length")]
+    DoesNotShrink,
+    /// The graph is time-indexed: every number of steps has its own initiator.
+    #[error("every step of it starts anew, so that the detail cannot tell how many there are")]
+    StartsAnew,
+    /// The bounding box shrinks with the elements, which fill the picture at every step.
+    #[error("all that is drawn gets as small as its elements")]
+    Vanishes,
+    /// The limit of steps is reached before the detail.
+    #[error("{steps} steps are not enough")]
+    TooFewSteps {
+        /// Limit of steps.
+        steps: u32,
+    },
+}
+
+/// Reason why a picture cannot be zoomed, in addition to those for all pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoZoom {
+    /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
+    #[error(
+        "elements and fractals far from the window are not counted, so that colours cannot tell their \
+         numbers; a single colour draws them"
+    )]
+    Numbers,
 }
 
 /// Change of [`Options`] or of the growth with which a picture can be drawn after all.

@@ -21,19 +21,14 @@ use crate::geometry::Bounds;
 use crate::graph::Graph;
 use crate::grow::Growth;
 
+use super::canvas::Canvas;
+use super::drawing::Page;
+use super::error::RenderError;
+use super::options::Options;
+use super::picture::Picture;
+use super::prepass::Prepass;
 use super::svg::begin_document;
-use super::{Canvas, Options, Page, Picture, Prepass, RenderError};
 use drawing::Drawing;
-
-/// Size of a picture of nested instances.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct Instanced {
-    /// Number of symbols.
-    pub symbols: u64,
-    /// Number of elements and instances to which a viewer expands it; infinite beyond the range of doubles.
-    pub expanded: f64,
-}
 
 /// Maximum number of symbols, all of which are held in memory.
 const MOST_SYMBOLS: usize = 1 << 18;
@@ -68,7 +63,7 @@ pub(super) fn write(
         size: canvas.size(),
         unit: options.unit,
         background: style.background,
-        pen: super::pen(style),
+        pen: super::paint::pen(style),
         labels: &options.labels,
         has_layers: false,
     };

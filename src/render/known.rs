@@ -10,7 +10,8 @@ use crate::grow::{Census, Growth, WalkError};
 use crate::rule::Placement;
 use crate::style::{ColorBy, ColorProperty, Style};
 
-use super::{Classes, Prepass};
+use super::classes::Classes;
+use super::prepass::Prepass;
 
 /// Size of a set, relative to the unit length and to its coordinates, below which it is measured by a walk.
 const SPECK: f64 = 1e-6;

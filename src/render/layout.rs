@@ -3,48 +3,18 @@
 use crate::geometry::Bounds;
 use crate::graph::Graph;
 use crate::grow::Growth;
-use crate::style::Width;
+use crate::style::{View, Width};
 
+use super::canvas::{Canvas, NoRoom, Size};
 use super::culling::{Culling, NEARLY};
-use super::prepass::overhang;
-use super::{Canvas, Empty, Options, Picture, Plotted, Prepass, RenderError, Scene, ShortCut};
-
-/// Size down to which elements are replaced.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detail {
-    /// Size in pixels, above 0: shorter elements are not replaced. They are drawn as in their approximant, and
-    /// seed nothing.
-    ///
-    /// Elements that lead to seeds placed as the initiator are replaced at any size.
-    pub pixels: f64,
-    /// Whether the number of steps follows from the detail; the number given for the growth is then only a
-    /// limit.
-    pub decides_steps: bool,
-}
-
-/// Reason why a picture cannot be drawn to a detail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NoDetail {
-    /// Indices are counted by the walk.
-    #[error("what replaces an element depends on the number of all those before it")]
-    CountsIndex,
-    /// Elements do not shrink below every length.
-    #[error("its elements do not get smaller than any length")]
-    DoesNotShrink,
-    /// The graph is time-indexed: every number of steps has its own initiator.
-    #[error("every step of it starts anew, so that the detail cannot tell how many there are")]
-    StartsAnew,
-    /// The bounding box shrinks with the elements, which fill the picture at every step.
-    #[error("all that is drawn gets as small as its elements")]
-    Vanishes,
-    /// The limit of steps is reached before the detail.
-    #[error("{steps} steps are not enough")]
-    TooFewSteps {
-        /// Limit of steps.
-        steps: u32,
-    },
-}
+use super::error::{NoDetail, RenderError};
+use super::options::{Detail, Options};
+use super::paint::overhang;
+use super::picture::{Empty, Picture};
+use super::plot::Plotted;
+use super::prepass::Prepass;
+use super::scene::Scene;
+use super::short_cuts::ShortCut;
 
 /// Cutoff length of the first estimate, as a fraction of the initiator's longest element.
 const FIRST_LOOK: f64 = 1.0 / 8.0;
@@ -302,5 +272,27 @@ impl<'a> Surveyor<'a> {
             prepass = self.look_down_to(shortest)?;
         }
         self.completed(prepass)
+    }
+}
+
+impl Canvas {
+    /// Creates a canvas that shows the bounding boxes of prepasses at a common scale, or a window.
+    pub(crate) fn of(surveys: &[Prepass<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
+        let mut all = Bounds::EMPTY;
+        for prepass in surveys {
+            all.add_all(&prepass.bounds);
+        }
+        if view.window.is_none() && surveys.iter().any(|prepass| prepass.is_beyond) {
+            return Err(NoRoom::Beyond);
+        }
+        let overhang = surveys.iter().map(Prepass::overhang).fold(0.0, f64::max);
+        let canvas = match view.window {
+            Some(window) => Self::of_window(window, view, size)?,
+            None => Self::fit(&all, size, view.margin + overhang)?,
+        };
+        if !all.is_empty() && !canvas.holds(&all) {
+            return Err(NoRoom::TooClose);
+        }
+        Ok(canvas)
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::style::{Cap, Colour, Join};
 
+use super::paint::{FINE, Paint, Pen, Stroke};
+use super::paint::{WIDTHS_AN_OCTAVE, pen};
 use super::scene::Scene;
-use super::surface::{FINE, Paint, Pen, Stroke};
-use super::{WIDTHS_AN_OCTAVE, pen};
 
 /// Number of widths of specks' strokes per pixel.
 pub(super) const SPECK_WIDTHS: f64 = 8.0;

@@ -6,11 +6,12 @@ use crate::grow::Seam;
 use crate::style::Colour;
 
 use super::display::{Replay, Step};
+use super::paint::Position;
 use super::paint_key::{Kind, PaintKey};
 use super::png::Raster;
 use super::scene::{Pass, Scene};
 use super::sketch::{Line, Mark, Sketch};
-use super::surface::{Position, Surface};
+use super::surface::Surface;
 use super::tracer::Tracer;
 
 /// Number of vertices after which the surface may hand on the drawn portion of a path.

@@ -7,9 +7,11 @@ use crate::grow::Growth;
 use crate::parallel::with_team;
 
 use super::cells::Way;
+use super::drawing::Drawing;
+use super::error::RenderError;
+use super::options::Options;
 use super::plot::Plot;
 use super::png::Png;
-use super::{Drawing, Options, RenderError};
 
 /// Pixels of a picture, in rows from the top, each from the left: red, green, blue and alpha of 8 bits (sRGB).
 #[derive(Clone, Debug, PartialEq, Eq)]

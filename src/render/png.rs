@@ -22,14 +22,13 @@ mod stroker;
 mod tests;
 
 pub(super) use coverage::SegmentBatch;
-pub use encode::PngEncoding;
 pub(super) use encode::{Colours, encode as write_pixels, encode_pieces};
 pub(super) use level_of_detail::LevelOfDetail;
 pub(super) use means::Means;
 pub(super) use raster::PlacedSprite;
 pub(crate) use raster::Raster;
 pub(super) use split::ROWS as BAND_ROWS;
-pub(super) use sprites::{Put, USES};
+pub(super) use sprites::Put;
 
 use std::convert::Infallible;
 use std::io::{self, Write};
@@ -46,11 +45,9 @@ use self::part::{Layers, Part};
 use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
-use super::Options;
-use super::surface::{FINE, Paint, Position, Stroke, Surface};
-
-/// Deviation that outlines are permitted, in pixels: twice that of rounding.
-const GRAIN: f64 = 1.0 / FINE;
+use super::options::Options;
+use super::paint::{Paint, Position, Stroke};
+use super::surface::Surface;
 
 /// Maximum number of pixels of a picture: two gibibytes.
 const MOST_PIXELS: u64 = 1 << 29;

@@ -12,10 +12,12 @@ use crate::grow::{
     self, Census, Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError,
     walk_in_spans,
 };
-use crate::style::{Cap, ColorBy, Join, Style, Width};
+use crate::style::{ColorBy, Style, Width};
 
+use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
-use super::{Classes, ShortCuts, WIDTHS_AN_OCTAVE};
+use super::paint::{overhang, relative_overhang};
+use super::short_cuts::ShortCuts;
 
 /// Approximate number of elements of a span, in prepasses and in the walks that follow them.
 const SPAN: u64 = 1 << 12;
@@ -367,23 +369,6 @@ impl<'g> Prepass<'g> {
             _ => 0.0,
         }
     }
-}
-
-/// Returns the largest distance of a stroke's edge from its path, as a multiple of its width.
-pub(super) fn overhang(style: &Style) -> f64 {
-    let cap = if style.cap == Cap::Square {
-        std::f64::consts::FRAC_1_SQRT_2
-    } else {
-        0.5
-    };
-    // The default miter limit of SVG is four times the width.
-    let join = if style.join == Join::Miter { 2.0 } else { 0.5 };
-    f64::max(cap, join)
-}
-
-/// Returns that distance for relative widths, which are rounded and may be drawn wider.
-pub(super) fn relative_overhang(style: &Style) -> f64 {
-    libm::exp2(0.5 / WIDTHS_AN_OCTAVE) * overhang(style)
 }
 
 impl Visitor for Prepass<'_> {

@@ -1,6 +1,5 @@
 //! Scenes: approximants on their canvases, drawn in one or more passes.
 
-use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crate::graph::{Graph, Object};
@@ -8,11 +7,16 @@ use crate::grow::{ColonyKinds, Growth};
 use crate::rule::BaseElement;
 use crate::style::{Colour, Style, Width};
 
+use super::canvas::Canvas;
+use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
-use super::paint_key::Kind;
-use super::png::{LevelOfDetail, USES};
+use super::png::LevelOfDetail;
+use super::prepass::Prepass;
 use super::prepass::Ranks;
-use super::{Canvas, Classes, Prepass, ShortCuts};
+use super::short_cuts::ShortCuts;
+
+/// Minimum average number of uses of a sprite.
+const USES: u64 = 3;
 
 /// Approximant on its canvas.
 pub(crate) struct Scene<'a> {
@@ -94,15 +98,6 @@ impl<'a> Scene<'a> {
     /// Returns whether all strokes have the same width.
     pub(super) fn has_one_width(&self) -> bool {
         matches!(self.style.width, Width::Pixels(_)) && self.graph.widest().is_none()
-    }
-
-    /// Returns the kinds of the paths that are drawn.
-    pub(super) fn kinds(&self) -> Vec<Kind> {
-        let drawn = self.graph.objects().iter().filter(|object| object.visible);
-        let is_closed = |object: &Object| self.base_element(object).is_closed();
-        let closed: BTreeSet<bool> = drawn.map(is_closed).collect();
-        let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
-        closed.into_iter().map(kind).collect()
     }
 
     /// Returns whether no line leads to the end of an element that a pass does not paint.

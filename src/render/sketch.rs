@@ -19,10 +19,10 @@ use crate::style::{ColorBy, Colour, Width};
 
 use super::contribution::ContributionMask;
 use super::display::Command;
+use super::paint::{FINE, Position, position};
 use super::paint_key::{Kind, PaintKey, width_class};
 use super::png::Means;
 use super::scene::{Pass, Scene};
-use super::surface::{FINE, Position, position};
 
 /// Returns the vertices of a closed outline after the first, if it has no curves. Its last line leads to its
 /// start.

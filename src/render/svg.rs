@@ -8,8 +8,9 @@ use std::io::{self, Write};
 use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join, Named};
 
-use super::Page;
-use super::surface::{FINE, Paint, Pen, Position, Stroke, Surface};
+use super::drawing::Page;
+use super::paint::{FINE, Paint, Pen, Position, Stroke};
+use super::surface::Surface;
 use chunk::Chunk;
 
 /// SVG document that is being written.

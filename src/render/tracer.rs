@@ -2,7 +2,8 @@
 
 use std::io;
 
-use crate::render::surface::{Paint, Position, Surface};
+use crate::render::paint::{Paint, Position};
+use crate::render::surface::Surface;
 
 /// Traces paths onto a surface. Redundant vertices are left out; a subpath without length becomes a dot.
 pub(crate) struct Tracer<'s, S: ?Sized> {

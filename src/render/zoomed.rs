@@ -8,10 +8,13 @@ use crate::model::Model;
 use crate::style::{ColorBy, Style, View, Width};
 use crate::zoom::{self, Address, Factor, ZoomWindow};
 
+use super::canvas::{Canvas, Size};
 use super::culling::starts_rings;
+use super::error::{NoZoom, RenderError};
 use super::layout::Layout;
-use super::prepass::{overhang, relative_overhang};
-use super::{Canvas, Detail, Nearest, Options, Picture, RenderError, Size};
+use super::options::{Detail, Options};
+use super::paint::{overhang, relative_overhang};
+use super::picture::{Nearest, Picture};
 
 /// Target of a zoomed picture.
 #[derive(Clone, Debug)]
@@ -20,18 +23,6 @@ pub struct ZoomTarget {
     pub factor: Factor,
     /// Point at the centre of the picture.
     pub at: Address,
-}
-
-/// Reason why a picture cannot be zoomed, in addition to those for all pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NoZoom {
-    /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
-    #[error(
-        "elements and fractals far from the window are not counted, so that colours cannot tell their \
-         numbers; a single colour draws them"
-    )]
-    Numbers,
 }
 
 /// Writes a picture centred on a point, of the size of the picture of the whole set and magnified relative to

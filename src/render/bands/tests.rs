@@ -7,9 +7,15 @@ use crate::document::Document;
 use crate::geometry::DVec2;
 use crate::grow::Growth;
 use crate::parallel::Team;
+use crate::render::canvas::Size;
+use crate::render::drawing::Drawing;
+use crate::render::error::RenderError;
 use crate::render::layout::Layout;
-use crate::render::surface::{Paint, Pen, Stroke, Surface, position};
-use crate::render::{Drawing, Format, Options, RenderError, Scene, Size, write_drawing};
+use crate::render::options::{Format, Options};
+use crate::render::paint::{Paint, Pen, Stroke, position};
+use crate::render::scene::Scene;
+use crate::render::surface::Surface;
+use crate::render::write::write_drawing;
 use crate::style::{Cap, Colour, Join, Width};
 
 /// Drawing of scenes in parts, some of them nested, below and above shapes of its own.

@@ -17,10 +17,16 @@ use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style};
 
 use self::plan::Plan;
+use super::canvas::{Canvas, Size};
+use super::classes::Classes;
 use super::culling::NEARLY;
+use super::drawing::Drawing;
+use super::error::RenderError;
 use super::layout::Layout;
-use super::surface::{FINE, Paint, Pen, Stroke, Surface, position};
-use super::{Canvas, Classes, Drawing, Empty, Format, Options, Picture, RenderError, Size};
+use super::options::{Format, Options};
+use super::paint::{FINE, Paint, Pen, Stroke, position};
+use super::picture::{Empty, Picture};
+use super::surface::Surface;
 
 /// Numbers of cells along a pixel, in the order in which they are tried.
 const FINENESS: [u8; 4] = [1, 2, 4, 8];

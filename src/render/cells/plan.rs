@@ -3,9 +3,12 @@
 use crate::geometry::{Bounds, DAffine2};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::Layer;
+use crate::render::canvas::{Canvas, NoRoom};
+use crate::render::classes::Classes;
 use crate::render::culling::starts_rings;
-use crate::render::surface::Pen;
-use crate::render::{Canvas, Classes, NoRoom, Options, RenderError};
+use crate::render::error::RenderError;
+use crate::render::options::Options;
+use crate::render::paint::Pen;
 use crate::style::{Cap, ColorBy, ColorProperty, Colour, Join, Width};
 
 /// Maximum number of instances that are examined in the search for layers of one class.

@@ -15,8 +15,14 @@ use crate::document::Document;
 use crate::grow::{Element, Visitor, walk};
 use crate::parallel::with_team;
 use crate::random_rules::{self as rules, Features};
+use crate::render::canvas::Size;
+use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
-use crate::render::{Detail, Drawing, Options, Paint, Position, Prepass, Scene, Size, Surface};
+use crate::render::options::{Detail, Options};
+use crate::render::paint::{Paint, Position};
+use crate::render::prepass::Prepass;
+use crate::render::scene::Scene;
+use crate::render::surface::Surface;
 use crate::rule::Rule;
 use crate::style::{Colour, View};
 

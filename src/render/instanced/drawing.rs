@@ -8,14 +8,19 @@ use crate::geometry::{DVec2, Direction};
 use crate::graph::{Chain, Graph};
 use crate::grow::{Growth, WalkError};
 use crate::instancing::Appearance;
-use crate::render::surface::FINE;
+use crate::render::canvas::Canvas;
+use crate::render::classes::Classes;
+use crate::render::error::RenderError;
+use crate::render::options::Options;
+use crate::render::paint::{FINE, pen};
+use crate::render::picture::Instanced;
 use crate::render::svg::{ends_and_corners, opacity};
-use crate::render::{Canvas, Classes, Options, RenderError, Unit, pen};
+use crate::render::unit::Unit;
 use crate::style::{ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
-use super::{Instanced, MOST_SYMBOLS, NotInstanced, text};
+use super::{MOST_SYMBOLS, NotInstanced, text};
 
 /// Part of a class that is painted at once.
 #[derive(Clone, Copy, PartialEq)]

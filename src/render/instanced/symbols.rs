@@ -8,7 +8,7 @@ use crate::graph::{Chain, Graph, Instance, Replacement, Successor};
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
-use super::super::Classes;
+use super::super::classes::Classes;
 
 /// Subset of the elements of an expanded object that are painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use crate::render::Labels;
+use crate::render::options::Labels;
 
 /// Approximate number of bytes of a piece of content. It does not depend on the number of threads, nor does
 /// the file.

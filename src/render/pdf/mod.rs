@@ -11,8 +11,10 @@ use std::io::{self, Write};
 use crate::parallel::{Line, Team};
 use crate::style::{Cap, Colour, Join};
 
-use super::surface::{FINE, Paint, Pen, Position, Surface};
-use super::{Labels, Page};
+use super::drawing::Page;
+use super::options::Labels;
+use super::paint::{FINE, Paint, Pen, Position};
+use super::surface::Surface;
 use file::{File, Piece, real};
 
 /// Longest side of a page, in its units.

@@ -1,7 +1,7 @@
 //! Clipping of lines to windows, and flattening of curves.
 
 use crate::geometry::{DVec2, clip};
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 /// Largest distance of a chord from its curve: 0.05 units of the picture.
 const FLAT: f64 = 5.0;

@@ -23,8 +23,11 @@ use crate::grow::WalkError;
 use crate::parallel::{Team, with_team};
 use crate::style::Colour;
 
-use super::surface::{Paint, Pen, Position, Stroke, Surface};
-use super::{Drawing, Options, RenderError};
+use super::drawing::Drawing;
+use super::error::RenderError;
+use super::options::Options;
+use super::paint::{Paint, Pen, Position, Stroke};
+use super::surface::Surface;
 use clip::{Window, flattened};
 use merge::merged;
 use order::{Order, Way};

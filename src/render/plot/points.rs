@@ -2,7 +2,7 @@
 
 use crate::fast_hash::FastMap;
 use crate::geometry::DVec2;
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 /// Distance up to which positions are one point: 0.02 units of the picture, the effect of rounding on a place
 /// that is computed in several ways.

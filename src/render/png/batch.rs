@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::grow::LineElement;
+use crate::render::paint::{FINE, Pen};
 use crate::render::paint_key::{class_width, width_class};
-use crate::render::surface::{FINE, Pen};
 
 use super::coverage::SegmentBatch;
 

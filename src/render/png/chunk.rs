@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::parallel::is_cut_short;
 use crate::render::display::{self, DisplayList, Step};
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 use super::coverage::CoverageBuffer;
 use super::part::Layers;

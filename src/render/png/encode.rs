@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use png::{BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter};
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-use crate::render::Labels;
+use crate::render::options::{Labels, PngEncoding};
 
 /// Maximum number of tones at the edges of one colour. Pictures with more are continuous: palettes,
 /// densities.
@@ -13,22 +13,6 @@ const TONES: usize = 128;
 
 /// Mean length of runs of one colour below which a picture is busy, in pixels.
 const SHORT: u64 = 4;
-
-/// Encoding of the pixels of a PNG. By default, no more bits a pixel than the colours need, in small files.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct PngEncoding {
-    /// Whether pixels are compressed faster, to larger files.
-    pub fast: bool,
-    /// Whether pixels are grey levels of 8 bits, by luma (ITU-R BT.709), with an alpha channel of 8 bits unless all
-    /// are opaque.
-    pub grey: bool,
-}
-
-setters!(PngEncoding {
-    fast: bool,
-    grey: bool
-});
 
 /// Writes pixels as PNG, by default with no more bits per pixel than they need: indexed for at most 256 colours,
 /// greyscale if there are only greys, without an alpha channel if all pixels are opaque.

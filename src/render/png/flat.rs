@@ -1,7 +1,7 @@
 //! Strokes with corners and flat ends, drawn as a polygon for every line, corner and end.
 
 use crate::geometry::{DVec2, clip};
-use crate::render::surface::{FINE, Pen, Position};
+use crate::render::paint::{FINE, Pen, Position};
 use crate::style::{Cap, Join};
 
 use super::coverage::CoverageBuffer;

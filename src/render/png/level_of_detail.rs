@@ -4,13 +4,16 @@ use std::sync::OnceLock;
 
 use crate::geometry::{Bounds, DVec2, distance_to_segment};
 use crate::graph::Graph;
+use crate::render::paint::FINE;
 use crate::rule::{BaseElement, Piece};
 
-use super::GRAIN;
 use super::coverage::{bounding_within, flattened_within};
 
 /// Maximum number of straight sides of an outline that is not simplified.
 const FEW_SIDES: usize = 8;
+
+/// Deviation that outlines are permitted, in pixels: twice that of rounding.
+const GRAIN: f64 = 1.0 / FINE;
 
 /// Number of tolerances: powers of 1/2 from 1 down, in units of the graph.
 const LEVELS: usize = 16;

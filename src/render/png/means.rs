@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::render::ShortCut;
 use crate::render::contribution::ContributionMask;
 use crate::render::paint_key::{Kind, PaintKey};
 use crate::render::scene::{Pass, Scene};
+use crate::render::short_cuts::ShortCut;
 use crate::style::{Colour, Width};
 
 use super::batch::BatchBuilder;
@@ -67,7 +67,7 @@ fn sprites<'a>(
     if !Sprites::may_be(scene, pass) {
         return None;
     }
-    let kinds = scene.kinds();
+    let kinds = kinds(scene);
     // Areas lie below the strokes of their own path only.
     let is_one_path = kinds.len() == 1 && pass != Pass::Along && scene.has_one_width();
     let most = if is_one_path { 2 } else { 1 };
@@ -89,4 +89,14 @@ fn sprites<'a>(
         }
     }
     Sprites::new(scene, all, mask.painted(scene, pass))
+}
+
+/// Returns the kinds of the paths that are drawn.
+fn kinds(scene: &Scene<'_>) -> Vec<Kind> {
+    let drawn = scene.graph.objects().iter().filter(|object| object.visible);
+    let closed: BTreeSet<bool> = drawn
+        .map(|object| scene.base_element(object).is_closed())
+        .collect();
+    let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
+    closed.into_iter().map(kind).collect()
 }

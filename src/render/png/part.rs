@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
-use crate::render::surface::Paint;
+use crate::render::paint::Paint;
 use crate::style::Colour;
 
 use super::MOST_PIXELS;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::render::surface::{Paint, Position};
+use crate::render::paint::{Paint, Position};
 
 use super::coverage::{SegmentBatch, Sprite, SpritePaint};
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 use super::coverage::CoverageBuffer;
 
@@ -188,8 +188,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
     use super::{MANY, Region};
+    use crate::render::paint::Position;
     use crate::render::png::coverage::CoverageBuffer;
-    use crate::render::surface::Position;
 
     const SIZE: [u32; 2] = [70, 50];
 

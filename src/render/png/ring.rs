@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 use super::Png;
 use super::chunk::Command;

@@ -7,7 +7,7 @@ use tiny_skia::{
     PixmapPaint, Point, StrokeDash, Transform,
 };
 
-use crate::render::surface::{FINE, Paint, Position, Stroke};
+use crate::render::paint::{FINE, Paint, Position, Stroke};
 use crate::style::{Cap, Colour, Join};
 
 use super::split::{ROWS, split};
@@ -353,7 +353,7 @@ mod tests {
         };
         let stroke = Stroke {
             colour: Colour::BLACK,
-            pen: crate::render::surface::Pen {
+            pen: crate::render::paint::Pen {
                 width: 1.2,
                 cap: Cap::Butt,
                 join: Join::Miter,

@@ -20,13 +20,13 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 use crate::fast_hash::FastMap;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::grow::Element;
-use crate::render::ShortCut;
 use crate::render::contribution::Painted;
 use crate::render::culling::own_reach;
+use crate::render::paint::overhang;
+use crate::render::paint::{FINE, Position, position};
 use crate::render::paint_key::Kind;
-use crate::render::prepass::overhang;
 use crate::render::scene::{Pass, Scene};
-use crate::render::surface::{FINE, Position, position};
+use crate::render::short_cuts::ShortCut;
 use crate::rule::Piece;
 use crate::style::{ColorBy, Width};
 
@@ -50,9 +50,6 @@ const LARGEST: f64 = 32.0;
 /// Upper bound of the distance, in pixels, by which filled shapes are drawn beyond their outlines: shapes
 /// narrower than a pixel are drawn a pixel wide.
 const BROADENED: f64 = 0.75;
-
-/// Minimum average number of uses of a sprite.
-pub(in crate::render) const USES: u64 = 3;
 
 /// Maximum memory of all sprites, in bytes.
 const MOST_MEMORY: usize = 1 << 26;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::render::surface::{Pen, Position};
+use crate::render::paint::{Pen, Position};
 use crate::style::{Cap, Join};
 
 use super::coverage::{CoverageBuffer, HairPen, RoundPen};

@@ -11,13 +11,17 @@ use crate::document::Document;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
+use crate::render::canvas::Size;
+use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
-use crate::render::surface::{Paint, Pen, Position, Stroke, Surface};
-use crate::render::{Drawing, Options, Scene, Size};
+use crate::render::options::Options;
+use crate::render::paint::{Paint, Pen, Position, Stroke};
+use crate::render::scene::Scene;
+use crate::render::surface::Surface;
 use crate::style::{Cap, Colour, Join, Style, Width};
 
 use super::skia::Outline;
-use super::{Pixmap, Png};
+use super::{Pixmap, Png, Raster};
 
 mod threads;
 
@@ -199,7 +203,8 @@ fn strokes_lie_over_fills() {
             has_holes: false,
         })
         .unwrap();
-        assert!(png.polygon(&[[1300, 1300], [1500, 1300], [1500, 1500], [1300, 1500]]));
+        let square = [[1300, 1300], [1500, 1300], [1500, 1500], [1300, 1500]];
+        assert_eq!(png.polygons(&square, 4), 1);
         png.end().unwrap();
     });
     let pixel = |x: usize, y: usize| &drawn[4 * (y * SIZE[0] as usize + x)..][..4];

@@ -4,9 +4,9 @@ use crate::geometry::DVec2;
 use crate::grow::{Colony, Element, LineElement, Run};
 use crate::render::contribution::Painted;
 use crate::render::display::Command;
+use crate::render::paint::{FINE, position};
 use crate::render::paint_key::{Kind, PaintKey, width_class};
 use crate::render::png::{PlacedSprite, Put};
-use crate::render::surface::{FINE, position};
 
 use super::{Line, Mark, Sketcher};
 

@@ -1,6 +1,6 @@
 //! Chunks of a document: collected in order, formatted on any thread.
 
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 use super::path::PathData;
 

@@ -2,7 +2,7 @@
 //!
 //! Differences are taken between rounded positions, so that rounding errors do not accumulate along a path.
 
-use crate::render::surface::Position;
+use crate::render::paint::Position;
 
 /// Column near which lines are broken, to keep files readable and comparable.
 const LINE: usize = 100;

@@ -6,10 +6,13 @@ use crate::catalogue::Catalogue;
 use crate::document::Document;
 use crate::grow::Growth;
 use crate::parallel::with_team;
+use crate::render::canvas::Size;
+use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
+use crate::render::options::{Detail, Options};
 use crate::render::png::Png;
 use crate::render::scene::Scene;
-use crate::render::{Detail, Drawing, Options, ShortCut, ShortCuts, Size};
+use crate::render::short_cuts::{ShortCut, ShortCuts};
 use crate::style::{ColorBy, Colour, Style, Width};
 
 fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {

@@ -14,9 +14,12 @@ use crate::grow::Growth;
 use crate::parallel::adversary::with_adversary;
 use crate::parallel::with_team;
 use crate::random_rules::{self, Features};
+use crate::render::canvas::Size;
+use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
+use crate::render::options::{Detail, Options};
 use crate::render::png::Png;
-use crate::render::{Detail, Drawing, Options, Scene, Size};
+use crate::render::scene::Scene;
 use crate::style::{ColorBy, Colour, Style, Width};
 
 /// Returns the pixels drawn by a number of threads in an order given by `seed`.

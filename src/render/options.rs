@@ -1,0 +1,187 @@
+//! Options of a picture.
+
+use std::num::NonZero;
+
+use crate::metadata::Metadata;
+use crate::parallel::all_cores;
+use crate::style::{Named, Style, View};
+
+use super::canvas::Size;
+use super::plot::Pens;
+use super::short_cuts::ShortCuts;
+use super::unit::Unit;
+
+/// A format of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// Scalable vector graphics, streamed: memory does not grow with the number of elements.
+    Svg,
+    /// Portable network graphics, antialiased, of four to sixteen bytes a pixel in memory, and twelve
+    /// more for every thread beside the first, as far as that makes no more than 200 MB; pictures that
+    /// are larger than [`Options::in_one_piece`] in bands, one after another.
+    Png,
+    /// Portable document format, streamed: memory grows by a few bytes for 256 kB of content.
+    ///
+    /// Where an area is stroked with a colour that is not opaque, the fill does not show through
+    /// the stroke.
+    Pdf,
+    /// Drawing exchange format of release 12: polylines in millimetres, always a plot.
+    Dxf,
+}
+
+impl Format {
+    /// Returns whether sizes can be lengths as well as pixels.
+    #[must_use]
+    pub fn has_lengths(self) -> bool {
+        self != Self::Png
+    }
+}
+
+impl Named for Format {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("svg", Self::Svg),
+        ("png", Self::Png),
+        ("pdf", Self::Pdf),
+        ("dxf", Self::Dxf),
+    ];
+}
+
+/// Metadata of a picture.
+#[derive(Clone, Debug, Default)]
+pub struct Labels {
+    /// The title.
+    pub title: String,
+    /// Description of the picture.
+    pub description: String,
+    /// Text from which the file can be made again.
+    pub provenance: String,
+}
+
+/// Options of a picture.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Options {
+    /// Format; SVG by default.
+    pub format: Format,
+    /// Style of elements.
+    pub style: Style,
+    /// Window of the plane; everything by default.
+    pub view: View,
+    /// Size; 1024 pixels on the long side by default.
+    pub size: Size,
+    /// Unit of size, strokes, margin and detail.
+    pub unit: Unit,
+    /// Whether the picture is drawn as single strokes, none twice, in an order with short ways of the pen
+    /// between them: for plotters and cutters. Nothing is filled, not even the background. Takes some hundred
+    /// bytes of memory per edge.
+    pub plot: bool,
+    /// Number of pens of a plot; by default one for every colour where there are few.
+    pub pens: Pens,
+    /// Whether an SVG is made of nested instances, so that its size depends on the graph and the number of
+    /// steps and not on the elements. Has no effect on other formats; excludes detail and plots.
+    pub instanced: bool,
+    /// Largest number of pixels of a PNG that is drawn in one piece; 2^24 by default. A larger one is drawn in
+    /// bands, each of which culls elements outside it, except in plots; and twice, unless its colours are
+    /// soon known to be many.
+    pub in_one_piece: u64,
+    /// Number of pixels of a band; 2^21 by default, with which drawing takes less than 300 MB. The bytes do not
+    /// depend on it, unless a path of many thousand vertices is drawn that is dashed, stroked more than 4
+    /// pixels wide, or filled with a colour that is not opaque.
+    pub band: u64,
+    /// Encoding of a PNG.
+    pub png: PngEncoding,
+    /// Size below which elements are not replaced; none by default.
+    pub detail: Option<Detail>,
+    /// Short cuts that drawing may take; all by default.
+    pub short_cuts: ShortCuts,
+    /// Metadata of the file.
+    pub labels: Labels,
+    /// Number of threads; by default that of the machine's cores. The bytes do not depend on it.
+    pub threads: NonZero<usize>,
+}
+
+setters!(Options {
+    format: Format,
+    style: Style,
+    view: View,
+    size: Size,
+    unit: Unit,
+    plot: bool,
+    pens: Pens,
+    instanced: bool,
+    in_one_piece: u64,
+    band: u64,
+    png: PngEncoding,
+    detail: Option<Detail>,
+    labels: Labels,
+    threads: NonZero<usize>,
+});
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            format: Format::Svg,
+            style: Style::default(),
+            view: View::default(),
+            size: Size::Long(1024),
+            unit: Unit::Pixel,
+            plot: false,
+            pens: Pens::default(),
+            instanced: false,
+            in_one_piece: 1 << 24,
+            band: 1 << 21,
+            png: PngEncoding::default(),
+            detail: None,
+            short_cuts: ShortCuts::default(),
+            labels: Labels::default(),
+            threads: all_cores(),
+        }
+    }
+}
+
+impl Options {
+    /// Returns whether a PNG is drawn in one piece.
+    pub(super) fn draws_in_one_piece(&self, [width, height]: [u32; 2]) -> bool {
+        u64::from(width) * u64::from(height) <= self.in_one_piece
+    }
+
+    /// Returns options with the style and the view that a file proposes.
+    #[must_use]
+    pub fn of(heading: &Metadata) -> Self {
+        Self {
+            style: heading.style.clone(),
+            view: heading.view,
+            ..Self::default()
+        }
+    }
+}
+
+/// Size down to which elements are replaced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// Size in pixels, above 0: shorter elements are not replaced. They are drawn as in their approximant, and
+    /// seed nothing.
+    ///
+    /// Elements that lead to seeds placed as the initiator are replaced at any size.
+    pub pixels: f64,
+    /// Whether the number of steps follows from the detail; the number given for the growth is then only a
+    /// limit.
+    pub decides_steps: bool,
+}
+
+/// Encoding of the pixels of a PNG. By default, no more bits a pixel than the colours need, in small files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PngEncoding {
+    /// Whether pixels are compressed faster, to larger files.
+    pub fast: bool,
+    /// Whether pixels are grey levels of 8 bits, by luma (ITU-R BT.709), with an alpha channel of 8 bits unless all
+    /// are opaque.
+    pub grey: bool,
+}
+
+setters!(PngEncoding {
+    fast: bool,
+    grey: bool
+});

@@ -1,0 +1,130 @@
+//! Writing of pictures in all formats.
+
+use std::io::Write;
+use std::sync::atomic::AtomicBool;
+
+use crate::graph::Graph;
+use crate::grow::Growth;
+use crate::parallel::with_team;
+
+use super::cells::Way;
+use super::drawing::{Drawing, Page};
+use super::error::RenderError;
+use super::options::{Format, Options};
+use super::pdf::Pdf;
+use super::picture::Picture;
+use super::plot::{Plot, Plotted};
+use super::png::Png;
+use super::svg::Svg;
+use super::{bands, dxf, instanced};
+
+/// Grows a graph and writes the approximant as a picture.
+///
+/// # Errors
+///
+/// If growing ends early, if there is nothing to draw or no room for it, if a detail cannot be reached, or
+/// if `out` fails.
+pub fn write(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
+    if options.instanced && options.format == Format::Svg {
+        return instanced::write(graph, growth, options, out);
+    }
+    let layout = match Way::find(graph, growth, options)? {
+        Way::Elements(layout) => layout,
+        Way::Cells(cells) => {
+            write_in(&cells, options, growth.cancel, out)?;
+            return Ok(cells.picture());
+        }
+    };
+    let (size, cancel) = (layout.canvas.size(), growth.cancel);
+    if options.format == Format::Png && !options.plot && !options.draws_in_one_piece(size) {
+        bands::write_layout(&layout, options, out)?;
+        return Ok(layout.picture(None));
+    }
+    let plotted = write_in(&layout.scene(), options, cancel, out)?;
+    Ok(layout.picture(plotted))
+}
+
+/// Writes a drawing as a file.
+pub(crate) fn write_drawing(
+    drawing: &impl Drawing,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    write_in(drawing, options, None, out).map(|_| ())
+}
+
+/// Writes a drawing, as strokes if the options ask for a plot; returns the numbers of the plot.
+fn write_in(
+    drawing: &impl Drawing,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<Option<Plotted>, RenderError> {
+    let format = match options.format {
+        Format::Svg => PathFormat::Svg,
+        Format::Png => PathFormat::Png,
+        Format::Pdf => PathFormat::Pdf,
+        Format::Dxf => {
+            let plot = Plot::of(drawing, options, cancel)?;
+            dxf::write(&plot, options.unit, &options.labels, out)?;
+            return Ok(Some(plot.plotted));
+        }
+    };
+    if options.plot {
+        let plot = Plot::of(drawing, options, cancel)?;
+        write_paths(&plot, format, options, cancel, out)?;
+        return Ok(Some(plot.plotted));
+    }
+    write_paths(drawing, format, options, cancel, out)?;
+    Ok(None)
+}
+
+/// Format of paths in their order.
+#[derive(Clone, Copy)]
+enum PathFormat {
+    Svg,
+    Png,
+    Pdf,
+}
+
+fn write_paths(
+    drawing: &impl Drawing,
+    format: PathFormat,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    if matches!(format, PathFormat::Png) && !options.draws_in_one_piece(drawing.size()) {
+        return bands::write_drawing(drawing, options, cancel, out);
+    }
+    let page = Page {
+        size: drawing.size(),
+        unit: options.unit,
+        background: drawing.background(),
+        pen: drawing.pen(),
+        labels: &options.labels,
+        has_layers: options.plot,
+    };
+    with_team(options.threads, |team| match format {
+        PathFormat::Svg => {
+            let mut svg = Svg::begin(out, &page, team)?;
+            drawing.draw(&mut svg, team)?;
+            Ok(svg.finish()?)
+        }
+        PathFormat::Png => {
+            let mut png = Png::begin(page.size, page.background, team)?;
+            drawing.draw(&mut png, team)?;
+            Ok(png.write(options, out)?)
+        }
+        PathFormat::Pdf => {
+            let mut pdf = Pdf::begin(out, &page, team)?;
+            drawing.draw(&mut pdf, team)?;
+            Ok(pdf.finish()?)
+        }
+    })
+}
