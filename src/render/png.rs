@@ -1,6 +1,9 @@
 //! PNG: the paths of a picture, antialiased. Narrow strokes, and opaque areas that are small or have very
 //! many vertices, are drawn as coverage by any thread; there may be millions of them. tiny-skia draws the
 //! rest.
+//!
+//! A pass takes less work than paths do by the [`Means`] that scene and surface permit: sprites, segment batches
+//! and outlines of fewer vertices.
 
 mod batch;
 mod buffers;

@@ -439,8 +439,4 @@ impl Visitor for Prepass<'_> {
         }
         Ok(())
     }
-
-    fn end(&mut self, _: bool) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
