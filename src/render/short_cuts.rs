@@ -4,19 +4,22 @@
 //! measures each.
 //!
 //! Processor seconds of pictures of 2048 pixels to a detail of half a pixel, on one thread, with all short cuts
-//! and without one of them (the less of two runs; built without link-time optimisation; two runs differ by some percent):
+//! and without one of them (the less of two runs, which differ by up to a tenth; built without link-time
+//! optimisation; bold where that is at least 15 % more):
 //!
 //! | fractal | all | `Prepass` | `Contribution` | `LevelOfDetail` | `SegmentBatches` | `RunSprites` | `ColonySprites` |
 //! |---|---|---|---|---|---|---|---|
 //! | gosper | 0.57 | **1.83** | 0.59 | 0.44 | 0.54 | **0.69** | 0.54 |
-//! | dragon-wreath | 0.61 | **1.72** | 0.61 | **1.59** | 0.61 | 0.62 | 0.61 |
-//! | h-tree | 1.53 | **1.85** | 1.54 | 1.61 | 1.59 | 1.61 | 1.54 |
-//! | random-tree | 1.50 | 1.47 | **7.19** | 1.48 | 1.50 | 1.48 | 1.48 |
-//! | self-seeding-square | 0.66 | **1.07** | 0.66 | 0.66 | 0.65 | 0.64 | 0.66 |
-//! | quadric-koch-18 | 0.91 | **1.17** | 0.93 | 0.94 | 0.94 | 0.93 | 0.91 |
-//! | ternary-tree | 0.91 | 0.90 | 0.88 | 0.90 | 0.92 | 0.93 | 0.93 |
-//! | terdragon-rose | 1.10 | **11.74** | 1.13 | **2.20** | 1.10 | **5.68** | 1.10 |
-//! | mandala | 1.20 | 1.22 | 1.28 | **1.39** | 1.20 | 1.23 | **14.70** |
+//! | dragon | 0.28 | **0.55** | 0.29 | 0.29 | 0.29 | 0.25 | 0.29 |
+//! | dragon-wreath | 0.54 | **1.65** | 0.54 | **1.79** | 0.54 | 0.53 | 0.52 |
+//! | random-tree | 1.29 | 1.34 | **6.17** | 1.32 | 1.33 | 1.33 | 1.33 |
+//! | self-seeding-square | 0.64 | **1.03** | 0.64 | 0.64 | 0.65 | 0.65 | 0.65 |
+//! | quadric-koch-18 | 0.94 | **1.18** | 0.94 | 0.94 | 0.93 | 0.94 | 0.94 |
+//! | pentaflake | 0.70 | **0.93** | 0.73 | 0.69 | 0.74 | **3.71** | 0.67 |
+//! | terdragon-rose | 1.16 | **11.86** | 1.31 | **2.41** | 1.28 | **5.24** | 1.17 |
+//! | mandala | 1.18 | 1.16 | 1.19 | 1.29 | 1.16 | 1.13 | **13.83** |
+//! | h-tree | 1.40 | **1.72** | 1.42 | 1.41 | 1.41 | 1.40 | 1.41 |
+//! | h-tree of one colour, 20 steps | 0.34 | **0.42** | 0.34 | 0.34 | **0.54** | 0.34 | 0.34 |
 
 /// Way to draw the pixels of a PNG with less work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
