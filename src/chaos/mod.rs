@@ -133,7 +133,7 @@ pub enum GameError {
     /// The histogram is larger than the limit of memory.
     #[error(
         "{0} x {1} pixels take more than {most} counters, with one for each class ({classes})",
-        size[0], size[1], most = MOST_BINS
+        size[0], size[1], most = MAX_BINS
     )]
     TooManyBins {
         /// Width and height in pixels.
@@ -156,13 +156,13 @@ pub enum GameError {
 }
 
 /// Maximum number of counters, without those for points outside: one gibibyte per thread.
-const MOST_BINS: u64 = 1 << 28;
+const MAX_BINS: u64 = 1 << 28;
 
 /// Maximum number of counters of all threads together.
-const MOST_BINS_OF_THREADS: u64 = 1 << 29;
+const MAX_BINS_OF_THREADS: u64 = 1 << 29;
 
 /// Maximum side of a window.
-const MOST_PIXELS: u32 = 1 << 22;
+const MAX_PIXELS: u32 = 1 << 22;
 
 /// Plays the chaos game.
 ///
@@ -182,7 +182,7 @@ pub fn play(
     };
     let size @ [width, height] = window.size;
     let pixels = u64::from(width) * u64::from(height);
-    if pixels.saturating_mul(classes as u64) > MOST_BINS {
+    if pixels.saturating_mul(classes as u64) > MAX_BINS {
         return Err(GameError::TooManyBins { size, classes });
     }
     let course = Course::new(system, window, game);
@@ -204,7 +204,7 @@ pub fn play(
         }
     };
     let threads = (game.threads.get() as u64)
-        .min(MOST_BINS_OF_THREADS / bins as u64)
+        .min(MAX_BINS_OF_THREADS / bins as u64)
         .min(course.waves())
         .max(1);
     let threads = usize::try_from(threads).unwrap_or(1);
@@ -217,7 +217,7 @@ pub fn play(
 }
 
 fn check(window: &HistogramWindow, game: &Game<'_>) -> Result<(), GameError> {
-    let sides = 1..=MOST_PIXELS;
+    let sides = 1..=MAX_PIXELS;
     let inverse = window.to_pixels.inverse();
     if !window.size.iter().all(|side| sides.contains(side)) || !inverse.is_finite() {
         return Err(GameError::Window);

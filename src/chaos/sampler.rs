@@ -28,13 +28,13 @@ enum Piece {
 const CHORDS: u32 = 64;
 
 /// Maximum number of heights at which the sides of an outline end or cross, and of triangles.
-const MOST_PARTS: usize = 1 << 16;
+const MAX_PARTS: usize = 1 << 16;
 
 /// Maximum number of sides of a closed outline: all pairs of sides are examined.
-const MOST_SIDES: usize = 1 << 13;
+const MAX_SIDES: usize = 1 << 13;
 
 /// Maximum number of pieces of a union.
-const MOST_PIECES: usize = 1 << 21;
+const MAX_PIECES: usize = 1 << 21;
 
 impl Sampler {
     /// Creates the sampler of a shape. Returns `None` if the shape has no extent, is not finite, or has an
@@ -63,7 +63,7 @@ impl Sampler {
                     .map(|(end, piece)| (before + end * scale, *piece)),
             );
             before += share;
-            if pieces.len() > MOST_PIECES {
+            if pieces.len() > MAX_PIECES {
                 return None;
             }
         }
@@ -76,7 +76,7 @@ impl Sampler {
             return None;
         }
         if outline.is_closed() {
-            if corners.len() > MOST_SIDES {
+            if corners.len() > MAX_SIDES {
                 return None;
             }
             let triangles = triangles(&corners)?.into_iter();
@@ -136,7 +136,7 @@ fn triangles(vertices: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
     for (index, &first) in sides.iter().enumerate() {
         let crossings = sides[..index].iter();
         heights.extend(crossings.filter_map(|&second| crossing(first, second)));
-        if heights.len() > MOST_PARTS {
+        if heights.len() > MAX_PARTS {
             return None;
         }
     }
@@ -162,7 +162,7 @@ fn triangles(vertices: &[DVec2]) -> Option<Vec<[DVec2; 3]>> {
                 triangles.extend([[a, b, c], [a, c, d]]);
             }
         }
-        if triangles.len() > MOST_PARTS {
+        if triangles.len() > MAX_PARTS {
             return None;
         }
     }

@@ -72,7 +72,7 @@ pub enum SystemError {
 }
 
 /// Maximum number of entries of the table of transition probabilities.
-const MOST_ENTRIES: usize = 1 << 24;
+const MAX_ENTRIES: usize = 1 << 24;
 
 impl WeightedMaps {
     /// Prepares the walk of a system.
@@ -87,7 +87,7 @@ impl WeightedMaps {
         let walk = ifs.walk();
         let states = walk.states();
         let count = affine + ifs.condensation().len();
-        if states.len().saturating_mul(count) > MOST_ENTRIES {
+        if states.len().saturating_mul(count) > MAX_ENTRIES {
             return Err(SystemError::TooMany { maps: count });
         }
         let targets = states.iter();

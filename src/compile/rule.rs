@@ -155,10 +155,7 @@ impl<'r> Compiler<'r> {
             }
             depth += 1;
         }
-        let beyond = self
-            .objects
-            .iter()
-            .any(|object| matches!(object.replacement, Replacement::Unresolved));
+        let beyond = self.objects.iter().any(Object::is_unresolved);
         let seeds = rule
             .generators()
             .iter()

@@ -13,7 +13,7 @@ use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
-use crate::graph::{Graph, Instance, Object, Replacement};
+use crate::graph::{Graph, Instance, Object};
 
 /// Limit of the number of states at one level.
 const MOST_STATES: usize = 20_000;
@@ -241,8 +241,8 @@ impl<F: Bounded> Graph<F> {
                 .any(|(_, instance)| to[instance.object])
         };
         let ends = |object: usize| {
-            !self.is_fertile(object)
-                || matches!(self.objects[object].replacement, Replacement::Unresolved)
+            let object = &self.objects[object];
+            object.is_kept() || object.is_unresolved()
         };
         let drawn = |object: usize, set: &[bool]| {
             self.objects[object].visible && (ends(object) || leads(object, set))

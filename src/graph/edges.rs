@@ -83,8 +83,7 @@ impl<F: Frame> Graph<F> {
     /// Returns, for every object, whether it leads to seeds.
     pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
         self.leading_to(|object| {
-            matches!(self.objects[object].replacement, Replacement::Unresolved)
-                || self.placements(object).any(Placement::seeds)
+            self.objects[object].is_unresolved() || self.placements(object).any(Placement::seeds)
         })
     }
 

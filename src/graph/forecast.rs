@@ -368,13 +368,8 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
     /// requires.
     fn is_resolved(&self) -> bool {
-        let beyond = |number: &usize| {
-            matches!(
-                self.graph.objects[*number].replacement,
-                Replacement::Unresolved
-            )
-        };
-        !self.standing.keys().any(beyond)
+        let mut objects = self.standing.keys();
+        !objects.any(|&number| self.graph.objects[number].is_unresolved())
     }
 
     /// Takes the tallies of the current approximant, with those of fertile objects of one behaviour

@@ -211,6 +211,11 @@ impl<F: Frame> Object<F> {
         matches!(self.replacement, Replacement::Kept)
     }
 
+    /// Returns whether the successor of the object lies beyond the depth of the graph.
+    pub(crate) fn is_unresolved(&self) -> bool {
+        matches!(self.replacement, Replacement::Unresolved)
+    }
+
     /// Returns the successors that replace elements of the object in turn or at random; empty for others.
     pub(crate) fn alternatives(&self) -> &[Alternative] {
         match &self.replacement {

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame, Frame2, stretch};
-use crate::graph::{Chain, Graph, Instance, Replacement, Seed};
+use crate::graph::{Chain, Graph, Instance, Seed};
 
 use super::start::{Standing, Start, StartChain};
 use super::walk::walk_over;
@@ -124,10 +124,7 @@ impl Colony<'_> {
 }
 
 fn seed_of<F: Frame>(graph: &Graph<F>, [object, number]: [usize; 2]) -> Option<&Seed<F>> {
-    match &graph.objects()[object].replacement {
-        Replacement::Fixed(successor) => successor.seeds.get(number),
-        _ => None,
-    }
+    graph.objects()[object].successor()?.seeds.get(number)
 }
 
 /// Class of colonies that are congruent.

@@ -3,10 +3,10 @@
 use crate::geometry::{Direction, Frame, Frame2, Outline};
 use crate::graph::{Chain, CompileError, Graph, Replacement, Seed, Successor};
 
-use super::block::Blocks;
+use super::block::{Blocks, Run};
 use super::census::Census;
 use super::evaluator::{Evaluator, ReplacementContext};
-use super::found::{Found, FoundRun, FoundSubtree, Next, Stop};
+use super::found::{Found, FoundSubtree, Next, Stop};
 use super::start::{Standing, Start, StartChain, birth, seed_placement};
 use super::{Enter, Subtree};
 
@@ -169,7 +169,10 @@ impl<'g, F: Frame> Descent<'g, F> {
         born: u32,
         joined: bool,
         blocks: Option<&'b Blocks<F>>,
-    ) -> Result<Option<FoundRun<'b, F>>, CompileError> {
+    ) -> Result<Option<Run<'b, F>>, CompileError>
+    where
+        'g: 'b,
+    {
         let Found {
             standing,
             object,
@@ -200,21 +203,25 @@ impl<'g, F: Frame> Descent<'g, F> {
         level: u32,
         meets_end: bool,
         blocks: &'b Blocks<F>,
-    ) -> Option<FoundRun<'b, F>> {
+    ) -> Option<Run<'b, F>>
+    where
+        'g: 'b,
+    {
         let block = blocks.get(self.graph, object, self.target - level, &standing.frame)?;
         let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
         self.visited += block.len();
         let index = self.index + 1;
         self.index += u128::from(block.len());
-        Some(FoundRun {
+        Some(Run {
             block,
             object,
             frame: standing.frame,
             length: standing.length,
             appearance: standing.appearance,
-            level,
+            born: level,
             joined,
             index,
+            graph: self.graph,
         })
     }
 
@@ -231,7 +238,10 @@ impl<'g, F: Frame> Descent<'g, F> {
         start: &Start<'g, F>,
         mut enter: impl FnMut(&Subtree<F>) -> Enter,
         stop: Stop<'b, F>,
-    ) -> Result<Next<'b, F>, CompileError> {
+    ) -> Result<Next<'b, F>, CompileError>
+    where
+        'g: 'b,
+    {
         loop {
             if self.visited >= PATIENCE {
                 return Ok(Next::Pause);

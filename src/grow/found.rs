@@ -1,9 +1,8 @@
 //! Results of a descent: elements, blocks in the place of elements, and subtrees left to other descents.
 
 use crate::geometry::{Frame, Frame2};
-use crate::instancing::Appearance;
 
-use super::block::{Block, Blocks};
+use super::block::{Blocks, Run};
 use super::sizes::Sizes;
 use super::start::Standing;
 
@@ -18,21 +17,6 @@ pub(super) struct Found<F: Frame = Frame2> {
     /// Rank at its level; 0 unless ranks are counted.
     pub(super) rank: u64,
     /// Rank in its fractal, from 1; for an element that is replaced, the rank of its first descendant.
-    pub(super) index: u128,
-}
-
-/// Block that a descent has reached in place of its elements.
-pub(super) struct FoundRun<'b, F: Frame> {
-    pub(super) block: &'b Block<F>,
-    pub(super) object: usize,
-    pub(super) frame: F,
-    pub(super) length: f64,
-    pub(super) appearance: Appearance,
-    /// Step of birth of the object that the block replaces.
-    pub(super) level: u32,
-    /// Whether the preceding element ends where the object starts.
-    pub(super) joined: bool,
-    /// Rank of the first element.
     pub(super) index: u128,
 }
 
@@ -52,7 +36,7 @@ pub(super) enum Next<'b, F: Frame> {
     /// Element of the approximant.
     Element(Found<F>),
     /// Consecutive elements, if the descent stops at blocks.
-    Run(FoundRun<'b, F>),
+    Run(Run<'b, F>),
     /// Element to be replaced, if the descent stops at subtrees. The descent assumes that its last
     /// descendant reaches its end point.
     Subtree(FoundSubtree<F>),

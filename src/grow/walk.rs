@@ -10,7 +10,7 @@ use super::block::{Blocks, Run};
 use super::census::Census;
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
-use super::found::{Found, FoundRun, Next, Stop};
+use super::found::{Found, Next, Stop};
 use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
@@ -132,11 +132,11 @@ pub fn walk<F: Frame, V: Visitor<F>>(
 
 /// Walks over a fractal, and over all that it seeds in turn if `is_whole`, and sends elements to a sink. With a
 /// census, ranks count elements that are not visited.
-pub(super) fn send<'g, F: Frame, S: Sink<'g, F>>(
+pub(super) fn send<'g: 's, 's, F: Frame, S: Sink<'g, F>>(
     graph: &'g Graph<F>,
     steps: u32,
     (first, is_whole): (Start<'g, F>, bool),
-    stop: Stop<'_, F>,
+    stop: Stop<'s, F>,
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
@@ -177,11 +177,11 @@ pub(super) fn walk_over<F: Frame, V: Visitor<F>>(
 }
 
 /// Sends the elements of one fractal of the last approximant to a sink.
-fn send_fractal<'g, F: Frame, S: Sink<'g, F>>(
+fn send_fractal<'g: 's, 's, F: Frame, S: Sink<'g, F>>(
     fractal: FractalInfo,
     start: &Start<'g, F>,
     mut descent: Descent<'g, F>,
-    stop: Stop<'_, F>,
+    stop: Stop<'s, F>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
     sink.begin(fractal, start.born)?;
@@ -225,20 +225,9 @@ impl<'g, 'v, F: Frame, V: Visitor<F>> Visiting<'g, 'v, F, V> {
     }
 
     #[inline]
-    pub(super) fn run(&mut self, found: &FoundRun<'_, F>) -> Result<(), WalkError<V::Error>> {
-        let run = Run {
-            block: found.block,
-            object: found.object,
-            frame: found.frame,
-            length: found.length,
-            appearance: found.appearance,
-            born: found.level,
-            index: found.index,
-            joined: found.joined,
-            graph: self.graph,
-        };
-        self.seen += found.block.len();
-        self.visitor.run(&run).map_err(WalkError::Visitor)
+    pub(super) fn run(&mut self, run: &Run<'_, F>) -> Result<(), WalkError<V::Error>> {
+        self.seen += run.count();
+        self.visitor.run(run).map_err(WalkError::Visitor)
     }
 
     pub(super) fn colony(
@@ -286,9 +275,9 @@ impl<'g, F: Frame, V: Visitor<F>> Sink<'g, F> for Direct<'_, '_, F, V> {
                 self.tally.count(1)?;
                 self.visiting.element(&found)
             }
-            Next::Run(found) => {
-                self.tally.count(found.block.len())?;
-                self.visiting.run(&found)
+            Next::Run(run) => {
+                self.tally.count(run.count())?;
+                self.visiting.run(&run)
             }
             Next::Subtree(_) | Next::Pause | Next::End => unreachable!("nothing is left out"),
         }

@@ -23,10 +23,10 @@ pub struct Compass {
 }
 
 /// Limit of the number of parts, other than 2⁶⁴: 360 times as many are exact in a double.
-const MOST_PARTS: u64 = 1 << 40;
+const MAX_PARTS: u64 = 1 << 40;
 
 /// Largest denominator that the search tries.
-const MOST_DENOMINATOR: u32 = 1000;
+const MAX_DENOMINATOR: u32 = 1000;
 
 impl Compass {
     /// Returns the compass for all angles that a system turns by.
@@ -40,7 +40,7 @@ impl Compass {
             parts = parts
                 .zip(denominator)
                 .and_then(|(a, b)| (a / gcd(a, b)).checked_mul(b))
-                .filter(|parts| *parts <= MOST_PARTS);
+                .filter(|parts| *parts <= MAX_PARTS);
         }
         Self {
             parts: parts.unwrap_or(0),
@@ -163,7 +163,7 @@ fn denominator(angle: f64) -> Option<u64> {
         let q = f64::from(q);
         360.0 * (angle * q / 360.0).round() / q == angle
     };
-    if let Some(q) = (1..=MOST_DENOMINATOR).find(|q| whole(*q)) {
+    if let Some(q) = (1..=MAX_DENOMINATOR).find(|q| whole(*q)) {
         return Some(q.into());
     }
     let text = angle.abs().to_string();
@@ -176,7 +176,7 @@ fn denominator(angle: f64) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Compass, MOST_PARTS, denominator};
+    use super::{Compass, MAX_PARTS, denominator};
     use crate::geometry::DVec2;
 
     #[test]
@@ -197,7 +197,7 @@ mod tests {
         }
         assert_eq!(denominator(f64::NAN), None);
         let odd = denominator(std::f64::consts::LN_2);
-        assert!(odd.is_none_or(|parts| parts > MOST_PARTS));
+        assert!(odd.is_none_or(|parts| parts > MAX_PARTS));
     }
 
     #[test]

@@ -3,12 +3,12 @@
 
 use crate::draws::Path;
 
-use super::rewrite::{MOST_WORK, RewriteError, Rewriter, check_length};
+use super::rewrite::{MAX_WORK, RewriteError, Rewriter, check_length};
 use super::word::number;
 use super::{LSystem, Word};
 
 /// Limit of the number of modules in a word that is read.
-const MOST_MODULES: u64 = 200_000_000;
+const MAX_MODULES: u64 = 200_000_000;
 
 impl LSystem {
     /// Reads the modules of the word after a number of steps, in order: `read` gets the symbol's index and
@@ -31,7 +31,7 @@ impl LSystem {
             }
             return Ok(());
         }
-        if let Some(error) = self.too_long(steps, MOST_MODULES, most_elements) {
+        if let Some(error) = self.too_long(steps, MAX_MODULES, most_elements) {
             return Err(error);
         }
         let axiom = Word::axiom(self, seed);
@@ -128,12 +128,12 @@ impl<'s> Expander<'s> {
             read(symbol, arguments);
         }
         let step = steps;
-        let modules = (self.modules, MOST_MODULES, "modules");
+        let modules = (self.modules, MAX_MODULES, "modules");
         check_length(
             step,
             &[modules, (self.elements, self.most_elements, "elements")],
         )?;
-        if self.rewriter.work > MOST_WORK {
+        if self.rewriter.work > MAX_WORK {
             return Err(RewriteError::TooMuchWork { step });
         }
         Ok(())

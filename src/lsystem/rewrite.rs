@@ -9,13 +9,13 @@ use super::word::number;
 use super::{LSystem, Word};
 
 /// Limit of the number of modules, and of arguments, in a word that is stored.
-const MOST_MODULES: u64 = 25_000_000;
+const MAX_MODULES: u64 = 25_000_000;
 
 /// Limit of the modules, productions and contexts examined in all steps together.
-pub(super) const MOST_WORK: u64 = 1_000_000_000;
+pub(super) const MAX_WORK: u64 = 1_000_000_000;
 
 /// Limit of the successors' modules that a forecast examines.
-const MOST_FORECAST: usize = 100_000_000;
+const MAX_FORECAST: usize = 100_000_000;
 
 /// An error that prevents a word from being rewritten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -75,10 +75,10 @@ impl LSystem {
     /// `most_elements` lines and polygons, if rewriting takes too much work, or if an argument is not finite.
     /// Where lengths of words can be predicted, too long a word is reported before any rewriting.
     pub fn word(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Word, RewriteError> {
-        if let Some(error) = self.too_long(steps, MOST_MODULES, most_elements) {
+        if let Some(error) = self.too_long(steps, MAX_MODULES, most_elements) {
             return Err(error);
         }
-        self.rewritten(steps, seed, most_elements, MOST_WORK)
+        self.rewritten(steps, seed, most_elements, MAX_WORK)
     }
 
     fn rewritten(
@@ -150,7 +150,7 @@ impl LSystem {
         let mut lengths = self.lengths()?;
         let successors = self.productions.iter().map(|p| p.successor.len());
         let work = self.symbols.len() + successors.sum::<usize>();
-        let soon = u32::try_from(MOST_FORECAST / work.max(1)).unwrap_or(u32::MAX);
+        let soon = u32::try_from(MAX_FORECAST / work.max(1)).unwrap_or(u32::MAX);
         for step in 0..=steps.min(soon) {
             let (modules, elements) = lengths.count();
             let modules = (modules, most_modules, "modules");
@@ -321,8 +321,8 @@ impl<'s> Rewriter<'s> {
                 .iter()
                 .map(|symbol| system.symbols[*symbol as usize].draws());
             elements += draws.sum::<u64>();
-            let modules = (next.symbols.len() as u64, MOST_MODULES, "modules");
-            let arguments = (next.arguments.len() as u64, MOST_MODULES, "arguments");
+            let modules = (next.symbols.len() as u64, MAX_MODULES, "modules");
+            let arguments = (next.arguments.len() as u64, MAX_MODULES, "arguments");
             let elements = (elements, most_elements, "elements");
             check_length(step, &[modules, arguments, elements])?;
         }

@@ -19,7 +19,7 @@ use super::statistics::weighted_mean;
 /// zero, and the magnitudes of those below.
 const EXPONENTS: [f64; 2] = [0.1, 1.6];
 const EXPONENT_STEPS: i32 = 24;
-const MOST_PART: [f64; 2] = [0.1, 50.0];
+const MAX_PART: [f64; 2] = [0.1, 50.0];
 const LEAST_PART: [f64; 2] = [0.1, 0.8];
 const PARTS_ABOVE: i32 = 32;
 const PARTS_BELOW: i32 = 8;
@@ -149,7 +149,7 @@ impl Fit {
 /// powers.
 fn corrections(readings: &[Reading]) -> Vec<Correction> {
     let parts =
-        spread(MOST_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
+        spread(MAX_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
     let parts: Vec<f64> = parts.collect();
     let models = real(parts.len()) * f64::from(EXPONENT_STEPS);
     let correction = |log: &dyn Fn(f64) -> f64, prior: f64| {

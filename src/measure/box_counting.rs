@@ -101,7 +101,7 @@ impl BoxCounting {
         grids: &[Grid],
         threads: NonZero<usize>,
     ) -> Self {
-        const MOST_BOXES: u64 = 1 << 17;
+        const MAX_BOXES: u64 = 1 << 17;
         const FINE: f64 = 1.0 / 16_384.0;
         let extent = set.bounds().size().max_element();
         if extent <= 0.0 {
@@ -118,7 +118,7 @@ impl BoxCounting {
             |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < FINE * extent);
         match scales.filter(comes_far) {
             Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, PLANE)),
-            None => Self::of(&set.scales(base, MOST_BOXES, grids, threads), &window),
+            None => Self::of(&set.scales(base, MAX_BOXES, grids, threads), &window),
         }
     }
 

@@ -40,7 +40,7 @@ const SAME: f64 = 1e-9;
 const LARGEST: f64 = 64.0;
 
 /// Maximum number of iterations of masses along the edges of a graph.
-const MOST_ROUNDS: usize = 100_000;
+const MAX_ROUNDS: usize = 100_000;
 
 /// A strongly connected component.
 #[derive(Clone, Debug, Default)]
@@ -252,7 +252,7 @@ impl Copies {
     /// Propagates masses from components below, along the copies `used`, until they converge.
     fn flow(&self, used: &[usize], sizes: &[f64], heights: &mut [f64]) {
         const TOLERANCE: f64 = 1e-15;
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let mut sums = std::collections::BTreeMap::new();
             for &copy in used {
                 let Copy { from, to, .. } = self.copies[copy];

@@ -122,6 +122,6 @@ pub(super) fn least(
             sampled: false,
         }
     };
-    let told = counts.iter().map(Vec::len).min().unwrap_or_default();
-    sizes.iter().take(told).enumerate().map(scale).collect()
+    let counted = counts.iter().map(Vec::len).min().unwrap_or_default();
+    sizes.iter().take(counted).enumerate().map(scale).collect()
 }

@@ -36,7 +36,7 @@ const ADDED_STEP: f64 = 0.15;
 const APART: f64 = 0.03;
 
 /// Lower bound of the added power, as a share of the main one at the coarsest size.
-const MOST_TAKEN: f64 = -0.9;
+const MAX_TAKEN: f64 = -0.9;
 /// Minimum share of the main power in the count at the finest size.
 const LEAST_SHARE: f64 = 0.7;
 
@@ -158,15 +158,15 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
     let up_to = |part: f64| means.partition_point(|mean| mean.size <= longest * part);
     let ends = COARSEST.map(up_to);
     let sizes: Vec<f64> = means.iter().map(|mean| mean.size).collect();
-    let mut told = ends.map(|_| Vec::new());
+    let mut evidence = ends.map(|_| Vec::new());
     for rough in ROUGH {
         let whitened = Whitened::new(&sizes, longest, rough);
         for &pen in &belief.pens {
-            Models::new(&means, ends, pen, &whitened, belief.left).tell(&mut told);
+            Models::new(&means, ends, pen, &whitened, belief.left).weigh(&mut evidence);
         }
     }
-    let ranges: Vec<Range> = std::iter::zip(ends, &told)
-        .filter_map(|(sizes, told)| Range::of(sizes, told, belief.whole))
+    let ranges: Vec<Range> = std::iter::zip(ends, &evidence)
+        .filter_map(|(sizes, evidence)| Range::of(sizes, evidence, belief.whole))
         .collect();
     let sizes = |range: &Range| real(range.sizes);
     let log = |range: &Range| COUNTED * (range.log + sizes(range) * libm::log(LEFT_OUT));
@@ -194,7 +194,7 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
 }
 
 /// A model of a range: the step of its dimension, and the logarithm of its likelihood.
-type Told = (u16, f64);
+type Evidence = (u16, f64);
 
 /// Estimate of the dimension from one range of sizes.
 struct Range {
@@ -208,12 +208,12 @@ struct Range {
 impl Range {
     /// Returns the estimate from the models of the range; `saturating` is the relative prior of D = 2. Returns
     /// `None` if there is no model.
-    fn of(sizes: usize, told: &[Told], whole: f64) -> Option<Self> {
+    fn of(sizes: usize, evidence: &[Evidence], whole: f64) -> Option<Self> {
         /// Logarithm of the likelihood, relative to the best, below which models are ignored.
         const LEAST_LOG: f64 = -40.0;
-        let best = told.iter().map(|it| it.1).max_by(f64::total_cmp)?;
+        let best = evidence.iter().map(|it| it.1).max_by(f64::total_cmp)?;
         let mut weights = vec![0.0; usize::from(STEPS) + 1];
-        for &(step, log) in told.iter().filter(|it| it.1 > best + LEAST_LOG) {
+        for &(step, log) in evidence.iter().filter(|it| it.1 > best + LEAST_LOG) {
             weights[usize::from(step)] += libm::exp(log - best);
         }
         weights[usize::from(STEPS)] *= 1.0 + whole / STEP;
@@ -330,7 +330,7 @@ impl<'a> Models<'a> {
     }
 
     /// Appends every model to those of its range.
-    fn tell(&self, told: &mut [Vec<Told>; RANGES]) {
+    fn weigh(&self, evidence: &mut [Vec<Evidence>; RANGES]) {
         let ranges: Vec<usize> = (0..RANGES)
             .filter(|&it| self.ends[it] >= LEAST_SIZES)
             .collect();
@@ -355,7 +355,7 @@ impl<'a> Models<'a> {
             let sums = self.products(&main, &self.wanted);
             for &range in &ranges {
                 let rest = all[range] - sums[range] * sums[range] / norms[range];
-                told[range].push((step, log(range, rest)));
+                evidence[range].push((step, log(range, rest)));
             }
             for other in &added {
                 if dimension - other.exponent < APART {
@@ -370,11 +370,11 @@ impl<'a> Models<'a> {
                     let more = (other_sum * norm - sum * both) / determinant;
                     let (share, rest) = (part * fine, more * other.fine);
                     let is_sound = part > 0.0
-                        && more * other.coarse[range] > MOST_TAKEN * part * coarse[range]
+                        && more * other.coarse[range] > MAX_TAKEN * part * coarse[range]
                         && share >= LEAST_SHARE * (share + rest);
                     if is_sound {
                         let left = all[range] - part * sum - more * other_sum;
-                        told[range].push((step, log(range, left) - price));
+                        evidence[range].push((step, log(range, left) - price));
                     }
                 }
             }

@@ -105,7 +105,7 @@ impl Placed {
 const GRAZED: f64 = 1.0 / 8.0;
 
 /// Maximum number of copies that a cover examines.
-const MOST_LOOKED_AT: usize = 1 << 23;
+const MAX_LOOKED_AT: usize = 1 << 23;
 
 /// The boxes of a cover, and the number of copies that it may still examine.
 struct Marking {
@@ -117,7 +117,7 @@ struct Marking {
 const NEGLIGIBLE: f64 = 1e-17;
 
 /// Maximum number of sweeps or levels of an iteration.
-const MOST_SWEEPS: usize = 10_000;
+const MAX_SWEEPS: usize = 10_000;
 
 impl LimitSet {
     /// Creates the limit set of a graph's fertile elements.
@@ -289,7 +289,7 @@ impl LimitSet {
         let mut stack: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
         let mut marking = Marking {
             bits: Bits::new(boxes[0], boxes[1]),
-            left: MOST_LOOKED_AT,
+            left: MAX_LOOKED_AT,
         };
         // A box that one copy hardly enters is mostly met by another. When such copies are examined later,
         // the boxes of most of them are marked already.
@@ -310,7 +310,7 @@ impl LimitSet {
         marking: &mut Marking,
     ) -> Option<()> {
         const WIDEST: i64 = 8;
-        const MOST_LATER: usize = 1 << 18;
+        const MAX_LATER: usize = 1 << 18;
         while let Some(copy) = stack.pop() {
             marking.left = marking.left.checked_sub(1)?;
             let part = &self.objects[copy.object];
@@ -328,7 +328,7 @@ impl LimitSet {
             if span <= 1 {
                 if let Some(later) = later.as_deref_mut() {
                     later.push(copy);
-                    if later.len() == MOST_LATER {
+                    if later.len() == MAX_LATER {
                         return Some(());
                     }
                     continue;
@@ -346,7 +346,7 @@ impl LimitSet {
     fn find_points(&mut self) {
         for start in 0..self.objects.len() {
             let mut copy = Placed::whole(start);
-            for level in 0..MOST_SWEEPS {
+            for level in 0..MAX_SWEEPS {
                 let children = &self.objects[copy.object].children;
                 if children.is_empty() || copy.scale <= NEGLIGIBLE {
                     break;
@@ -386,7 +386,7 @@ impl LimitSet {
     fn radii_about(&self, points: &[DVec2]) -> Vec<f64> {
         const TOLERANCE: f64 = 1e-9;
         let mut radii = vec![0.0; points.len()];
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..self.objects.len()).rev() {
                 let reach = self.objects[object].children.iter().map(|copy| {
@@ -417,7 +417,7 @@ impl LimitSet {
 /// The copies whose discs may reach farthest are divided repeatedly; of more than 256 such copies, those
 /// whose discs reach farthest are kept.
 fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
-    const MOST_COPIES: usize = 256;
+    const MAX_COPIES: usize = 256;
     const TOLERANCE: f64 = 1e-13;
     let disc = |copy: &Placed| {
         let part = &objects[copy.object];
@@ -428,7 +428,7 @@ fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
     let sizes = copies.iter().map(|copy| disc(copy).1 - disc(copy).0);
     let tolerance = TOLERANCE * sizes.fold(0.0, f64::max);
     let mut certain = f64::NEG_INFINITY;
-    for _ in 0..MOST_SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         certain = copies
             .iter()
             .map(|copy| disc(copy).0)
@@ -437,9 +437,9 @@ fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
         if copies.is_empty() {
             break;
         }
-        if copies.len() > MOST_COPIES {
+        if copies.len() > MAX_COPIES {
             copies.sort_by(|a, b| disc(b).1.total_cmp(&disc(a).1));
-            copies.truncate(MOST_COPIES);
+            copies.truncate(MAX_COPIES);
         }
         let inner = copies.iter().flat_map(|copy| {
             let children = objects[copy.object].children.iter();

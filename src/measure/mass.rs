@@ -10,7 +10,7 @@ use super::points::Points;
 use super::sample::histogram;
 
 /// Maximum number of boxes in a row of the finest grid.
-const MOST_BOXES: usize = 2048;
+const MAX_BOXES: usize = 2048;
 
 /// Numbers of boxes in a row of grids for limit sets, in the order of trial: where a grid cannot be filled,
 /// the next one is tried.
@@ -46,7 +46,7 @@ impl Masses {
     #[must_use]
     pub fn of_pixels(pixels: &Bits, [before, above]: [usize; 2]) -> Self {
         let longest = pixels.width().max(pixels.height());
-        let side = longest.div_ceil(MOST_BOXES).next_power_of_two();
+        let side = longest.div_ceil(MAX_BOXES).next_power_of_two();
         let (width, height) = (
             (pixels.width() + before).div_ceil(side),
             (pixels.height() + above).div_ceil(side),
@@ -75,9 +75,9 @@ impl Masses {
     pub fn of_points(points: &Points) -> Self {
         // The number of boxes in a row is a quarter of the number of places, from 4 to 2048, rounded up to a
         // power of two.
-        let few = (points.places().count() / 4).clamp(4, MOST_BOXES);
+        let few = (points.places().count() / 4).clamp(4, MAX_BOXES);
         let (own, turned) = points.own(&Grid::ALONG);
-        let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(MOST_BOXES));
+        let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(MAX_BOXES));
         for (at, points) in points.places() {
             let number = grid.number(map.transform_point2(at));
             grid.masses[number] = grid.masses[number].saturating_add(points);

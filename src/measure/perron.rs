@@ -12,7 +12,7 @@ pub(super) struct Perron {
 }
 
 /// Maximum number of iterations.
-const MOST_ROUNDS: usize = 100_000;
+const MAX_ROUNDS: usize = 100_000;
 
 /// Relative width at which an enclosure counts as a value.
 const NARROW: f64 = 4e-16;
@@ -26,7 +26,7 @@ const NARROW: f64 = 4e-16;
 pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -> bool) -> Perron {
     let mut vector = vec![1.0; size];
     let mut enclosed = [0.0, f64::INFINITY];
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut next = vector.clone();
         for &(row, column, value) in entries {
             next[row] += value * vector[column];

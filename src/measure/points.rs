@@ -1,6 +1,6 @@
 //! Points of the plane, and the boxes that they occupy.
 
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 
 use super::bits::Bits;
 use super::cover::Grid;
@@ -47,10 +47,10 @@ struct Place {
 }
 
 /// Maximum number of boxes in a row that are marked as bits (32 MiB); where there are more, keys are sorted.
-const MOST_BITS: usize = 1 << 14;
+const MAX_BITS: usize = 1 << 14;
 
 /// Number of halvings of the extent beyond which the precision of doubles is exhausted.
-const MOST_LEVELS: u32 = 30;
+const MAX_LEVELS: u32 = 30;
 
 /// Mean number of points per occupied box below which no smaller sizes are listed.
 const POINTS_A_BOX: u64 = 8;
@@ -76,7 +76,8 @@ impl Points {
             *point = (*point - bounds.min()) / extent;
         }
         let levels = levels(&parts, &Bounds::new(DVec2::ZERO, bounds.size() / extent));
-        let mut keys: Vec<u64> = parts.iter().map(|&part| key(part)).collect();
+        let lattice = DAffine2::from_scale(DVec2::splat(LATTICE));
+        let mut keys: Vec<u64> = parts.iter().map(|&part| key(&lattice, part)).collect();
         drop(parts);
         keys.sort_unstable();
         let place = |same: &[u64]| Place {
@@ -159,14 +160,11 @@ impl Points {
 }
 
 /// Number of places of the lattice in a row.
-const LATTICE: f64 = (1u64 << MOST_LEVELS) as f64;
+const LATTICE: f64 = (1u64 << MAX_LEVELS) as f64;
 
-/// Returns the Morton key of the place at fractions of the extent.
-fn key(part: DVec2) -> u64 {
-    let [column, row] = boxed(
-        &DAffine2::from_mat2(DMat2::from_diagonal(DVec2::splat(LATTICE))),
-        part,
-    );
+/// Returns the key of the box of a grid that a point lies in, which interleaves the bits of its column and row.
+fn key(map: &DAffine2, point: DVec2) -> u64 {
+    let [column, row] = boxed(map, point);
     spread(column) | spread(row) << 1
 }
 
@@ -181,10 +179,10 @@ fn levels(points: &[DVec2], bounds: &Bounds) -> u32 {
         let enough = counts.iter().rev().position(|&count| count > most);
         enough.and_then(|level| u32::try_from(level + 1).ok())
     };
-    let coarse = MOST_BITS.trailing_zeros();
+    let coarse = MAX_BITS.trailing_zeros();
     first(coarse)
-        .or_else(|| first(MOST_LEVELS))
-        .unwrap_or(MOST_LEVELS)
+        .or_else(|| first(MAX_LEVELS))
+        .unwrap_or(MAX_LEVELS)
 }
 
 /// Counts the boxes that hold points, on a grid and on those of boxes 2, 4, 8 … times as large: `levels`
@@ -195,7 +193,7 @@ fn levels(points: &[DVec2], bounds: &Bounds) -> u32 {
 #[must_use]
 pub fn counts(points: &[DVec2], map: &DAffine2, boxes: [usize; 2], levels: u32) -> Vec<u64> {
     // A grid begins before the set, and may be somewhat wider than it.
-    if boxes[0].max(boxes[1]) > 3 * MOST_BITS {
+    if boxes[0].max(boxes[1]) > 3 * MAX_BITS {
         return sorted_counts(points, map, levels);
     }
     let mut bits = Bits::new(boxes[0], boxes[1]);
@@ -215,11 +213,7 @@ pub fn counts(points: &[DVec2], map: &DAffine2, boxes: [usize; 2], levels: u32) 
 
 /// Counts boxes by sorting their keys (Morton 1966): keys of larger boxes are prefixes.
 fn sorted_counts(points: &[DVec2], map: &DAffine2, levels: u32) -> Vec<u64> {
-    let key = |&point: &DVec2| {
-        let [column, row] = boxed(map, point);
-        spread(column) | spread(row) << 1
-    };
-    let mut keys: Vec<u64> = points.iter().map(key).collect();
+    let mut keys: Vec<u64> = points.iter().map(|&point| key(map, point)).collect();
     keys.sort_unstable();
     let mut counts = Vec::new();
     for level in 0..levels {

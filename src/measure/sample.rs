@@ -16,7 +16,7 @@ use super::points::Points;
 use super::statistics::{deviation, mean};
 
 /// Maximum part of the boxes that half of the points may miss; beyond it, there are too few points.
-const MOST_MISSED: f64 = 0.08;
+const MAX_MISSED: f64 = 0.08;
 
 /// Bounds of the part of the missed boxes that twice the points would still miss.
 const LEFT: [f64; 2] = [1.0 / 2.0, 2.0 / 3.0];
@@ -213,7 +213,7 @@ impl Sample {
     pub(super) fn enough(&self) -> usize {
         let missed = |number: &usize| self.met(*number).missed_by_half;
         let all = 0..self.sizes.len();
-        all.take_while(|number| missed(number) <= MOST_MISSED)
+        all.take_while(|number| missed(number) <= MAX_MISSED)
             .count()
     }
 

@@ -227,10 +227,7 @@ fn with_drift(estimate: Estimate, readings: &[Reading], most: f64) -> Estimate {
     }
     let goes_on = (second - first) * (last - second) > 0.0;
     if drift.abs() <= SIGNIFICANT * chance || !goes_on {
-        return Estimate {
-            std_error: libm::hypot(estimate.std_error, drift / 2.0),
-            ..estimate
-        };
+        return estimate.drifting(drift);
     }
     Estimate {
         value: (last + drift / 3.0).min(most),

@@ -1,9 +1,8 @@
 //! Descent from the initiator to the roots of a window.
 
-use std::sync::Arc;
 
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
-use crate::graph::{Chain, Graph, Instance, Replacement, Seed, Successor};
+use crate::graph::{Chain, Graph, Instance, Seed, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
 use crate::parallel::is_cancelled;
 
@@ -267,19 +266,14 @@ impl<'a, 'c> Descent<'a, 'c> {
             level: node.level,
             rank: self.graph.objects()[node.object].index.into(),
         };
-        let successor = match &self.graph.objects()[node.object].replacement {
-            Replacement::Fixed(successor) => Arc::clone(successor),
-            Replacement::Evaluated(_) => {
-                let mut made = Successor::default();
-                let evaluator = &mut self.evaluator;
-                evaluator.evaluate(self.graph, &node.standing, node.object, moment, &mut made)?;
-                Arc::new(made)
-            }
-            Replacement::Kept | Replacement::Unresolved => {
-                return Err(ZoomError::TooShallow { depth: node.level });
-            }
-        };
-        let Successor { body, seeds } = &*successor;
+        let (graph, object) = (self.graph, &self.graph.objects()[node.object]);
+        if object.is_kept() || object.is_unresolved() {
+            return Err(ZoomError::TooShallow { depth: node.level });
+        }
+        let mut made = Successor::default();
+        let evaluator = &mut self.evaluator;
+        let Successor { body, seeds } =
+            evaluator.successor(graph, &node.standing, node.object, moment, &mut made)?;
         let (map, exponent) = node.map.near();
         // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);

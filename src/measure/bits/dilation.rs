@@ -51,11 +51,11 @@ impl Bits {
     /// Returns bands of rows, evenly spread and separated by empty rows, if there are more than 2¹⁸ words;
     /// else the set itself.
     pub(in crate::measure) fn bands(&self) -> Cow<'_, Self> {
-        const MOST_WORDS: usize = 1 << 18;
+        const MAX_WORDS: usize = 1 << 18;
         const BAND: usize = 256;
         const PARTED: usize = 8;
         let stride = self.width.div_ceil(64);
-        let every = self.words.len().div_ceil(MOST_WORDS).max(1);
+        let every = self.words.len().div_ceil(MAX_WORDS).max(1);
         if every == 1 {
             return Cow::Borrowed(self);
         }

@@ -54,7 +54,7 @@ const TILE: usize = 8;
 const HALF_TILE: DVec2 = DVec2::splat(4.0);
 
 /// Maximum number of squares of all grids: 128 mebibytes for both words of each tile.
-const MOST_SQUARES: f64 = (1u64 << 29) as f64;
+const MAX_SQUARES: f64 = (1u64 << 29) as f64;
 
 /// Maximum number of images that are marked, as a multiple of the maximum number of points.
 const MARKED_A_POINT: usize = 96;
@@ -225,7 +225,7 @@ impl<'g> Squares<'g> {
     /// Sizes the squares of every grid: as large as the errors permit, and half as large for an object that
     /// keeps outlines, which take the other half of the error. Images that lie outside, within the error, are
     /// marked in the squares at the border, which are nearer to all of the set. Returns `None` if there are
-    /// more than [`MOST_SQUARES`].
+    /// more than [`MAX_SQUARES`].
     fn lay_out(&mut self, bounds: &[Bounds], errors: &[f64]) -> Option<()> {
         let mut squares = 0.0;
         for (number, (bounds, error)) in bounds.iter().zip(errors).enumerate() {
@@ -235,7 +235,7 @@ impl<'g> Squares<'g> {
             let tile = side * place(TILE, TILE);
             let tiles = (bounds.size() / tile).ceil().max(DVec2::ONE);
             squares += 64.0 * tiles.x * tiles.y;
-            if squares.is_nan() || squares > MOST_SQUARES {
+            if squares.is_nan() || squares > MAX_SQUARES {
                 return None;
             }
             let grid = &mut self.grids[number];
@@ -273,10 +273,10 @@ impl<'g> Squares<'g> {
     /// Returns a point of an object's limit set: the limit of the path of first replaced instances. Returns
     /// `None` if the path ends.
     fn point(&self, mut object: usize) -> Option<DVec2> {
-        const MOST_LEVELS: usize = 100_000;
+        const MAX_LEVELS: usize = 100_000;
         const NEGLIGIBLE: f64 = 1e-17;
         let mut map = DAffine2::IDENTITY;
-        for _ in 0..MOST_LEVELS {
+        for _ in 0..MAX_LEVELS {
             let instance = self.replaced(object).next()?;
             map *= instance.frame.map();
             object = instance.object;

@@ -24,10 +24,10 @@ pub struct Affinity {
 }
 
 /// Maximum number of products of one length.
-const MOST_PRODUCTS: usize = 10_000;
+const MAX_PRODUCTS: usize = 10_000;
 
 /// Maximum length of products.
-const MOST_LENGTH: usize = 40;
+const MAX_LENGTH: usize = 40;
 
 /// Root above which maps are taken not to contract.
 const LARGEST: f64 = 16.0;
@@ -48,13 +48,13 @@ pub(super) fn affinity(part: &GraphDirectedSystem, effort: Effort) -> Option<Aff
     let mut sums: [Vec<Product>; 2] = [Vec::new(), Vec::new()];
     let mut contracts = false;
     let mut length = 0;
-    while length < MOST_LENGTH {
+    while length < MAX_LENGTH {
         let mut next = Vec::new();
         for (from, to, matrix) in &paths {
             let copies = part.copies.iter().filter(|copy| copy.from == *to);
             next.extend(copies.map(|copy| (*from, copy.to, *matrix * copy.map.matrix3)));
         }
-        if next.len() > effort.of(MOST_PRODUCTS) {
+        if next.len() > effort.of(MAX_PRODUCTS) {
             break;
         }
         let products = next.iter().map(|&(from, to, matrix)| Product {

@@ -15,7 +15,7 @@ const SAME: f64 = 2e-13;
 const SAME_DIMENSION: f64 = 1e-12;
 
 /// Maximum power of λ and of 1/ρ that is tried.
-const MOST_POWER: u32 = 4;
+const MAX_POWER: u32 = 4;
 
 /// Returns log λ / log 1/ρ as an expression of rule files; `None` where none is found.
 ///
@@ -88,7 +88,7 @@ pub(super) fn settled(value: f64) -> f64 {
 /// Returns the smallest power of a number that is recognised, and its form.
 fn recognised(value: f64, form: impl Fn(f64) -> Option<String>) -> Option<(u32, String)> {
     let mut power = 1.0;
-    (1..=MOST_POWER).find_map(|exponent| {
+    (1..=MAX_POWER).find_map(|exponent| {
         power *= value;
         Some((exponent, form(power)?))
     })
@@ -115,11 +115,11 @@ fn whole(value: f64, tolerance: f64) -> Option<i64> {
 /// Recognises a quadratic number (t ± √s)/2d with integers t, s and d, where d is at most `most`; for `most`
 /// = 1, algebraic integers only.
 fn quadratic(value: f64, most: i64) -> Option<String> {
-    const MOST_TRACE: i64 = 60;
+    const MAX_TRACE: i64 = 60;
     for under in 1..=most {
         #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
         let scaled = value * under as f64;
-        for trace in 0..=MOST_TRACE {
+        for trace in 0..=MAX_TRACE {
             for trace in [trace, -trace] {
                 // scaled = (trace + √square)/2.
                 #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
@@ -171,7 +171,7 @@ fn surd(trace: i64, square: i64, under: i64) -> String {
 
 /// Recognises 2 cos a or 2 (1 + cos a), where a is an integer number of degrees, or 180° times a fraction.
 fn cosine(value: f64) -> Option<String> {
-    const MOST_PARTS: i32 = 60;
+    const MAX_PARTS: i32 = 60;
     let of = |angle: f64, name: &dyn Fn() -> String| {
         let cosine = 2.0 * crate::expression::degrees::cos(angle);
         if same(value, cosine) {
@@ -185,8 +185,7 @@ fn cosine(value: f64) -> Option<String> {
     (1..90)
         .find_map(|angle| of(f64::from(angle), &|| angle.to_string()))
         .or_else(|| {
-            let parts =
-                (3..=MOST_PARTS).flat_map(|under| (1..under).map(move |over| (over, under)));
+            let parts = (3..=MAX_PARTS).flat_map(|under| (1..under).map(move |over| (over, under)));
             let mut parts = parts.filter(|(over, under)| 2 * over < *under);
             parts.find_map(|(over, under)| {
                 let angle = f64::from(180 * over) / f64::from(under);

@@ -8,14 +8,14 @@ use super::sizes::{Generations, Piece};
 use crate::saturating::real;
 
 /// Maximum number of pieces, over all generations and sets.
-const MOST_PIECES: usize = 60_000;
+const MAX_PIECES: usize = 60_000;
 
 /// Returns an upper bound of the dimension: log N / (n log 1/ρ) with the maximum N of distinct pieces that a
 /// set has in generation n, for the n that gives the least.
 ///
 /// The maximum over all sets is submultiplicative: N(m + n) ≤ N(m) N(n).
 pub(super) fn upper_bound(generations: &Generations, effort: Effort) -> Option<f64> {
-    let most = effort.of(MOST_PIECES);
+    let most = effort.of(MAX_PIECES);
     let counts: Vec<Vec<usize>> = (0..generations.size())
         .map(|set| counts(generations, set, most / generations.size()))
         .collect();

@@ -53,8 +53,8 @@ pub(super) enum End {
     TooClose,
 }
 
-const MOST_PAIRS: usize = 20_000;
-const MOST_WORK: usize = 6_000_000;
+const MAX_PAIRS: usize = 20_000;
+const MAX_WORK: usize = 6_000_000;
 
 /// Difference of entries below which maps are equal: rounding causes about 1e-13.
 const EQUAL: f64 = 1e-7;
@@ -161,7 +161,7 @@ impl Neighbours {
                 break End::Complete;
             };
             let pairs = search.register.pairs.len();
-            if pairs > effort.of(MOST_PAIRS) || search.work > effort.of(MOST_WORK) {
+            if pairs > effort.of(MAX_PAIRS) || search.work > effort.of(MAX_WORK) {
                 break End::Capped;
             }
             next.push(if search.coincide[number] {

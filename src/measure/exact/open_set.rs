@@ -13,8 +13,8 @@ use super::system::ratio;
 use crate::geometry::convex_hull;
 
 /// Maximum number of rounds in which hulls grow, and of corners of a hull.
-const MOST_ROUNDS: usize = 600;
-const MOST_CORNERS: usize = 500;
+const MAX_ROUNDS: usize = 600;
+const MAX_CORNERS: usize = 500;
 
 /// Distance, in a system of size 1, up to which a point counts as on a side of the hull.
 const STILL: f64 = 1e-13;
@@ -50,7 +50,7 @@ fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
 /// Computes the corners of every set's convex hull, counter-clockwise.
 fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     let mut hulls = vec![vec![DVec2::ZERO]; flat.size];
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut points: Vec<Vec<DVec2>> = hulls.clone();
         for copy in &flat.copies {
             points[copy.from].extend(moved(&copy.map, &hulls[copy.to]));
@@ -61,7 +61,7 @@ fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
             .collect();
         if next
             .iter()
-            .any(|corners| corners.len() > effort.of(MOST_CORNERS))
+            .any(|corners| corners.len() > effort.of(MAX_CORNERS))
         {
             return None;
         }
@@ -108,7 +108,7 @@ fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
 }
 
 /// Maximum number of pairs that are examined.
-const MOST_PAIRS: usize = 30_000;
+const MAX_PAIRS: usize = 30_000;
 
 /// Size, in a system of size 1, from which pieces that are not separated are taken to touch.
 const TOUCH: f64 = 1e-7;
@@ -143,7 +143,7 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
             continue;
         }
         seen += 1;
-        if seen > effort.of(MOST_PAIRS) {
+        if seen > effort.of(MAX_PAIRS) {
             return false;
         }
         let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {

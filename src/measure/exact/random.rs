@@ -13,7 +13,7 @@ use crate::saturating::real;
 use super::spectral::dense_radius;
 
 /// Maximum number of quadrature nodes of one generator.
-const MOST_DRAWS: usize = 40_000;
+const MAX_DRAWS: usize = 40_000;
 
 /// A ratio between objects, with its probability.
 struct Ratio {
@@ -164,7 +164,7 @@ fn draws(generator: &Generator, moment: &ElementContext) -> Result<Vec<(Vec<f64>
                 slots.push(value);
                 next.push((slots, weight * share));
             }
-            if next.len() > MOST_DRAWS {
+            if next.len() > MAX_DRAWS {
                 return Err("too many numbers are drawn to integrate over".into());
             }
         }

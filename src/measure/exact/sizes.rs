@@ -49,13 +49,13 @@ pub(super) struct Generations {
 }
 
 /// Maximum k; a larger one is not evidence of commensurable ratios.
-const MOST_POWER: f64 = 64.0;
+const MAX_POWER: f64 = 64.0;
 
 /// Difference up to which logarithms count as equal.
 const EQUAL: f64 = 1e-10;
 
 /// Maximum number of steps of a set, after sets of size ρ⁰ are expanded.
-const MOST_STEPS: usize = 4_096;
+const MAX_STEPS: usize = 4_096;
 
 impl Generations {
     /// Divides a system into generations. Returns `None` where ratios are not powers of one number along all
@@ -180,7 +180,7 @@ fn expanded(direct: &[Vec<(usize, u32, DAffine3)>], set: usize) -> Option<Vec<St
                     .map(|&(next, power, inner)| (next, power, map * inner)),
             ),
         }
-        if steps.len() + open.len() > MOST_STEPS {
+        if steps.len() + open.len() > MAX_STEPS {
             return None;
         }
     }
@@ -200,7 +200,7 @@ fn common_measure(values: &[f64]) -> Option<f64> {
     for value in sizes() {
         let (mut larger, mut smaller) = (value, measure);
         while smaller > EQUAL {
-            if smaller < largest / (2.0 * MOST_POWER) {
+            if smaller < largest / (2.0 * MAX_POWER) {
                 return None;
             }
             let rest = larger - smaller * (larger / smaller).round();
@@ -215,7 +215,7 @@ fn common_measure(values: &[f64]) -> Option<f64> {
     let measure = sizes().sum::<f64>() / multiples;
     let fits = sizes().all(|size| {
         let multiple = (size / measure).round();
-        multiple <= MOST_POWER && (size - multiple * measure).abs() <= EQUAL
+        multiple <= MAX_POWER && (size - multiple * measure).abs() <= EQUAL
     });
     fits.then_some(measure)
 }

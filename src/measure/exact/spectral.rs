@@ -9,8 +9,8 @@ const NARROW: f64 = 1e-13;
 const NARROWEST: f64 = 4e-16;
 
 /// Maximum number of products of the matrix with a vector, and of the entries that all of them may touch.
-const MOST_ROUNDS: usize = 200_000;
-const MOST_WORK: usize = 200_000_000;
+const MAX_ROUNDS: usize = 200_000;
+const MAX_WORK: usize = 200_000_000;
 
 /// Computes the spectral radius of a matrix of non-negative integers: `targets[i]` lists j as often as the
 /// entry (i, j) counts. Returns `None` if it is not found to 13 digits.
@@ -40,7 +40,7 @@ fn radius_of_part(edges: &[Vec<usize>]) -> Option<f64> {
     }
     let mut vector = vec![1.0; edges.len()];
     let mut narrowest = f64::INFINITY;
-    let rounds = MOST_ROUNDS.min(MOST_WORK / (count + edges.len()));
+    let rounds = MAX_ROUNDS.min(MAX_WORK / (count + edges.len()));
     for _ in 0..rounds {
         let mut next = vector.clone();
         for (entry, targets) in next.iter_mut().zip(edges) {

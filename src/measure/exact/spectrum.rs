@@ -42,7 +42,7 @@ struct Edge {
 const NEAR_ONE: f64 = 1e-7;
 
 /// Bound of exponents: larger exponentials do not change on which side of 1 a radius lies.
-const MOST_EXPONENT: f64 = 300.0;
+const MAX_EXPONENT: f64 = 300.0;
 
 impl Spectrum {
     /// Returns the dimensions of a set's natural measure: all D_q are its dimension, where the measure of
@@ -125,7 +125,7 @@ impl SelfSimilarMeasure {
             .edges
             .iter()
             .map(|edge| {
-                let exponent = exponent(edge).clamp(-MOST_EXPONENT, MOST_EXPONENT);
+                let exponent = exponent(edge).clamp(-MAX_EXPONENT, MAX_EXPONENT);
                 (edge.from, edge.to, libm::exp(exponent))
             })
             .collect();

@@ -12,8 +12,8 @@ use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
 
 /// Maximum number of types, and of predecessors in all of them.
-const MOST_TYPES: usize = 10_000;
-const MOST_EARLIER: usize = 200_000;
+const MAX_TYPES: usize = 10_000;
+const MAX_EARLIER: usize = 200_000;
 
 /// Types of distinct pieces, and the growth of the number of pieces.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl Types {
             let steps = steps.into_iter();
             let steps = steps.map(|(step, found)| (step, list.number(found)));
             kept.push((piece, steps.collect()));
-            let [types, earlier] = [MOST_TYPES, MOST_EARLIER].map(|most| effort.of(most));
+            let [types, earlier] = [MAX_TYPES, MAX_EARLIER].map(|most| effort.of(most));
             if list.types.len() > types || list.earlier > earlier {
                 return None;
             }

@@ -24,7 +24,7 @@ pub struct Cascade {
 }
 
 /// Maximum number of sweeps in the computation of centres.
-const MOST_SWEEPS: usize = 1_000;
+const MAX_SWEEPS: usize = 1_000;
 
 impl Cascade {
     /// Creates the natural measure of the limit set of a graph's fertile elements: a copy of size r has a
@@ -87,7 +87,7 @@ impl Cascade {
     fn find_centres(&mut self) {
         const TOLERANCE: f64 = 1e-6;
         let mut centres: Vec<DVec2> = self.set.objects.iter().map(|part| part.point).collect();
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..centres.len()).rev() {
                 let part = &self.set.objects[object];

@@ -25,7 +25,7 @@ const FOLLOWED: usize = 1 << 11;
 const LARGEST: f64 = 2.0;
 
 /// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
-const MOST_COPIES: usize = 1 << 22;
+const MAX_COPIES: usize = 1 << 22;
 
 /// Side of the smallest boxes, as a fraction of the extent: there, doubles still resolve six digits of a box,
 /// and counts fit 64 bits.
@@ -67,10 +67,10 @@ impl<'s> Descent<'s> {
 
     /// Returns the number of boxes that the set meets; `None` where too many copies overlap.
     fn count(&self) -> Option<Count> {
-        if self.looked_at > MOST_COPIES {
+        if self.looked_at > MAX_COPIES {
             return None;
         }
-        let mut left = MOST_COPIES;
+        let mut left = MAX_COPIES;
         let mut met = 0usize;
         for cell in &self.cells {
             met += usize::from(self.set.meets(cell, &mut left)?);
@@ -87,7 +87,7 @@ impl<'s> Descent<'s> {
         for mut cell in std::mem::take(&mut self.cells) {
             cell.iter_mut().for_each(|copy| copy.grow(scale));
             cells.append(&mut self.divided(cell, [base; 2]));
-            if self.looked_at > MOST_COPIES {
+            if self.looked_at > MAX_COPIES {
                 break;
             }
         }
@@ -122,7 +122,7 @@ impl<'s> Descent<'s> {
                 let (low, high) = (middle[axis] - radius, middle[axis] + radius);
                 whole(low)..whole(high + 1.0).min(boxes[axis])
             });
-            if self.looked_at > MOST_COPIES {
+            if self.looked_at > MAX_COPIES {
                 break;
             }
             if radius > LARGEST {

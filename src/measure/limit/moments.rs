@@ -32,8 +32,8 @@ const FOLLOWED: usize = 1 << 6;
 
 /// Maximum number of copies of one size, and of all sizes, that are examined: where too many overlap, the
 /// descent ends.
-const MOST_COPIES: usize = 1 << 21;
-const MOST_OF_ALL: usize = 3 << 21;
+const MAX_COPIES: usize = 1 << 21;
+const MAX_OF_ALL: usize = 3 << 21;
 
 /// Number of distances between pieces that cost as much as examining a copy.
 const DISTANCES: usize = 8;
@@ -79,15 +79,15 @@ impl Moments {
                     descent.go_down(base);
                 }
                 match descent.entropies() {
-                    Some(told) => entropies.push(told),
+                    Some(found) => entropies.push(found),
                     None => break,
                 }
             }
             entropies
         });
-        let told = entropies.iter().map(Vec::len).min().unwrap_or_default();
+        let found = entropies.iter().map(Vec::len).min().unwrap_or_default();
         let mean_part = libm::pow(base, -mean(&parts));
-        let sizes = sizes[..told].iter().map(|size| size * mean_part);
+        let sizes = sizes[..found].iter().map(|size| size * mean_part);
         Self {
             sizes: sizes.collect(),
             entropies,
@@ -176,7 +176,7 @@ impl<'c> Descent<'c> {
     /// Returns `None` where too many copies overlap.
     fn entropies(&self) -> Option<Vec<f64>> {
         let all = self.before + self.looked_at;
-        if self.looked_at > MOST_COPIES || all > MOST_OF_ALL || self.pieces.is_empty() {
+        if self.looked_at > MAX_COPIES || all > MAX_OF_ALL || self.pieces.is_empty() {
             return None;
         }
         let mass = log_sum(self.pieces.iter().map(|piece| piece.share(1.0)));
@@ -211,7 +211,7 @@ impl<'c> Descent<'c> {
             });
             let weight = piece.weight;
             pieces.append(&mut self.with_near(&smaller, &near, weight));
-            if self.looked_at > MOST_COPIES {
+            if self.looked_at > MAX_COPIES {
                 break;
             }
         }
@@ -265,7 +265,7 @@ impl<'c> Descent<'c> {
         stack.reverse();
         while let Some((copy, mass)) = stack.pop() {
             self.looked_at += 1;
-            if self.looked_at > MOST_COPIES {
+            if self.looked_at > MAX_COPIES {
                 break;
             }
             let (middle, radius) = self.disc(&copy);
