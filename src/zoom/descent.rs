@@ -1,6 +1,5 @@
 //! Descent from the initiator to the roots of a window.
 
-
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Seed, Successor};
 use crate::grow::{Evaluator, ReplacementContext, Standing};
