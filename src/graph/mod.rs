@@ -13,7 +13,7 @@
 //! the number of steps that remain: these have one initiator for each number of steps.
 //!
 //! A graph has two kinds of edges. An instance composes its map with its parent's; a *reset*
-//! ([`Placement::SeedsAsInitiator`]) keeps the position only.
+//! ([`Placement::SeedsAsInitiator`](crate::rule::Placement::SeedsAsInitiator)) keeps the position only.
 //!
 //! A graph's coordinates are those of the model unless it is [compiled
 //! near](crate::model::Model::compile_normalised) the unit box around the origin: [`Graph::place`] maps them to
