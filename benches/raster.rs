@@ -16,6 +16,16 @@
 )]
 mod coverage;
 
+/// Geometry of the kernels.
+#[path = "../src/geometry"]
+mod geometry {
+    #[path = "clip.rs"]
+    mod clip;
+
+    pub(crate) use clip::clip;
+    pub(crate) use kfrac::geometry::DVec2;
+}
+
 use coverage::{CoverageBuffer, HairPen, RoundPen};
 use divan::Bencher;
 use divan::counter::ItemsCount;

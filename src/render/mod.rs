@@ -13,7 +13,7 @@
 //!
 //! Walks leave out subtrees that cannot be seen, outside a window or below a detail; and where colours distinguish
 //! steps, maps or generators, subtrees without elements of the class that is painted. None of this changes a
-//! pixel, and neither threads nor timing show in any byte. In PNGs to a detail, small runs of elements in equal positions may be
+//! pixel, and neither threads nor timing show in any byte. In PNGs, small runs of elements in equal positions may be
 //! drawn as sprites, with small differences: see `png::sprites`. Code for pixels alone lies in `png`, behind
 //! one method of surfaces.
 
