@@ -5,6 +5,7 @@ mod instancing;
 mod lsystem;
 mod place;
 mod rule;
+mod space;
 
 pub use crate::graph::OutOfRange;
 pub use crate::kind::Kind;
@@ -13,7 +14,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::Homothety;
+use crate::geometry::{DAffine3, Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
 use crate::instancing::Instancing;
@@ -24,28 +25,28 @@ use place::Extent;
 
 /// Declares the models of the kinds.
 macro_rules! models {
-    ($($(#[$doc:meta])* $kind:ident($model:ty);)*) => {
+    ($($(#[$doc:meta])* $name:ident: $kind:ident($model:ty);)*) => {
         /// Validated model: immutable, without unparsed text.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
-        pub enum Model { $($(#[$doc])* $kind(Arc<$model>),)* }
+        pub enum Model { $($(#[$doc])* $name(Arc<$model>),)* }
 
         impl Model {
             /// Returns the kind of the model.
             #[must_use]
             pub fn kind(&self) -> Kind {
-                match self { $(Self::$kind(_) => Kind::$kind,)* }
+                match self { $(Self::$name(_) => Kind::$kind,)* }
             }
 
             /// Returns the model behind its kind.
             pub(crate) fn as_kind(&self) -> &dyn OfKind {
-                match self { $(Self::$kind(model) => model,)* }
+                match self { $(Self::$name(model) => model,)* }
             }
         }
 
         $(impl From<$model> for Model {
             fn from(model: $model) -> Self {
-                Self::$kind(model.into())
+                Self::$name(model.into())
             }
         }
 
@@ -55,7 +56,7 @@ macro_rules! models {
             /// Returns a model of another kind as it is.
             fn try_from(model: Model) -> Result<Self, Model> {
                 match model {
-                    Model::$kind(model) => Ok(Arc::unwrap_or_clone(model)),
+                    Model::$name(model) => Ok(Arc::unwrap_or_clone(model)),
                     model => Err(model),
                 }
             }
@@ -65,13 +66,15 @@ macro_rules! models {
 
 models! {
     /// Production rule.
-    Rule(Rule);
+    Rule: Rule(Rule);
     /// Iterated function system.
-    Ifs(System);
+    Ifs: Ifs(System);
+    /// Iterated function system in space.
+    IfsInSpace: Ifs(System<DAffine3>);
     /// Structure of objects that instance each other.
-    Instancing(Instancing);
+    Instancing: Instancing(Instancing);
     /// L-system.
-    LSystem(LSystem);
+    LSystem: LSystem(LSystem);
 }
 
 /// Properties of a model that depend on its kind. Each kind implements them in a file of this module.
@@ -201,6 +204,27 @@ impl Model {
             Some(model) => Cow::Owned(model),
             None => Cow::Borrowed(self),
         }
+    }
+
+    /// Returns whether the model lies in space; [`compile_in_space`](Self::compile_in_space) compiles it then.
+    #[must_use]
+    pub fn is_in_space(&self) -> bool {
+        matches!(self, Self::IfsInSpace(_))
+    }
+
+    /// Compiles a model in space to its graph; `None` for a model of the plane. Objects record the map that is
+    /// applied last if `records_last`, unless there are too many for it.
+    #[must_use]
+    pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {
+        let Self::IfsInSpace(system) = self else {
+            return None;
+        };
+        let recorded = records_last.then(|| Graph::with_last_maps(system));
+        Some(
+            recorded
+                .flatten()
+                .unwrap_or_else(|| Graph::of_system(system)),
+        )
     }
 
     /// Converts an error of [`Model::compile`] or of a walk to a diagnostic of the model's file.

@@ -83,6 +83,11 @@ fn resolve(
         KindDocument::Rule(document) => resolved(&document.heading, settings, |to, heading| {
             Some(to.rule(document, heading))
         }),
+        KindDocument::Ifs(document) if document.is_in_space => {
+            resolved(&document.heading, settings, |to, heading| {
+                to.system_in_space(document, heading)
+            })
+        }
         KindDocument::Ifs(document) => resolved(&document.heading, settings, |to, heading| {
             to.system(document, heading)
         }),

@@ -22,6 +22,8 @@ pub struct WrittenPoint {
     pub x: WrittenNumber,
     /// Second coordinate, upwards.
     pub y: WrittenNumber,
+    /// Third coordinate, towards the viewer; `None` in the plane, and where it is left out.
+    pub z: Option<Box<WrittenNumber>>,
     /// Source span of the point.
     pub place: Place,
 }
@@ -36,6 +38,7 @@ impl WrittenPoint {
         Self {
             x: unknown(),
             y: unknown(),
+            z: None,
             place: place.clone(),
         }
     }
@@ -51,6 +54,7 @@ impl WrittenPoint {
         Self {
             x,
             y,
+            z: None,
             place: place.clone(),
         }
     }

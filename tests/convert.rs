@@ -31,6 +31,7 @@ fn library() -> Vec<(String, Model)> {
             let document = Document::read(&source, &catalogue).unwrap();
             (entry.name, model(&document))
         })
+        .filter(|(_, model)| !model.is_in_space())
         .collect()
 }
 

@@ -71,6 +71,9 @@ fn the_picture_is_that_of_plain_svg() {
     let mut worst = Vec::new();
     for entry in entries.iter().filter(|it| shelves.contains(&it.shelf)) {
         let document = common::document(&entry.name);
+        if document.resolve(&[]).unwrap().0.is_in_space() {
+            continue;
+        }
         for steps in [1, 3] {
             let (heading, graph) = compiled(&document, steps);
             let mut options = options(&heading);

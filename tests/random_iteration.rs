@@ -23,10 +23,11 @@ fn library() -> Vec<(String, Arc<ifs::System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
     let entries = entries.filter(|entry| entry.shelf == Shelf::IFS);
-    let systems = entries.map(|entry| {
+    let systems = entries.filter_map(|entry| {
         let document = Document::read(&catalogue.open(&entry).unwrap(), &catalogue).unwrap();
         match document.resolve(&[]).unwrap().0 {
-            Model::Ifs(system) => (entry.name, system),
+            Model::Ifs(system) => Some((entry.name, system)),
+            Model::IfsInSpace(_) => None,
             other => panic!("{} is {:?}", entry.name, other.kind()),
         }
     });

@@ -8,6 +8,7 @@ use std::convert::Infallible;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
+use kfrac::geometry::Frame;
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
 
@@ -34,19 +35,19 @@ fn rules(file: &str, text: &str) -> Vec<(String, String)> {
 }
 
 /// A visitor that counts visible elements.
-struct Visible<'g> {
-    graph: &'g Graph,
+struct Visible<'g, F: Frame> {
+    graph: &'g Graph<F>,
     count: usize,
 }
 
-impl Visitor for Visible<'_> {
+impl<F: Frame> Visitor<F> for Visible<'_, F> {
     type Error = Infallible;
 
     fn begin(&mut self, _: FractalInfo) -> Result<(), Infallible> {
         Ok(())
     }
 
-    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
+    fn element(&mut self, element: &Element<F>) -> Result<(), Infallible> {
         self.count += usize::from(self.graph.objects()[element.object].visible);
         Ok(())
     }
@@ -54,6 +55,13 @@ impl Visitor for Visible<'_> {
     fn end(&mut self, _: bool) -> Result<(), Infallible> {
         Ok(())
     }
+}
+
+/// Returns the number of visible elements after two steps.
+fn visible<F: Frame>(graph: &Graph<F>) -> usize {
+    let mut visible = Visible { graph, count: 0 };
+    walk(graph, &Growth::steps(2), &mut visible).unwrap();
+    visible.count
 }
 
 fn check(file: &str, text: &str) -> usize {
@@ -67,13 +75,11 @@ fn check(file: &str, text: &str) -> usize {
             .resolve(&[])
             .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
         assert!(warnings.is_empty(), "{name}: {warnings:#?}");
-        let graph = model.compile(2).unwrap();
-        let mut visible = Visible {
-            graph: &graph,
-            count: 0,
+        let count = match model.compile_in_space(false) {
+            Some(graph) => visible(&graph),
+            None => visible(&model.compile(2).unwrap()),
         };
-        walk(&graph, &Growth::steps(2), &mut visible).unwrap();
-        assert!(visible.count > 0, "{name}: nothing is to be seen at step 2");
+        assert!(count > 0, "{name}: nothing is to be seen at step 2");
     }
     rules.len()
 }

@@ -46,10 +46,17 @@ fn library() -> Vec<(String, Arc<System>)> {
     let catalogue = Catalogue::embedded();
     let entries = catalogue.entries().into_iter();
     let entries = entries.filter(|entry| entry.shelf == Shelf::IFS);
-    let systems = entries.map(|entry| {
-        let (system, doubts) = read(&catalogue.open(&entry).unwrap()).unwrap();
+    let systems = entries.filter_map(|entry| {
+        let source = catalogue.open(&entry).unwrap();
+        let (model, doubts) = Document::read(&source, &catalogue)
+            .unwrap()
+            .resolve(&[])
+            .unwrap();
         assert!(doubts.is_empty(), "{doubts}");
-        (entry.name, system)
+        match model {
+            Model::Ifs(system) => Some((entry.name, system)),
+            _ => None,
+        }
     });
     systems.collect()
 }

@@ -205,8 +205,12 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
     let catalogue = Catalogue::embedded();
     let mut entries = catalogue.entries();
     entries.retain(|entry| Shelf::grown().contains(&entry.shelf));
-    entries.into_iter().map(move |LibraryFile { name, .. }| {
+    let models = entries.into_iter().map(|LibraryFile { name, .. }| {
         let model = document(&name).resolve(&[]).unwrap().0;
+        (name, model)
+    });
+    let models = models.filter(|(_, model)| !model.is_in_space());
+    models.map(move |(name, model)| {
         let compile = |steps| model.compile_for(steps, 0, most_elements).ok();
         let fits = |steps| {
             let graph = compile(steps)?;

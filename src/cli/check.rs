@@ -90,7 +90,9 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let (model, mut diagnostics) = document.resolve(&[])?;
     let steps = model.metadata().steps.unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
-    if let Err(error) = model.compile(steps) {
+    if !model.is_in_space()
+        && let Err(error) = model.compile(steps)
+    {
         diagnostics.push(model.diagnostic(&error));
     }
     Ok(diagnostics)

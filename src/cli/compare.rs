@@ -356,9 +356,11 @@ fn described(comparison: &Comparison<'_>, distance: &Distance) -> String {
         );
     }
     for (label, side) in [("box of A", a), ("box of B", b)] {
-        let [x0, y0] = side.bounds.min;
-        let [x1, y1] = side.bounds.max;
-        line(label, &format!("{x0:.6} to {x1:.6}, {y0:.6} to {y1:.6}"));
+        let axes = side.bounds.min.iter().zip(&side.bounds.max);
+        let spans: Vec<_> = axes
+            .map(|(low, high)| format!("{low:.6} to {high:.6}"))
+            .collect();
+        line(label, &spans.join(", "));
     }
     let dimension = |side: &Side<'_>| match side.dimension.similarity {
         Some(value) => format!("{value:.6}"),

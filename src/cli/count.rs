@@ -7,13 +7,14 @@ use serde::Serialize;
 
 use super::readable::{decimal, grouped};
 use crate::catalogue::Catalogue;
-use crate::geometry::BEYOND;
+use crate::geometry::{BEYOND, Frame, Point};
+use crate::graph::Graph;
 use crate::grow::{Counted, count};
 
 use super::growth::GrowthArguments;
 use super::info::{Corners, corners};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, help, output, progress, steps};
+use super::{Failure, help, output, progress, space, steps};
 
 /// Grows a rule and counts its elements, without drawing
 ///
@@ -65,35 +66,59 @@ struct Found<'a> {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { rule, growth, .. } = arguments;
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
+    if let Some(graph) = loaded.model.compile_in_space(false) {
+        let steps = space::steps(arguments.steps, &loaded, &graph);
+        space::check(&loaded, &graph, steps, growth.most_elements())?;
+        return arguments.count(&loaded, &graph, steps);
+    }
     let steps = steps::choose(arguments.steps, &loaded)?;
     let graph = loaded.compile(steps)?;
     growth.check(steps, &graph, &loaded, None)?;
-    let found = progress::watched(!growth.quiet, |progress| {
-        let limits = growth.to(steps, progress);
-        if let Some(progress) = progress
-            && let Ok(Some(elements)) = graph.check_size(steps, limits.most_elements)
-        {
-            progress.expect(elements);
-        }
-        count(&graph, &limits, growth.threads())
-    });
-    let found = found.map_err(|error| growth.explain(error.into(), &loaded, Path::new("-")))?;
-    if !found.length.is_finite() {
-        let message = format!("step {steps} of {}: {BEYOND}", loaded.name);
-        return Err(anyhow::anyhow!(message).into());
-    }
-    let place = graph.place();
-    let found = Counted {
-        length: found.length * place.ratio(),
-        bounds: place.bounds(&found.bounds),
-        ..found
-    };
-    output::print_as(arguments.json, &json(&found, &loaded, steps), || {
-        text(&found, place.ratio())
-    })
+    arguments.count(&loaded, &graph, steps)
 }
 
-fn json<'a>(found: &Counted, loaded: &'a Loaded, steps: u32) -> Found<'a> {
+impl Arguments {
+    /// Counts the elements of a step and prints the result.
+    fn count<F: Frame>(
+        &self,
+        loaded: &Loaded,
+        graph: &Graph<F>,
+        steps: u32,
+    ) -> Result<(), Failure> {
+        let growth = &self.growth;
+        let found = progress::watched(!growth.quiet, |progress| {
+            let limits = growth.to(steps, progress);
+            if let Some(progress) = progress
+                && let Ok(Some(elements)) = graph.check_size(steps, limits.most_elements)
+            {
+                progress.expect(elements);
+            }
+            count(graph, &limits, growth.threads())
+        });
+        let found = found.map_err(|error| growth.explain(error.into(), loaded, Path::new("-")))?;
+        if !found.length.is_finite() {
+            let message = format!("step {steps} of {}: {BEYOND}", loaded.name);
+            return Err(anyhow::anyhow!(message).into());
+        }
+        let place = graph.place();
+        let found = Counted {
+            length: found.length * place.ratio(),
+            bounds: place.bounds(&found.bounds),
+            ..found
+        };
+        let text = if self.json {
+            let mut text = serde_json::to_string_pretty(&json(&found, loaded, steps))
+                .map_err(anyhow::Error::new)?;
+            text.push('\n');
+            text
+        } else {
+            text(&found, place.ratio())
+        };
+        Ok(output::print(&text)?)
+    }
+}
+
+fn json<'a, P: Point>(found: &Counted<P>, loaded: &'a Loaded, steps: u32) -> Found<'a> {
     let bounds = Some(&found.bounds).filter(|bounds| !bounds.is_empty());
     Found {
         name: &loaded.name,
@@ -106,7 +131,7 @@ fn json<'a>(found: &Counted, loaded: &'a Loaded, steps: u32) -> Found<'a> {
     }
 }
 
-fn text(found: &Counted, unit: f64) -> String {
+fn text<P: Point>(found: &Counted<P>, unit: f64) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: &str| {
         // Writing to a string cannot fail.

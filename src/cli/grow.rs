@@ -4,6 +4,7 @@ mod chaos;
 mod drawing;
 mod plan;
 mod plot;
+mod space;
 mod svg;
 mod zoom;
 
@@ -26,6 +27,7 @@ use chaos::ChaosArguments;
 use drawing::Drawing;
 use plan::{Format, Plan};
 use plot::PlotArguments;
+use space::SpaceArguments;
 use svg::SvgArguments;
 use zoom::ZoomArguments;
 
@@ -79,6 +81,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
+    space: SpaceArguments,
+    #[command(flatten)]
     chaos: ChaosArguments,
 }
 
@@ -118,12 +122,20 @@ Examples:
       Lists the first elements as CSV
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
       Draws an iterated function system by random iteration, into barnsley-fern.png
+  kfrac grow menger --from 35,20 --perspective 40 -o menger.png
+      Draws a set in space, to the pixel
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     let plan = Plan::of(arguments)?;
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
+    if loaded.model.is_in_space() {
+        let (path, summary, bytes) = space::draw(arguments, &loaded)?;
+        arguments.report(&path, &summary, bytes, start);
+        return Ok(());
+    }
+    arguments.space.refuse_in_plane(&loaded)?;
     let default = arguments.rule.file("", plan.extension());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (summary, bytes) = match plan {
@@ -141,18 +153,23 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             })?
         }
     };
-    if !arguments.growth.quiet {
-        text::print_message(&format!(
-            "{}: {summary}, {}, {:.2} s",
-            output::called(path),
-            readable::bytes(bytes),
-            start.elapsed().as_secs_f64(),
-        ));
-    }
+    arguments.report(path, &summary, bytes, start);
     Ok(())
 }
 
 impl Arguments {
+    /// Prints what has been written, unless messages are suppressed.
+    fn report(&self, path: &Path, summary: &str, bytes: u64, start: Instant) {
+        if !self.growth.quiet {
+            text::print_message(&format!(
+                "{}: {summary}, {}, {:.2} s",
+                output::called(path),
+                readable::bytes(bytes),
+                start.elapsed().as_secs_f64(),
+            ));
+        }
+    }
+
     /// Lists the elements of a step; returns a summary and the number of bytes.
     fn list(
         &self,

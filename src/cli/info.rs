@@ -1,5 +1,7 @@
 //! `kfrac info`: describes a rule and forecasts the sizes of its steps.
 
+mod space;
+
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -8,7 +10,7 @@ use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
 use crate::count::Count;
 use crate::estimate::{Estimator, SizeEstimate, instanced_bytes};
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, Point};
 use crate::graph::{Graph, Level};
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
@@ -21,7 +23,7 @@ use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
 use super::structure::StructureInfo;
 use super::system::SystemInfo;
-use super::{Failure, help, output, steps};
+use super::{Failure, help, output, space::steps as steps_in_space, steps};
 
 /// Describes a rule: parameters, sizes of its steps, bounds, dimension
 ///
@@ -96,17 +98,15 @@ struct Info<'a> {
 #[derive(Serialize)]
 pub(super) struct Corners {
     #[serde(serialize_with = "coordinates")]
-    pub(super) min: [f64; 2],
+    pub(super) min: Vec<f64>,
     #[serde(serialize_with = "coordinates")]
-    pub(super) max: [f64; 2],
+    pub(super) max: Vec<f64>,
 }
 
 impl Corners {
     /// Formats the corners to twelve decimals of `unit`.
     pub(super) fn described(&self, unit: f64) -> String {
-        let formatted = |corner: [f64; 2]| corner.map(|value| decimal(value, unit));
-        let [[a, b], [c, d]] = [self.min, self.max].map(formatted);
-        format!("[{a}, {b}] to [{c}, {d}]")
+        format!("{} to {}", point(&self.min, unit), point(&self.max, unit))
     }
 }
 
@@ -184,8 +184,14 @@ fn whole<S: serde::Serializer>(bytes: &Option<f64>, serializer: S) -> Result<S::
 }
 
 /// Serializes coordinates; whole numbers have no fraction, as in the tables.
-fn coordinates<S: serde::Serializer>(point: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {
-    point.map(|value| number(value + 0.0)).serialize(serializer)
+fn coordinates<S: serde::Serializer>(point: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(point.iter().map(|value| number(value + 0.0)))
+}
+
+/// Formats a point to twelve decimals of `unit`.
+pub(super) fn point(coordinates: &[f64], unit: f64) -> String {
+    let told = coordinates.iter().map(|value| decimal(*value, unit));
+    format!("[{}]", told.collect::<Vec<_>>().join(", "))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the value is checked")]
@@ -199,17 +205,30 @@ fn number(value: f64) -> serde_json::Value {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
-    let steps = steps::choose(arguments.steps, &loaded)?;
-    if steps > MAX_STEPS {
-        let message = format!("info forecasts no more than {MAX_STEPS} steps");
-        return Err(Failure::Usage(message));
+    if let Some(graph) = loaded.model.compile_in_space(false) {
+        let steps = steps_in_space(arguments.steps, &loaded, &graph);
+        check_steps(steps)?;
+        let info = space::info(&loaded, &graph, steps);
+        return output::print_as(arguments.json, &info, || {
+            described(&loaded, &info, graph.place().ratio())
+        });
     }
+    let steps = steps::choose(arguments.steps, &loaded)?;
+    check_steps(steps)?;
     let graph = loaded.compile(steps)?;
     let limit = loaded.other_limit(steps)?;
     let info = info(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
     output::print_as(arguments.json, &info, || {
         described(&loaded, &info, graph.place().ratio())
     })
+}
+
+fn check_steps(steps: u32) -> Result<(), Failure> {
+    if steps <= MAX_STEPS {
+        return Ok(());
+    }
+    let message = format!("info forecasts no more than {MAX_STEPS} steps");
+    Err(Failure::Usage(message))
 }
 
 /// Collects the description. `limit` is the graph that has the limit set.
@@ -335,10 +354,11 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
     Some(rows)
 }
 
-pub(super) fn corners(bounds: &Bounds) -> Corners {
+pub(super) fn corners<P: Point>(bounds: &Bounds<P>) -> Corners {
+    let corner = |point: P| point.coordinates()[..P::DIMENSION].to_vec();
     Corners {
-        min: bounds.min().to_array(),
-        max: bounds.max().to_array(),
+        min: corner(bounds.min()),
+        max: corner(bounds.max()),
     }
 }
 

@@ -31,6 +31,7 @@ mod rule;
 mod schema;
 mod sheet;
 mod show;
+mod space;
 mod steps;
 mod stop;
 mod structure;
@@ -66,7 +67,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    Grow(grow::Arguments),
+    Grow(Box<grow::Arguments>),
     Sheet(sheet::Arguments),
     Show(show::Arguments),
     Info(info::Arguments),

@@ -7,6 +7,7 @@ use clap::ValueHint;
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::figure::rule;
+use crate::graph::CompileError;
 use crate::model::Kind;
 use crate::render::{self, RenderError, Size};
 use crate::style::Named;
@@ -66,6 +67,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         }
         None => arguments.rule.load(catalogue, arguments.quiet)?,
     };
+    if loaded.model.is_in_space() {
+        return Err(loaded.failure(&CompileError::InSpace));
+    }
     let alone = component.as_ref().map(Component::shelf);
     let suffix = alone.map_or("-rule".into(), |shelf| {
         format!("-{}", shelf.kind().replace('_', "-"))

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
+use super::info;
 use super::readable::decimal;
-use crate::geometry::{DVec2, Homothety};
-use crate::ifs::Verdict;
+use crate::geometry::{DAffine3, DVec2, DVec3, Homothety};
+use crate::ifs::{Contraction, System, Verdict};
 use crate::model::Model;
 
 /// Maps of a system, their contraction, and the measure of random iteration.
@@ -32,7 +33,7 @@ enum Weights {
 struct MapInfo {
     name: Option<String>,
     weight: f64,
-    fixed_point: Option<[f64; 2]>,
+    fixed_point: Option<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -49,6 +50,21 @@ struct MeasureInfo {
     covariance: [[f64; 2]; 2],
 }
 
+impl ContractionInfo {
+    fn of(contraction: &Contraction) -> Self {
+        Self {
+            contracts: match contraction.verdict {
+                Verdict::Contracts => Some(true),
+                Verdict::Diverges => Some(false),
+                Verdict::Undecided => None,
+            },
+            lower: contraction.lower,
+            upper: contraction.upper,
+            length: contraction.length,
+        }
+    }
+}
+
 impl SystemInfo {
     /// Collects the information of a system. `place` maps coordinates near the unit box around the origin, in which
     /// everything is computed, to those of the system.
@@ -63,7 +79,7 @@ impl SystemInfo {
         let maps = maps.map(|((map, &weight), fixed)| MapInfo {
             name: map.name.clone(),
             weight,
-            fixed_point: fixed.map(point),
+            fixed_point: fixed.map(|fixed| point(fixed).to_vec()),
         });
         let measure = ifs.measure().map(|measure| MeasureInfo {
             mean: point(measure.moments.mean),
@@ -79,18 +95,28 @@ impl SystemInfo {
             maps: maps.collect(),
             default_weights: weights_by.is_some(),
             weights_by,
-            contraction: ContractionInfo {
-                contracts: match contraction.verdict {
-                    Verdict::Contracts => Some(true),
-                    Verdict::Diverges => Some(false),
-                    Verdict::Undecided => None,
-                },
-                lower: contraction.lower,
-                upper: contraction.upper,
-                length: contraction.length,
-            },
+            contraction: ContractionInfo::of(contraction),
             measure,
         })
+    }
+
+    /// Collects the information of a system in space.
+    pub(super) fn in_space(system: &System<DAffine3>) -> Self {
+        let ifs = system.ifs();
+        let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
+        let maps = maps.map(|((map, &weight), fixed)| MapInfo {
+            name: map.name.clone(),
+            weight,
+            fixed_point: fixed.map(|fixed| (fixed + DVec3::ZERO).to_array().to_vec()),
+        });
+        let weights_by = ifs.has_default_weights().then_some(Weights::Determinants);
+        Self {
+            maps: maps.collect(),
+            default_weights: weights_by.is_some(),
+            weights_by,
+            contraction: ContractionInfo::of(system.contraction()),
+            measure: None,
+        }
     }
 
     /// Formats the information in lines, each with its label.
@@ -98,12 +124,9 @@ impl SystemInfo {
         let mut lines = Vec::new();
         for (number, map) in self.maps.iter().enumerate() {
             let name = map.name.clone().unwrap_or_else(|| (number + 1).to_string());
-            let fixed = map.fixed_point.map_or_else(
+            let fixed = map.fixed_point.as_ref().map_or_else(
                 || "no single fixed point".into(),
-                |point| {
-                    let [x, y] = point.map(|value| decimal(value, unit));
-                    format!("fixed point [{x}, {y}]")
-                },
+                |point| format!("fixed point {}", info::point(point, unit)),
             );
             lines.push((
                 "map",

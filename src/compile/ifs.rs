@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
-use crate::ifs::{Ifs, Shape, System};
-use crate::rule::{BaseElement, Piece};
+use crate::geometry::{Bounds, Outline, Point};
+use crate::ifs::{AffineMap, Ifs, OutlineOf, System};
 
 use super::instancing::instance;
 use crate::extent::{Bounded, Fineness, Own};
@@ -16,8 +15,8 @@ const MOST_INSTANCES: usize = 4_000_000;
 /// Number of the base element of the initial set; it is provisional until the limit set is known.
 const INITIAL: usize = 0;
 
-impl Graph {
-    /// Compiles a system to its graph, whose unit frame is the plane itself.
+impl<F: Bounded> Graph<F> {
+    /// Compiles a system to its graph, whose unit frame is the plane or space itself.
     ///
     /// The graph has an object for the whole, drawn as the initial set, and one for the set inside every
     /// map. In a recurrent system, the set inside f_j consists of the images f_i of the sets inside f_i,
@@ -29,14 +28,14 @@ impl Graph {
     ///
     /// A duplicate map, with the same maps before it, yields the same images and is omitted.
     #[must_use]
-    pub fn of_system(system: &System) -> Self {
+    pub fn of_system<M: AffineMap<Frame = F>>(system: &System<M>) -> Self {
         Self::compile_system(system, false)
     }
 
     /// Compiles a system to a graph whose objects record the map that is applied last, which takes more
     /// objects. `None` if the graph would have too many instances.
     #[must_use]
-    pub fn with_last_maps(system: &System) -> Option<Self> {
+    pub fn with_last_maps<M: AffineMap<Frame = F>>(system: &System<M>) -> Option<Self> {
         let size = system
             .ifs()
             .size()
@@ -44,15 +43,16 @@ impl Graph {
         (size <= MOST_INSTANCES).then(|| Self::compile_system(system, true))
     }
 
-    fn compile_system(system: &System, tells_last: bool) -> Self {
+    fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, tells_last: bool) -> Self {
         let ifs = system.ifs();
         let mut graph = Compiler::new(system, tells_last).run();
         graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
-        let initial = ifs.initial().map_or_else(|| filling(limit), outline);
+        let initial = ifs.initial().map(|set| M::outlines(set).swap_remove(0));
+        let initial = initial.unwrap_or_else(|| M::filling(limit));
         let mut whole = limit.unwrap_or(Bounds::EMPTY);
         if limit.is_none() {
-            initial.add_to(&mut whole, &Frame2::UNIT, 0.0);
+            initial.add_to(&mut whole, &F::UNIT, 0.0);
         }
         let mut base_elements = graph.base_elements.to_vec();
         base_elements[INITIAL] = initial;
@@ -63,11 +63,11 @@ impl Graph {
 }
 
 /// Returns the approximate centre of the limit of a graph.
-fn middle(graph: &Graph) -> DVec2 {
+fn middle<F: Bounded>(graph: &Graph<F>) -> F::Point {
     let mut bounds = Bounds::EMPTY;
     let drawn = graph.alive(true);
     let own = Own::Outlines(&vec![0.0; drawn.len()]);
-    if let Some(hulls) = Frame2::hulls(graph, &own, Some(&drawn), Fineness::COARSE) {
+    if let Some(hulls) = F::hulls(graph, &own, Some(&drawn), Fineness::COARSE) {
         for corner in hulls.corners(0) {
             bounds.add(*corner);
         }
@@ -77,48 +77,12 @@ fn middle(graph: &Graph) -> DVec2 {
         .unwrap_or_default()
 }
 
-/// Returns the filled rectangle of a box; the unit square if it is `None`.
-pub(crate) fn filling(bounds: Option<Bounds>) -> BaseElement {
-    let bounds = bounds.unwrap_or(Bounds::new(DVec2::ZERO, DVec2::ONE));
-    let (min, max) = (bounds.min(), bounds.max());
-    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-    let size = bounds.size();
-    let shape = if size.x > 0.0 && size.y > 0.0 {
-        Shape::polygon(&corners)
-    } else {
-        Shape::polyline(&[min, max])
-    };
-    outline(&shape.unwrap_or(Shape::Point(min)))
-}
-
-/// Returns the outlines of a shape.
-fn outlines(shape: &Shape) -> Vec<BaseElement> {
-    match shape {
-        Shape::Union(outlines) => outlines.to_vec(),
-        one => vec![outline(one)],
-    }
-}
-
-/// Returns the outline of a shape, the first of a union; for a point, the shortest possible line, which
-/// is stroked as a dot.
-pub(crate) fn outline(shape: &Shape) -> BaseElement {
-    match shape {
-        Shape::Outline(outline) => outline.clone(),
-        Shape::Union(outlines) => outlines[0].clone(),
-        Shape::Point(point) => {
-            let next = DVec2::new(point.x.next_up(), point.y);
-            BaseElement::new(*point, vec![Piece::Line(next)], false)
-                .unwrap_or_else(BaseElement::line)
-        }
-    }
-}
-
-struct Compiler<'s> {
-    ifs: &'s Ifs,
+struct Compiler<'s, M: AffineMap> {
+    ifs: &'s Ifs<M>,
     /// Outlines of the condensation sets.
-    sets: Vec<BaseElement>,
+    sets: Vec<OutlineOf<M>>,
     /// Outlines of a given initial set, without the first.
-    others: Vec<BaseElement>,
+    others: Vec<OutlineOf<M>>,
     chained: bool,
     /// Whether there are separate objects for every map that may be applied last.
     tells_last: bool,
@@ -128,8 +92,8 @@ struct Compiler<'s> {
     maps: Vec<usize>,
 }
 
-impl<'s> Compiler<'s> {
-    fn new(system: &'s System, tells_last: bool) -> Self {
+impl<'s, M: AffineMap> Compiler<'s, M> {
+    fn new(system: &'s System<M>, tells_last: bool) -> Self {
         let ifs = system.ifs();
         let count = ifs.maps().len();
         let mut before = vec![Vec::new(); count];
@@ -151,9 +115,9 @@ impl<'s> Compiler<'s> {
         let sets = ifs.condensation().iter();
         Self {
             ifs,
-            sets: sets.flat_map(|set| outlines(&set.shape)).collect(),
+            sets: sets.flat_map(|set| M::outlines(&set.shape)).collect(),
             others: ifs.initial().map_or_else(Vec::new, |initial| {
-                let mut outlines = outlines(initial);
+                let mut outlines = M::outlines(initial);
                 outlines.remove(0);
                 outlines
             }),
@@ -199,7 +163,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn run(&self) -> Graph {
+    fn run(&self) -> Graph<M::Frame> {
         let maps = self.ifs.maps().len();
         let whole = self.successor(None, &self.maps);
         let mut objects = vec![Object {
@@ -221,12 +185,11 @@ impl<'s> Compiler<'s> {
         }
         objects.extend(self.drawn_objects(None, None));
         self.number_behaviours(&mut objects);
-        let provisional = BaseElement::line();
+        let provisional = M::filling(None);
         let outlines = self.sets.iter().chain(&self.others).cloned();
         let drawn = self.drawn_with_first();
-        let drawn =
-            drawn.map(|outline| instance(self.drawn(None, outline), &DAffine2::IDENTITY, 0));
-        let root = instance(0, &DAffine2::IDENTITY, 0);
+        let drawn = drawn.map(|outline| instance(self.drawn(None, outline), &M::IDENTITY, 0));
+        let root = instance(0, &M::IDENTITY, 0);
         let start = Chain::loose(std::iter::once(root).chain(drawn).collect());
         let outlines = std::iter::once(provisional).chain(outlines);
         Graph {
@@ -236,7 +199,12 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn object(&self, base_element: usize, map: Option<usize>, last_map: Option<usize>) -> Object {
+    fn object(
+        &self,
+        base_element: usize,
+        map: Option<usize>,
+        last_map: Option<usize>,
+    ) -> Object<M::Frame> {
         Object {
             visible: base_element != INITIAL
                 || self.sets.is_empty()
@@ -259,7 +227,7 @@ impl<'s> Compiler<'s> {
         &self,
         map: Option<usize>,
         last_map: Option<usize>,
-    ) -> impl Iterator<Item = Object> + '_ {
+    ) -> impl Iterator<Item = Object<M::Frame>> + '_ {
         let vanishes = Arc::new(Successor::default());
         (0..self.outlines()).map(move |outline| Object {
             replacement: if outline < self.sets.len() {
@@ -272,7 +240,7 @@ impl<'s> Compiler<'s> {
     }
 
     /// Numbers the behaviours: objects with equal replacements share one.
-    fn number_behaviours(&self, objects: &mut [Object]) {
+    fn number_behaviours(&self, objects: &mut [Object<M::Frame>]) {
         let maps = self.ifs.maps().len();
         let mut numbers: Vec<(usize, usize)> = Vec::new();
         for (number, object) in objects.iter_mut().enumerate() {
@@ -298,7 +266,7 @@ impl<'s> Compiler<'s> {
 
     /// Returns the successor of the whole or of the set inside a map of a branch: images under some
     /// maps, and the condensation sets.
-    fn successor(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Successor {
+    fn successor(&self, place: Option<(usize, usize)>, maps: &[usize]) -> Successor<M::Frame> {
         let mut instances = Vec::new();
         // The outermost map determines the branch.
         let branch = |map: usize| match place {
@@ -315,7 +283,7 @@ impl<'s> Compiler<'s> {
         let with_first = self.drawn_with_first();
         for set in (0..self.sets.len()).filter(|set| !with_first.contains(set)) {
             let object = self.drawn(place, set);
-            instances.push(instance(object, &DAffine2::IDENTITY, instances.len()));
+            instances.push(instance(object, &M::IDENTITY, instances.len()));
         }
         // Outlines that are drawn together with the first one are inside the maps already.
         for outline in with_first {

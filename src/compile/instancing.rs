@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
 use crate::ifs::Shape;
 use crate::instancing::{self, Instancing, Master, Tint};
 use crate::rule::{BaseElement, Piece};
 
-use super::ifs::{filling, outline};
 use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
+use crate::ifs::{AffineMap, outline};
 
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MOST_BOXES: usize = 256;
@@ -63,7 +63,7 @@ impl Graph {
         }
         self.initiators = initiators;
         let first = self.base_elements.len();
-        let boxes = boxes.into_iter().map(filling);
+        let boxes = boxes.into_iter().map(DAffine2::filling);
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
@@ -112,8 +112,12 @@ impl Graph {
 }
 
 /// Creates an instance with a map, not joined to any other.
-pub(super) fn instance(object: usize, map: &DAffine2, position: usize) -> Instance {
-    let frame = Frame2::from(*map);
+pub(super) fn instance<M: AffineMap>(
+    object: usize,
+    map: &M,
+    position: usize,
+) -> Instance<M::Frame> {
+    let frame = M::Frame::from(*map);
     Instance {
         length: frame.stretch(),
         ..Instance::new(object, frame, u32::try_from(position).unwrap_or(u32::MAX))

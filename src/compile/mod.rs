@@ -6,5 +6,4 @@ mod lsystem;
 mod rule;
 mod state;
 
-pub(crate) use ifs::{filling, outline};
 pub(crate) use lsystem::Chords;

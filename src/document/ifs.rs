@@ -13,6 +13,8 @@ use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint
 pub struct IfsDocument {
     /// Metadata of the file.
     pub heading: MetadataDocument,
+    /// Whether the system lies in space.
+    pub is_in_space: bool,
     /// The maps; `None` if they cannot be read.
     pub maps: Option<MapsDocument>,
     /// The condensation sets.
@@ -90,6 +92,15 @@ pub enum LinearDocument {
         /// Angles of the images of the axes, in degrees; 0 if `None`.
         rotate: Option<[WrittenNumber; 2]>,
     },
+    /// Rows of a matrix of space.
+    MatrixInSpace([WrittenPoint; 3]),
+    /// Factors of the three axes, then turns about axes in their order.
+    AxesInSpace {
+        /// Factors along x, y and z.
+        scale: [WrittenNumber; 3],
+        /// The turns, of which the first is done first.
+        turns: Vec<TurnDocument>,
+    },
     /// Multiplication by a complex number.
     Complex {
         /// The factor.
@@ -97,6 +108,15 @@ pub enum LinearDocument {
         /// Whether the conjugate is taken before the multiplication.
         conjugate: bool,
     },
+}
+
+/// A turn of space as written.
+#[derive(Clone, Debug)]
+pub struct TurnDocument {
+    /// Vector along the axis.
+    pub axis: WrittenPoint,
+    /// Angle in degrees, by the right-hand rule.
+    pub angle: WrittenNumber,
 }
 
 /// An edge of the digraph as written.

@@ -24,6 +24,7 @@ mod yaml;
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
     InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
+    TurnDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,

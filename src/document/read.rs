@@ -12,6 +12,7 @@ mod parameters;
 mod rule;
 mod select;
 mod set;
+mod space;
 mod transform;
 mod turtle;
 mod word;

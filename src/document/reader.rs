@@ -17,6 +17,8 @@ pub(super) struct Reader {
     pub(super) diagnostics: Diagnostics,
     /// Whether an unreadable part of the file may define names. Unknown names are not reported then.
     pub(super) names_are_missing: bool,
+    /// Whether points have three coordinates.
+    pub(super) is_in_space: bool,
     /// Places of the diagnostics that precede reading, such as repaired mistakes of syntax.
     mended: HashSet<(*const Source, usize, usize)>,
     /// Places of the errors that precede reading.
@@ -254,7 +256,7 @@ impl Reader {
         }
     }
 
-    /// Reads a list of exactly two numbers.
+    /// Reads a list of exactly two numbers; in space, of two or three.
     pub(super) fn point(&mut self, node: &Node) -> WrittenPoint {
         let hint = "a point is written [x, y]";
         let mut point = WrittenPoint::unknown(&node.place);
@@ -275,19 +277,22 @@ impl Reader {
             match index {
                 0 => point.x = number,
                 1 => point.y = number,
+                2 if self.is_in_space => point.z = Some(Box::new(number)),
                 _ => {}
             }
         }
         let count = entries.len();
-        if count == 2 {
+        if count == 2 || (count == 3 && self.is_in_space) {
             return point;
         }
         if !entries.iter().any(|entry| self.is_mended(entry)) {
             let s = if count == 1 { "" } else { "s" };
-            let message = format!("a point has two coordinates, this one has {count} number{s}");
+            let few = if self.is_in_space { "three" } else { "two" };
+            let message = format!("a point has {few} coordinates, this one has {count} number{s}");
             let hint = match count {
+                _ if self.is_in_space => "a point in space is written [x, y, z]",
                 3 => {
-                    "fractals lie in the plane: a point is written [x, y], decimals with a point: 0.5"
+                    "the file lies in the plane: a point is written [x, y], decimals with a point: 0.5"
                 }
                 4.. => "a point is written [x, y], decimals with a point: 0.5",
                 _ => hint,

@@ -187,6 +187,9 @@ impl Definitions {
             Form::Point => self.defined("point", |definitions| {
                 definitions.form(&Form::List(&Form::Number, 2, Some(2)))
             }),
+            Form::Place => self.defined("place", |definitions| {
+                definitions.form(&Form::List(&Form::Number, 2, Some(3)))
+            }),
             Form::List(of, least, most) => {
                 let entries = of_type("array").with("items", self.form(of));
                 let entries = entries.with_some("minItems", (*least > 0).then_some(*least));

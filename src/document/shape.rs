@@ -75,6 +75,8 @@ pub(super) enum Form {
     Grown,
     /// A list of two numbers.
     Point,
+    /// A list of two numbers, or of three in a file of space.
+    Place,
     /// A list with a minimum and possibly a maximum number of entries.
     List(&'static Form, u32, Option<u32>),
     /// A mapping of arbitrary names to values, with a minimum number of entries.

@@ -1,37 +1,95 @@
 //! Affine maps whose numbers are doubles, long numbers, or programs.
 
 use super::program::{Arithmetic, Evaluation, Program};
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::geometry::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 
-/// Affine map of the plane over numbers of an [`Arithmetic`].
+/// Affine map over numbers of an arithmetic, of the plane or of a space of `D` dimensions.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Affine<N> {
-    /// Images of the vectors (1, 0) and (0, 1) under the linear part.
-    pub(crate) axes: [[N; 2]; 2],
-    /// Image of (0, 0).
-    pub(crate) origin: [N; 2],
+pub struct Affine<N, const D: usize = 2> {
+    /// Images of the unit vectors along the axes under the linear part.
+    pub(crate) axes: [[N; D]; D],
+    /// Image of the origin.
+    pub(crate) origin: [N; D],
 }
 
-impl<N: Clone> Affine<N> {
+impl<N: Clone, const D: usize> Affine<N, D> {
     /// Creates a linear map from its columns.
-    pub(crate) fn linear<A: Arithmetic<Number = N>>(of: &mut A, axes: [[N; 2]; 2]) -> Self {
+    pub(crate) fn linear<A: Arithmetic<Number = N>>(of: &mut A, axes: [[N; D]; D]) -> Self {
         let zero = of.decimal(0.0);
-        let origin = [zero.clone(), zero];
+        let origin = std::array::from_fn(|_| zero.clone());
         Self { axes, origin }
     }
 
-    /// Creates the map that scales the x and the y axis.
-    pub(crate) fn scaling<A: Arithmetic<Number = N>>(of: &mut A, [x, y]: [N; 2]) -> Self {
+    /// Creates the map that scales the axes.
+    pub(crate) fn scaling<A: Arithmetic<Number = N>>(of: &mut A, factors: [N; D]) -> Self {
         let zero = of.decimal(0.0);
-        Self::linear(of, [[x, zero.clone()], [zero, y]])
+        let mut axis = 0..;
+        let axes = factors.map(|factor| {
+            let mut column = std::array::from_fn(|_| zero.clone());
+            column[axis.next().unwrap_or(0)] = factor;
+            column
+        });
+        Self::linear(of, axes)
     }
 
     /// Creates the identity.
     pub(crate) fn identity<A: Arithmetic<Number = N>>(of: &mut A) -> Self {
         let one = of.decimal(1.0);
-        Self::scaling(of, [one.clone(), one])
+        Self::scaling(of, std::array::from_fn(|_| one.clone()))
     }
 
+    /// Returns the map with another image of the origin.
+    pub(crate) fn moved_to(self, origin: [N; D]) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Returns the map x → c + L (x − c) with the linear part L of this map and a fixed point c.
+    pub(crate) fn about<A: Arithmetic<Number = N>>(self, of: &mut A, centre: &[N; D]) -> Self {
+        let image = self.turned(of, centre);
+        let origin = std::array::from_fn(|row| of.subtract(&centre[row], &image[row]));
+        self.moved_to(origin)
+    }
+
+    /// Returns the image of a vector under the linear part.
+    pub(crate) fn turned<A: Arithmetic<Number = N>>(&self, of: &mut A, vector: &[N; D]) -> [N; D] {
+        std::array::from_fn(|row| {
+            let terms = self.axes.iter().zip(vector);
+            let mut terms = terms.map(|(axis, along)| (&axis[row], along));
+            let first = terms.next().map(|(entry, along)| of.multiply(entry, along));
+            let mut sum = first.unwrap_or_else(|| of.decimal(0.0));
+            for (entry, along) in terms {
+                let term = of.multiply(entry, along);
+                sum = of.add(&sum, &term);
+            }
+            sum
+        })
+    }
+
+    /// Returns the image of a point.
+    pub(crate) fn image<A: Arithmetic<Number = N>>(&self, of: &mut A, point: &[N; D]) -> [N; D] {
+        let turned = self.turned(of, point);
+        std::array::from_fn(|row| of.add(&turned[row], &self.origin[row]))
+    }
+
+    /// Returns the composition with a map that is applied before.
+    pub(crate) fn after<A: Arithmetic<Number = N>>(&self, of: &mut A, inner: &Self) -> Self {
+        Self {
+            axes: inner.axes.each_ref().map(|axis| self.turned(of, axis)),
+            origin: self.image(of, &inner.origin),
+        }
+    }
+
+    /// Returns the map with numbers that are a function of its numbers.
+    pub(crate) fn map<M>(&self, mut number: impl FnMut(&N) -> M) -> Affine<M, D> {
+        let mut vector = |vector: &[N; D]| vector.each_ref().map(&mut number);
+        Affine {
+            axes: self.axes.each_ref().map(&mut vector),
+            origin: vector(&self.origin),
+        }
+    }
+}
+
+impl<N: Clone> Affine<N> {
     /// Creates a rotation from the cosine and the sine of its angle.
     pub(crate) fn rotation<A: Arithmetic<Number = N>>(of: &mut A, [cosine, sine]: [N; 2]) -> Self {
         let across = [of.negate(&sine), cosine.clone()];
@@ -63,49 +121,45 @@ impl<N: Clone> Affine<N> {
         }
         Self::linear(of, [s, across])
     }
+}
 
-    /// Returns the map with another image of (0, 0).
-    pub(crate) fn moved_to(self, origin: [N; 2]) -> Self {
-        Self { origin, ..self }
+impl<N: Clone> Affine<N, 3> {
+    /// Creates the rotation about a unit vector, from the cosine and the sine of its angle, by the right-hand rule
+    /// (Rodrigues 1840).
+    pub(crate) fn rotation_about<A: Arithmetic<Number = N>>(
+        of: &mut A,
+        axis: &[N; 3],
+        [cosine, sine]: &[N; 2],
+    ) -> Self {
+        let one = of.decimal(1.0);
+        let rest = of.subtract(&one, cosine);
+        let axes = [0, 1, 2].map(|column| {
+            [0, 1, 2].map(|row: usize| {
+                let outer = of.multiply(&axis[row], &axis[column]);
+                let outer = of.multiply(&outer, &rest);
+                if row == column {
+                    return of.add(&outer, cosine);
+                }
+                let across = of.multiply(&axis[3 - row - column], sine);
+                // The cross product of the axis and the unit vector of the column.
+                if (column + 1) % 3 == row {
+                    of.add(&outer, &across)
+                } else {
+                    of.subtract(&outer, &across)
+                }
+            })
+        });
+        Self::linear(of, axes)
     }
+}
 
-    /// Returns the map x → c + L (x − c) with the linear part L of this map and a fixed point c.
-    pub(crate) fn about<A: Arithmetic<Number = N>>(self, of: &mut A, centre: &[N; 2]) -> Self {
-        let image = self.turned(of, centre);
-        let origin = [0, 1].map(|row| of.subtract(&centre[row], &image[row]));
-        self.moved_to(origin)
-    }
-
-    /// Returns the image of a vector under the linear part.
-    pub(crate) fn turned<A: Arithmetic<Number = N>>(&self, of: &mut A, [x, y]: &[N; 2]) -> [N; 2] {
-        let [right, up] = &self.axes;
-        [0, 1].map(|row| {
-            let (along, across) = (of.multiply(&right[row], x), of.multiply(&up[row], y));
-            of.add(&along, &across)
-        })
-    }
-
-    /// Returns the image of a point.
-    pub(crate) fn image<A: Arithmetic<Number = N>>(&self, of: &mut A, point: &[N; 2]) -> [N; 2] {
-        let turned = self.turned(of, point);
-        [0, 1].map(|row| of.add(&turned[row], &self.origin[row]))
-    }
-
-    /// Returns the composition with a map that is applied before.
-    pub(crate) fn after<A: Arithmetic<Number = N>>(&self, of: &mut A, inner: &Self) -> Self {
-        Self {
-            axes: inner.axes.each_ref().map(|axis| self.turned(of, axis)),
-            origin: self.image(of, &inner.origin),
-        }
-    }
-
-    /// Returns the map with numbers that are a function of its numbers.
-    pub(crate) fn map<M>(&self, mut number: impl FnMut(&N) -> M) -> Affine<M> {
-        let mut pair = |[x, y]: &[N; 2]| [number(x), number(y)];
-        Affine {
-            axes: self.axes.each_ref().map(&mut pair),
-            origin: pair(&self.origin),
-        }
+impl Affine<Program, 3> {
+    /// Returns the map if its numbers are constants.
+    pub(crate) fn as_constant(&self) -> Option<DAffine3> {
+        let constant = self.map(Program::as_constant);
+        let vector = |[x, y, z]: [Option<f64>; 3]| Some(DVec3::new(x?, y?, z?));
+        let [x, y, z] = constant.axes.map(vector);
+        Some(DAffine3::from_cols(x?, y?, z?, vector(constant.origin)?))
     }
 }
 

@@ -34,7 +34,7 @@ mod tests;
 
 use std::ops::Range;
 
-pub(crate) use affine::Affine;
+pub use affine::Affine;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision, leading};

@@ -1,6 +1,6 @@
 //! Convex hulls of subtrees, as far as frames of a kind have them: the interface of bounds.
 
-use crate::geometry::Frame;
+use crate::geometry::{Frame, Frame3};
 use crate::graph::{Graph, Instance};
 
 /// Precision of polygons as approximations of the convex hulls.
@@ -77,3 +77,6 @@ pub trait Bounded: Frame {
         None
     }
 }
+
+/// Sets in space are bounded by ratios of lengths.
+impl Bounded for Frame3 {}

@@ -162,7 +162,19 @@ impl<F: Bounded> Graph<F> {
         let finenesses = [Fineness::COARSE, Fineness::FINE].into_iter();
         let mut found =
             finenesses.map(|fineness| self.boxes_within(true, fineness, |_| 0.0)?.of(None));
-        found.find_map(|bounds| bounds)
+        found.find_map(|bounds| bounds).or_else(|| {
+            self.has_balls_only()
+                .then(|| self.limit_bounds_by_balls())?
+        })
+    }
+
+    /// Returns whether the graph has limits, for which frames of its kind have no hulls.
+    fn has_balls_only(&self) -> bool {
+        if self.check_maps().is_err() {
+            return false;
+        }
+        let own = Own::Outlines(&vec![0.0; self.objects.len()]);
+        F::hulls(self, &own, Some(&self.alive(true)), Fineness::COARSE).is_none()
     }
 
     /// Returns the boxes of approximants, or of the limit if `limit` is set.

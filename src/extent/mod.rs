@@ -11,6 +11,7 @@ mod bounded;
 mod bounding_box;
 mod bounds;
 mod contract;
+mod farthest;
 mod hull;
 mod limit;
 mod place;

@@ -2,7 +2,8 @@
 //!
 //! The plane has x to the right and y up; positive angles turn counter-clockwise. Points are
 //! [`glam::DVec2`], affine maps [`glam::DAffine2`] (they act on column vectors, so `f * g` applies
-//! `g` first).
+//! `g` first). Space has its z axis towards the viewer, and positive angles turn by the right-hand rule; its
+//! points are [`glam::DVec3`], its affine maps [`glam::DAffine3`].
 
 #[macro_use]
 mod forward;
@@ -14,9 +15,12 @@ mod corners;
 mod direction;
 mod frame;
 mod frame2;
+mod frame3;
 mod homothety;
 mod hull;
+mod linear;
 mod point;
+mod solid;
 
 pub use base_element::{BaseElement, Piece, arc};
 pub use bounds::Bounds;
@@ -24,9 +28,13 @@ pub use corners::Corners2;
 pub use direction::Direction;
 pub use frame::{BEYOND, Corners, Frame, Outline};
 pub use frame2::Frame2;
-pub use glam::{DAffine2, DMat2, DVec2, DVec3};
+pub use frame3::Frame3;
+pub use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 pub use homothety::Homothety;
+pub(crate) use linear::eigen;
+pub use linear::{Linear, rotation};
 pub use point::Point;
+pub use solid::{HalfSpace, Solid};
 
 pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;

@@ -25,6 +25,11 @@ pub enum CompileError {
         /// Length of the element relative to that of its initiator element.
         length: f64,
     },
+    /// The model lies in space, and a graph of the plane is asked for.
+    #[error(
+        "it lies in space: `grow`, `info` and `count` know space, and other commands know the plane only"
+    )]
+    InSpace,
     /// The word of an L-system cannot be derived.
     #[error(transparent)]
     Word(#[from] RewriteError),

@@ -5,12 +5,10 @@ use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3};
-
 use crate::draws::{Path, pick_by_weight};
 use crate::expression::Interval;
-use crate::extent::{Bounded, bounding_box};
-use crate::geometry::{Bounds, Corners, DVec3, Direction, Frame, Outline};
+use crate::extent::bounding_box;
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Frame, Frame3, Solid};
 use crate::graph::{
     Alternative, Buffers, Chain, CompileError, Graph, Instance, Object, Replacement, Seed, Source,
     Successor,
@@ -22,157 +20,15 @@ use super::{
     walk_in_spans,
 };
 
-/// Frame in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Frame3 {
-    map: DAffine3,
-    direction: Direction,
+/// Returns the frame that shrinks the unit frame by a factor and moves it.
+fn shrunk(factor: f64, origin: DVec3) -> Frame3 {
+    let linear = DMat3::from_diagonal(DVec3::splat(factor));
+    DAffine3::from_mat3_translation(linear, origin).into()
 }
 
-impl Frame3 {
-    /// Creates the frame that shrinks the unit frame by a factor and moves it.
-    fn shrunk(factor: f64, origin: DVec3) -> Self {
-        let linear = DMat3::from_diagonal(DVec3::splat(factor));
-        Self {
-            map: DAffine3::from_mat3_translation(linear, origin),
-            direction: Direction::Normal,
-        }
-    }
-}
-
-impl Frame for Frame3 {
-    type Point = DVec3;
-    type Outline = Cube;
-    type Corners = Vec<DVec3>;
-
-    const UNIT: Self = Self {
-        map: DAffine3::IDENTITY,
-        direction: Direction::Normal,
-    };
-
-    fn compose(&self, inner: &Self) -> Self {
-        Self {
-            map: self.map * inner.map,
-            direction: self.direction * inner.direction,
-        }
-    }
-
-    fn direction(&self) -> Direction {
-        self.direction
-    }
-
-    fn with_direction(&self, direction: Direction) -> Self {
-        Self { direction, ..*self }
-    }
-
-    fn origin(&self) -> DVec3 {
-        self.map.translation
-    }
-
-    fn moved_to(&self, origin: DVec3) -> Self {
-        let map = DAffine3::from_mat3_translation(self.map.matrix3, origin);
-        Self { map, ..*self }
-    }
-
-    fn apply(&self, point: DVec3) -> DVec3 {
-        self.map.transform_point3(point)
-    }
-
-    fn pullback(&self, functional: DVec3) -> DVec3 {
-        self.map.matrix3.transpose() * functional
-    }
-
-    fn ends(&self) -> [DVec3; 2] {
-        let mut ends = [self.origin(), self.apply(DVec3::X)];
-        if self.direction.is_reversed() {
-            ends.reverse();
-        }
-        ends
-    }
-
-    fn length(&self) -> f64 {
-        self.map.matrix3.x_axis.length()
-    }
-
-    fn stretch(&self) -> f64 {
-        // All maps of these tests are similarities.
-        self.length()
-    }
-
-    fn area(&self) -> f64 {
-        let linear = self.map.matrix3;
-        linear.x_axis.cross(linear.y_axis).length()
-    }
-
-    fn is_similarity(&self, ratio: f64) -> bool {
-        let linear = self.map.matrix3;
-        let square = linear.transpose() * linear;
-        square.abs_diff_eq(DMat3::IDENTITY * ratio * ratio, 1e-12 * ratio * ratio)
-    }
-
-    fn is_in_range(&self) -> bool {
-        self.map.is_finite()
-    }
-}
-
-impl Bounded for Frame3 {}
-
-impl Corners<Frame3> for Vec<DVec3> {
-    fn add(&mut self, corner: DVec3) {
-        self.push(corner);
-    }
-
-    fn add_to(&self, bounds: &mut Bounds<DVec3>, frame: &Frame3) {
-        for corner in self {
-            bounds.add(frame.apply(*corner));
-        }
-    }
-}
-
-/// The unit cube.
-#[derive(Clone, Debug)]
-struct Cube;
-
-impl Cube {
-    fn corners() -> impl Iterator<Item = DVec3> {
-        let side = |bit: u32| f64::from(bit & 1);
-        (0..8).map(move |corner| DVec3::new(side(corner), side(corner >> 1), side(corner >> 2)))
-    }
-}
-
-impl Outline<Frame3> for Cube {
-    fn is_closed(&self) -> bool {
-        true
-    }
-
-    fn is_line(&self) -> bool {
-        false
-    }
-
-    fn ends_meet_frame(&self) -> [bool; 2] {
-        [false; 2]
-    }
-
-    fn signed_area(&self) -> f64 {
-        6.0
-    }
-
-    fn support(&self, direction: DVec3) -> f64 {
-        let along = Self::corners().map(|corner| corner.dot(direction));
-        along.fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    fn add_to(&self, bounds: &mut Bounds<DVec3>, frame: &Frame3, pad: f64) {
-        for corner in Self::corners().map(|corner| frame.apply(corner)) {
-            bounds.add(corner - pad);
-            bounds.add(corner + pad);
-        }
-    }
-
-    fn add_corners(&self, corners: &mut Vec<DVec3>, frame: &Frame3) -> bool {
-        corners.extend(Self::corners().map(|corner| frame.apply(corner)));
-        true
-    }
+/// Returns the unit cube.
+fn cube() -> Solid {
+    Solid::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ONE))
 }
 
 /// Returns the origins of the cubes of a Menger sponge, in thirds: the cells of a 3 × 3 × 3 cube with at most
@@ -188,7 +44,7 @@ fn cells() -> Vec<DVec3> {
 /// Returns the instances of an object in cells, a third as large.
 fn chain(cells: &[DVec3], object: usize) -> Chain<Frame3> {
     let instances = (0..).zip(cells).map(|(position, &cell)| Instance {
-        frame: Frame3::shrunk(1.0 / 3.0, cell / 3.0),
+        frame: shrunk(1.0 / 3.0, cell / 3.0),
         length: 1.0 / 3.0,
         joined: false,
         position,
@@ -215,7 +71,7 @@ fn graph(objects: Vec<Object<Frame3>>, start: Frame3) -> Graph<Frame3> {
     };
     Graph {
         middle: DVec3::splat(0.5),
-        ..Graph::of(objects, [Cube], vec![initiator])
+        ..Graph::of(objects, [cube()], vec![initiator])
     }
 }
 
@@ -317,7 +173,7 @@ fn a_sponge_is_forecast() {
 
 #[test]
 fn a_sponge_is_bounded() {
-    let start = Frame3::shrunk(2.0, DVec3::new(1.0, -3.0, 0.5));
+    let start = shrunk(2.0, DVec3::new(1.0, -3.0, 0.5));
     let graph = sponge(start);
     let corner = start.origin();
     let expected = Bounds::new(corner, corner + 2.0);
@@ -348,7 +204,7 @@ fn a_sponge_is_walked_in_order() {
     for _ in 0..3 {
         let replaced = expected.iter().flat_map(|frame| {
             let cells = cells().into_iter();
-            cells.map(|cell| frame.compose(&Frame3::shrunk(1.0 / 3.0, cell / 3.0)))
+            cells.map(|cell| frame.compose(&shrunk(1.0 / 3.0, cell / 3.0)))
         });
         expected = replaced.collect();
     }
@@ -487,7 +343,7 @@ fn seeds_in_space_are_fractals() {
     };
     let graph = Graph {
         seeds: true,
-        ..graph(vec![object], Frame3::shrunk(0.5, DVec3::ONE))
+        ..graph(vec![object], shrunk(0.5, DVec3::ONE))
     };
     let walked = recorded(&graph, &Growth::steps(2), Recorder::default());
     let ages: Vec<u32> = walked.fractals.iter().map(|fractal| fractal.age).collect();

@@ -1,9 +1,7 @@
 //! Decides whether a system contracts, by bounds of the joint spectral radius of its maps' linear parts.
 
-use super::Ifs;
-use super::Shrinking;
-use super::norm::{in_best_coordinates, spectral_radius};
-use crate::geometry::{DMat2, stretch};
+use super::{AffineMap, Ifs};
+use crate::geometry::Linear;
 
 /// Default limit of the number of products that are formed.
 const MOST_PRODUCTS: usize = 100_000;
@@ -48,14 +46,14 @@ pub struct Contraction {
     pub length: u32,
 }
 
-impl Ifs {
+impl<M: AffineMap> Ifs<M> {
     /// Determines whether the system contracts, from at most 100 000 products (see
     /// [`Ifs::contraction_within`]) and, if they do not decide, from the convex hulls of a disc's images
     /// under all products of a length.
     #[must_use]
     pub fn contraction(&self) -> Contraction {
         let (linear, successors) = self.linear();
-        Contraction::of(&linear, successors)
+        Contraction::of::<M>(&linear, successors)
     }
 
     /// Determines whether the system contracts, from at most `products` products. Single maps are always
@@ -68,13 +66,13 @@ impl Ifs {
     #[must_use]
     pub fn contraction_within(&self, products: usize) -> Contraction {
         let (linear, successors) = self.linear();
-        Contraction::within(&linear, successors, products)
+        Contraction::within::<M>(&linear, successors, products)
     }
 
     /// Returns the linear parts, and for each map the maps that may follow it, in ascending order; `None` if
     /// any map may follow any.
-    fn linear(&self) -> (Vec<DMat2>, Option<Vec<Vec<usize>>>) {
-        let linear = self.maps().iter().map(|map| map.affine.matrix2);
+    fn linear(&self) -> (Vec<M::Linear>, Option<Vec<Vec<usize>>>) {
+        let linear = self.maps().iter().map(|map| map.affine.linear());
         let mut successors = self.successors();
         for list in successors.iter_mut().flatten() {
             list.sort_unstable();
@@ -86,8 +84,11 @@ impl Ifs {
 impl Contraction {
     /// Determines whether linear maps contract. `successors` lists the maps that may follow each; with `None`
     /// any map may follow any.
-    pub(crate) fn of(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>) -> Self {
-        let mut contraction = Self::within(linear, successors.clone(), MOST_PRODUCTS);
+    pub(crate) fn of<M: AffineMap>(
+        linear: &[M::Linear],
+        successors: Option<Vec<Vec<usize>>>,
+    ) -> Self {
+        let mut contraction = Self::within::<M>(linear, successors.clone(), MOST_PRODUCTS);
         if contraction.verdict == Verdict::Undecided {
             let mut images = Vec::new();
             match successors {
@@ -101,30 +102,34 @@ impl Contraction {
                 }
                 None => images.push(linear.iter().map(|&linear| (linear, 0)).collect()),
             }
-            if let Some(shrinking) = Shrinking::found(&images) {
-                let factor = libm::pow(shrinking.stretch, 1.0 / f64::from(shrinking.length));
+            if let Some((length, stretch)) = M::shrinking(&images) {
+                let factor = libm::pow(stretch, 1.0 / f64::from(length));
                 contraction.verdict = Verdict::Contracts;
                 contraction.upper = contraction.upper.min(factor).max(contraction.lower);
-                contraction.length = contraction.length.max(shrinking.length);
+                contraction.length = contraction.length.max(length);
             }
         }
         contraction
     }
 
     /// Determines the same from at most `products` products. The lists of successors are in ascending order.
-    fn within(linear: &[DMat2], successors: Option<Vec<Vec<usize>>>, products: usize) -> Self {
+    fn within<M: AffineMap>(
+        linear: &[M::Linear],
+        successors: Option<Vec<Vec<usize>>>,
+        products: usize,
+    ) -> Self {
         let search = Search {
             all: (0..linear.len()).collect(),
-            matrices: [in_best_coordinates(linear), linear.to_vec()],
+            matrices: [M::in_best_coordinates(linear), linear.to_vec()],
             successors,
         };
         search.run(products)
     }
 }
 
-struct Search {
+struct Search<L> {
     /// The linear maps in the coordinates of the norm and in the given ones.
-    matrices: [Vec<DMat2>; 2],
+    matrices: [Vec<L>; 2],
     all: Vec<usize>,
     /// The maps that may follow each, in ascending order.
     successors: Option<Vec<Vec<usize>>>,
@@ -132,10 +137,10 @@ struct Search {
 
 /// A product that is extended by further maps.
 #[derive(Clone, Copy)]
-struct Product {
+struct Product<L> {
     /// Matrices of the product in the coordinates of the norm and in the given ones, where eigenvalues keep
     /// more digits; both are to be multiplied by 2 to the power `exponent`.
-    matrices: [DMat2; 2],
+    matrices: [L; 2],
     exponent: i32,
     /// The least value of norm to the power 1 / length over the product's beginnings.
     factor: f64,
@@ -145,7 +150,7 @@ struct Product {
     beginning: Option<usize>,
 }
 
-impl Product {
+impl<L> Product<L> {
     /// Returns `size` · 2^`exponent` to the power 1 / length, where `size` is a norm or spectral radius of
     /// the scaled matrix.
     fn root(&self, size: f64, length: u32) -> f64 {
@@ -165,7 +170,7 @@ struct Best {
     beginning: Option<usize>,
 }
 
-impl Search {
+impl<L: Linear> Search<L> {
     fn run(&self, budget: usize) -> Contraction {
         let mut formed = 0;
         let mut length = 0;
@@ -173,7 +178,7 @@ impl Search {
         // The largest factor of the products that are not extended.
         let mut dropped: f64 = 0.0;
         let mut upper = f64::INFINITY;
-        let mut followed: Vec<Product> = Vec::new();
+        let mut followed: Vec<Product<L>> = Vec::new();
         let mut level = 0..0;
         'lengths: loop {
             let longer = length + 1;
@@ -200,7 +205,7 @@ impl Search {
             }
             length = longer;
             let bound = best.bound();
-            let (kept, short): (Vec<Product>, Vec<Product>) =
+            let (kept, short): (Vec<Product<L>>, Vec<Product<L>>) =
                 next.into_iter().partition(|product| product.factor > bound);
             dropped = largest(dropped, &short);
             upper = largest(dropped, &kept);
@@ -242,13 +247,13 @@ impl Search {
     /// Returns the product with one more map; `None` if it is zero.
     fn extended(
         &self,
-        before: Option<Product>,
+        before: Option<Product<L>>,
         beginning: Option<usize>,
         map: usize,
         length: u32,
-    ) -> Option<Product> {
+    ) -> Option<Product<L>> {
         let before = before.unwrap_or(Product {
-            matrices: [DMat2::IDENTITY; 2],
+            matrices: [L::IDENTITY; 2],
             exponent: 0,
             factor: f64::INFINITY,
             first: map,
@@ -256,7 +261,7 @@ impl Search {
             beginning: None,
         });
         let [normed, given] = [0, 1].map(|of| self.matrices[of][map] * before.matrices[of]);
-        let size = stretch(&normed);
+        let size = normed.stretch();
         if size < f64::MIN_POSITIVE {
             return None;
         }
@@ -279,7 +284,7 @@ impl Search {
     }
 }
 
-fn largest(least: f64, products: &[Product]) -> f64 {
+fn largest<L>(least: f64, products: &[Product<L>]) -> f64 {
     products
         .iter()
         .map(|product| product.factor)
@@ -287,8 +292,8 @@ fn largest(least: f64, products: &[Product]) -> f64 {
 }
 
 impl Best {
-    fn try_product(&mut self, product: &Product, length: u32) {
-        let factor = product.root(spectral_radius(product.matrices[1]), length);
+    fn try_product<L: Linear>(&mut self, product: &Product<L>, length: u32) {
+        let factor = product.root(product.matrices[1].spectral_radius(), length);
         // Of several that are equal but for rounding, the first is kept.
         if factor > self.factor * (1.0 + ROUNDING) {
             *self = Self {
@@ -314,7 +319,7 @@ impl Best {
     }
 
     /// Returns the best product as the lexicographically least of its rotations.
-    fn word(&self, followed: &[Product]) -> Vec<usize> {
+    fn word<L>(&self, followed: &[Product<L>]) -> Vec<usize> {
         if self.factor == 0.0 {
             return Vec::new();
         }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Definition, Edge, Shape};
+use super::{AffineMap, Definition, Edge};
 
 /// Owner of a weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +94,7 @@ pub enum IfsError {
 }
 
 /// Returns all errors of a definition, in the order maps, edges, condensation sets, initial set.
-pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
+pub(super) fn check<M: AffineMap>(definition: &Definition<M>) -> Vec<IfsError> {
     let mut errors = Vec::new();
     let maps = &definition.maps;
     if maps.is_empty() {
@@ -114,16 +114,15 @@ pub(super) fn check(definition: &Definition) -> Vec<IfsError> {
         errors.extend(check_edges(edges, maps.len()));
     }
     for (number, set) in definition.condensation.iter().enumerate() {
-        if set.shape.moments().is_none() {
+        if !M::has_extent(&set.shape) {
             errors.push(IfsError::NoExtent {
                 condensation: number,
             });
         }
         errors.extend(check_weight(set.weight, WeightOwner::Condensation(number)));
     }
-    if let Some(Shape::Point(point)) = definition.initial
-        && !point.is_finite()
-    {
+    let initial = definition.initial.as_ref();
+    if initial.is_some_and(|set| !M::is_bounded(set)) {
         errors.push(IfsError::InitialNotFinite);
     }
     errors

@@ -1,25 +1,25 @@
 //! Affine maps of an iterated function system, and constructors for common notations of them.
 
-use super::norm::spectral_radius;
+use super::{AffineMap, PointOf};
 use crate::expression::{Affine, Arithmetic, Doubles};
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::geometry::{DAffine2, DMat2, DVec2, Linear};
 
 /// A map of a system.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Map {
+pub struct Map<M = DAffine2> {
     /// Name of the map, if it has one.
     pub name: Option<String>,
-    /// The map of the plane.
-    pub affine: DAffine2,
+    /// The map of the plane or of space.
+    pub affine: M,
     /// Weight of the map in random iteration, relative to the other maps: positive. Either all maps have one,
     /// or none.
     pub weight: Option<f64>,
 }
 
-impl Map {
+impl<M: AffineMap> Map<M> {
     /// Returns a map without name and weight.
     #[must_use]
-    pub fn new(affine: DAffine2) -> Self {
+    pub fn new(affine: M) -> Self {
         Self {
             name: None,
             affine,
@@ -38,29 +38,16 @@ impl Map {
 
     /// Returns the fixed point of the map; `None` if there is none, or more than one.
     #[must_use]
-    pub fn fixed_point(&self) -> Option<DVec2> {
-        fixed_point(&self.affine)
+    pub fn fixed_point(&self) -> Option<PointOf<M>> {
+        self.affine.fixed_point()
     }
 
     /// Returns whether the map contracts when it is iterated: whether the spectral radius of its linear part
     /// is below 1.
     #[must_use]
     pub fn contracts(&self) -> bool {
-        spectral_radius(self.affine.matrix2) < 1.0
+        self.affine.linear().spectral_radius() < 1.0
     }
-}
-
-pub(super) fn fixed_point(affine: &DAffine2) -> Option<DVec2> {
-    let moving = DMat2::IDENTITY - affine.matrix2;
-    let (x, y) = (moving.x_axis, moving.y_axis);
-    let area = x.perp_dot(y);
-    // Cramer's rule. Where the columns are parallel, rounding leaves a small area instead of zero.
-    if area.abs() <= 1e-15 * x.length() * y.length() {
-        return None;
-    }
-    let shift = affine.translation;
-    let point = DVec2::new(shift.perp_dot(y), x.perp_dot(shift)) / area;
-    point.is_finite().then_some(point)
 }
 
 /// Returns the linear map that scales the x and the y axis, then rotates each by its own angle, in degrees

@@ -1,4 +1,4 @@
-//! Iterated function systems: affine maps of the plane, the walk of random iteration, condensation sets.
+//! Iterated function systems: affine maps of the plane or of space, the walk of random iteration, condensation sets.
 //!
 //! An [`Ifs`] is the validated model of the systems of Demko, Hodges & Naylor ("Iterated function systems",
 //! SIGGRAPH 1985). Maps f_1 … f_n that contract have one compact set A with A = f_1(A) ∪ … ∪ f_n(A) ∪ C, the
@@ -28,6 +28,7 @@
 //!
 //! Maps, edges and condensation sets are numbered from 0 in this module, and from 1 in messages.
 
+mod affine_map;
 mod contraction;
 mod error;
 mod interpolation;
@@ -41,6 +42,8 @@ mod shrinking;
 mod system;
 mod walk;
 
+pub(crate) use affine_map::outline;
+pub use affine_map::{AffineMap, OutlineOf, PointOf};
 pub use contraction::{Contraction, Verdict};
 pub use error::{IfsError, WeightOwner};
 pub(crate) use interpolation::pieces;
@@ -53,10 +56,9 @@ pub use moments::Moments;
 pub use shape::Shape;
 pub(crate) use shrinking::Shrinking;
 pub use system::System;
-pub(crate) use system::hull;
 pub use walk::{Choice, Step, Walk};
 
-use crate::geometry::{DAffine2, DVec2, Homothety};
+use crate::geometry::{DAffine2, Homothety, Linear};
 use error::check;
 
 /// An edge of the digraph of a recurrent system: map `to` may be applied after map `from`.
@@ -73,37 +75,48 @@ pub struct Edge {
 
 /// A condensation set: a set that belongs to the attractor together with all its images.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Condensation {
+pub struct Condensation<M: AffineMap = DAffine2> {
     /// The set.
-    pub shape: Shape,
+    pub shape: M::Set,
     /// Weight of drawing a point anew from the set, relative to the weights of the maps; the mean of these if
     /// `None`.
     pub weight: Option<f64>,
 }
 
 /// The parts of a system before validation.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Definition {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Definition<M: AffineMap = DAffine2> {
     /// The maps.
-    pub maps: Vec<Map>,
+    pub maps: Vec<Map<M>>,
     /// Edges of the digraph; if `None`, any map may follow any.
     pub edges: Option<Vec<Edge>>,
     /// The condensation sets.
-    pub condensation: Vec<Condensation>,
-    /// Initial set of deterministic iteration, in the coordinates of the plane.
-    pub initial: Option<Shape>,
+    pub condensation: Vec<Condensation<M>>,
+    /// Initial set of deterministic iteration, in the coordinates of the plane or of space.
+    pub initial: Option<M::Set>,
+}
+
+impl<M: AffineMap> Default for Definition<M> {
+    fn default() -> Self {
+        Self {
+            maps: Vec::new(),
+            edges: None,
+            condensation: Vec::new(),
+            initial: None,
+        }
+    }
 }
 
 /// An iterated function system; its guarantees are those of the [module](self).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ifs {
-    definition: Definition,
+pub struct Ifs<M: AffineMap = DAffine2> {
+    definition: Definition<M>,
     weights: Vec<f64>,
     condensation_weights: Vec<f64>,
     edge_weights: Vec<f64>,
 }
 
-impl Ifs {
+impl<M: AffineMap> Ifs<M> {
     /// Builds a system from its parts.
     ///
     /// Maps without weights get default ones: |det| of the linear part or a twentieth of the mean |det| of
@@ -113,7 +126,7 @@ impl Ifs {
     /// # Errors
     ///
     /// Returns all errors of the parts, in the order maps, edges, condensation sets, initial set.
-    pub fn new(definition: Definition) -> Result<Self, Vec<IfsError>> {
+    pub fn new(definition: Definition<M>) -> Result<Self, Vec<IfsError>> {
         let errors = check(&definition);
         if !errors.is_empty() {
             return Err(errors);
@@ -134,7 +147,7 @@ impl Ifs {
 
     /// Returns the maps.
     #[must_use]
-    pub fn maps(&self) -> &[Map] {
+    pub fn maps(&self) -> &[Map<M>] {
         &self.definition.maps
     }
 
@@ -181,7 +194,7 @@ impl Ifs {
 
     /// Returns the condensation sets.
     #[must_use]
-    pub fn condensation(&self) -> &[Condensation] {
+    pub fn condensation(&self) -> &[Condensation<M>] {
         &self.definition.condensation
     }
 
@@ -193,10 +206,42 @@ impl Ifs {
 
     /// Returns the initial set of deterministic iteration, if there is one.
     #[must_use]
-    pub fn initial(&self) -> Option<&Shape> {
+    pub fn initial(&self) -> Option<&M::Set> {
         self.definition.initial.as_ref()
     }
 
+    /// Estimates the number of instances in the system's graph: every map inside every map, and every outline
+    /// inside these.
+    pub(crate) fn size(&self) -> usize {
+        let sets = self.condensation().iter().map(|set| &set.shape);
+        let outlines = sets.chain(self.initial()).map(|set| M::outlines(set).len());
+        let outlines = outlines.sum::<usize>();
+        let maps = self.maps().len();
+        maps.saturating_mul(maps).saturating_mul(1 + outlines)
+    }
+
+    /// Returns the composition of maps that are applied one after the other, the first of the list first.
+    ///
+    /// # Panics
+    ///
+    /// Panics if an index is not that of a map.
+    #[must_use]
+    pub fn composition(&self, word: &[usize]) -> M {
+        let maps = word.iter().map(|&map| self.maps()[map].affine);
+        maps.fold(M::IDENTITY, |before, map| map * before)
+    }
+
+    /// Returns the fixed point of every map; `None` where there is none, or more than one.
+    ///
+    /// The fixed point of a map lies on the attractor; in a recurrent system only if the map may follow
+    /// itself.
+    #[must_use]
+    pub fn fixed_points(&self) -> Vec<Option<PointOf<M>>> {
+        self.maps().iter().map(Map::fixed_point).collect()
+    }
+}
+
+impl Ifs {
     /// Returns the system in the coordinates that a homothety maps to its own; `None` if a set has no extent
     /// there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
@@ -213,44 +258,15 @@ impl Ifs {
         }
         Some(within)
     }
-
-    /// Estimates the number of instances in the system's graph: every map inside every map, and every outline
-    /// inside these.
-    pub(crate) fn size(&self) -> usize {
-        let sets = self.condensation().iter().map(|set| &set.shape);
-        let outlines = sets.chain(self.initial()).map(Shape::count).sum::<usize>();
-        let maps = self.maps().len();
-        maps.saturating_mul(maps).saturating_mul(1 + outlines)
-    }
-
-    /// Returns the composition of maps that are applied one after the other, the first of the list first.
-    ///
-    /// # Panics
-    ///
-    /// Panics if an index is not that of a map.
-    #[must_use]
-    pub fn composition(&self, word: &[usize]) -> DAffine2 {
-        let maps = word.iter().map(|&map| self.maps()[map].affine);
-        maps.fold(DAffine2::IDENTITY, |before, map| map * before)
-    }
-
-    /// Returns the fixed point of every map; `None` where there is none, or more than one.
-    ///
-    /// The fixed point of a map lies on the attractor; in a recurrent system only if the map may follow
-    /// itself.
-    #[must_use]
-    pub fn fixed_points(&self) -> Vec<Option<DVec2>> {
-        self.maps().iter().map(Map::fixed_point).collect()
-    }
 }
 
 /// Returns the weights of the maps: as given, or the defaults of [`Ifs::new`].
-fn map_weights(maps: &[Map]) -> Vec<f64> {
+fn map_weights<M: AffineMap>(maps: &[Map<M>]) -> Vec<f64> {
     let given: Option<Vec<f64>> = maps.iter().map(|map| map.weight).collect();
     given.unwrap_or_else(|| {
         let areas = maps
             .iter()
-            .map(|map| map.affine.matrix2.determinant().abs());
+            .map(|map| map.affine.linear().determinant().abs());
         let areas: Vec<f64> = areas.collect();
         let floor = mean(&areas) / 20.0;
         let raised: Vec<f64> = areas.iter().map(|area| area.max(floor)).collect();

@@ -1,20 +1,6 @@
-//! Norms and spectral radii of matrices of the plane, and coordinates in which several matrices stretch
-//! least.
+//! Coordinates of the plane in which several matrices stretch least.
 
-use crate::geometry::{DMat2, DVec2, stretch};
-
-/// Returns the spectral radius: the largest modulus of an eigenvalue.
-pub(super) fn spectral_radius(matrix: DMat2) -> f64 {
-    let (a, c) = (matrix.x_axis.x, matrix.x_axis.y);
-    let (b, d) = (matrix.y_axis.x, matrix.y_axis.y);
-    let (middle, half) = (f64::midpoint(a, d), a / 2.0 - d / 2.0);
-    let discriminant = half * half + b * c;
-    if discriminant >= 0.0 {
-        middle.abs() + discriminant.sqrt()
-    } else {
-        libm::hypot(middle, (-discriminant).sqrt())
-    }
-}
+use crate::geometry::{DMat2, DVec2, Linear, stretch};
 
 /// Returns the matrices in coordinates in which their largest stretch is nearly minimal: the unit disc of
 /// these coordinates is the ellipse that all of the matrices shrink best.
@@ -28,7 +14,7 @@ pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
     const GOLDEN: f64 = 2.399_963_229_728_653;
     let least = matrices
         .iter()
-        .map(|&m| spectral_radius(m))
+        .map(Linear::spectral_radius)
         .fold(0.0, f64::max);
     let (mut best, mut size, mut turn) = (Coordinates::GIVEN, 1.0, 0.0);
     let mut stretch = best.stretch(matrices);

@@ -1,19 +1,18 @@
 //! An iterated function system with the metadata and the options of its file.
 
-use super::{Contraction, Ifs, IfsError, Shape};
-use crate::expression::{Affine, Program};
-use crate::geometry::{DVec2, Homothety, convex_hull};
+use super::{AffineMap, Contraction, Ifs, IfsError};
+use crate::geometry::{DAffine2, Homothety};
 use crate::metadata::Metadata;
 
 /// A system with the data of its file that do not belong to its mathematics.
 ///
 /// Guarantee: the system does not diverge.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct System<M: AffineMap = DAffine2> {
     pub(crate) heading: Metadata,
-    pub(crate) ifs: Ifs,
+    pub(crate) ifs: Ifs<M>,
     /// The maps as written, in the coordinates of the file.
-    pub(crate) written: Vec<Affine<Program>>,
+    pub(crate) written: Vec<M::Written>,
     /// Whether the images of the initial set, in the order of the maps, form one line.
     pub(crate) chained: bool,
     /// Whether the maps are those of [`interpolate`](super::interpolate).
@@ -21,7 +20,7 @@ pub struct System {
     pub(crate) contraction: Contraction,
 }
 
-impl System {
+impl<M: AffineMap> System<M> {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
@@ -30,7 +29,7 @@ impl System {
 
     /// Returns the system of maps.
     #[must_use]
-    pub fn ifs(&self) -> &Ifs {
+    pub fn ifs(&self) -> &Ifs<M> {
         &self.ifs
     }
 
@@ -57,7 +56,9 @@ impl System {
             ..self.clone()
         })
     }
+}
 
+impl<M: AffineMap> System<M> {
     /// Returns the system without some maps, and without the edges from and to them. Approximant 0 is
     /// unchanged.
     ///
@@ -94,7 +95,7 @@ impl System {
     }
 }
 
-impl Ifs {
+impl<M: AffineMap> Ifs<M> {
     /// Returns a map's name for messages: `map 'name'`, or `map 2` without a name.
     pub(crate) fn map_name(&self, map: usize) -> String {
         let name = self.maps().get(map).and_then(|map| map.name.as_ref());
@@ -109,14 +110,4 @@ impl Ifs {
         let names: Vec<_> = word.iter().map(|&map| self.map_name(map)).collect();
         names.join(", then ")
     }
-}
-
-/// Returns the convex hull of points as a polygon, a segment or a point.
-pub(crate) fn hull(points: &[DVec2]) -> Shape {
-    let around = convex_hull(points.to_vec(), 0.0);
-    let shape = match around[..] {
-        [from, to] => Shape::polyline(&[from, to]),
-        _ => Shape::polygon(&around),
-    };
-    shape.unwrap_or_else(|| Shape::Point(around.first().copied().unwrap_or_default()))
 }

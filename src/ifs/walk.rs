@@ -1,7 +1,7 @@
 //! The walk of random iteration as a Markov chain, and its stationary weights.
 
 use super::linear::Equations;
-use super::{Ifs, shares};
+use super::{AffineMap, Ifs, shares};
 use crate::digraph::components;
 
 /// Move of the point in a step of the walk.
@@ -36,7 +36,7 @@ pub struct Walk {
     states: Vec<Vec<Step>>,
 }
 
-impl Ifs {
+impl<M: AffineMap> Ifs<M> {
     /// Returns the walk of random iteration.
     #[must_use]
     pub fn walk(&self) -> Walk {

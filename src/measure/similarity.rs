@@ -5,7 +5,8 @@
 use std::collections::BTreeSet;
 
 use crate::digraph::{self, parts};
-use crate::extent::NoLimit;
+use crate::extent::{Bounded, NoLimit};
+use crate::geometry::Frame;
 use crate::graph::{Graph, Object};
 
 use super::perron::{beside_one, crossing, perron};
@@ -33,7 +34,7 @@ impl Similarity {
 /// Infertile elements do not count: the trunk of a tree adds nothing. The value is exact to about 12 digits;
 /// overlapping copies are counted with their multiplicity.
 #[must_use]
-pub fn similarity_dimension(graph: &Graph) -> Similarity {
+pub fn similarity_dimension<F: Bounded>(graph: &Graph<F>) -> Similarity {
     if graph.draws() {
         return Similarity::none(&"the ratios may depend on draws");
     }
@@ -94,8 +95,8 @@ impl digraph::Edge for Edge {
 
 /// Returns the fertile instances of fertile objects as edges between behaviours: objects of one behaviour are
 /// replaced alike.
-fn edges(graph: &Graph) -> Vec<Edge> {
-    let of = |(number, object): (usize, &Object)| {
+fn edges<F: Frame>(graph: &Graph<F>) -> Vec<Edge> {
+    let of = |(number, object): (usize, &Object<F>)| {
         let children = graph.children(number).map(|(_, instance)| instance);
         let fertile = children.filter(|instance| graph.is_fertile(instance.object));
         let from = object.behaviour;

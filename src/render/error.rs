@@ -12,6 +12,7 @@ use super::instanced::NotInstanced;
 #[cfg(doc)]
 use super::options::Options;
 use super::png::TooManyPixels;
+use super::space::SpaceError;
 
 /// Error of drawing.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +39,9 @@ pub enum RenderError {
     /// The picture is too large for memory.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
+    /// A set in space cannot be drawn.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
     /// There is no figure of a kind.
     #[error("there is no figure of an {}'s productions", .0.noun())]
     NoFigure(Kind),

@@ -46,6 +46,7 @@ mod prepass;
 mod scene;
 mod short_cuts;
 mod sketch;
+pub mod space;
 mod surface;
 mod svg;
 mod tracer;

@@ -1,11 +1,14 @@
 //! Resolution of iterated function systems.
 
+mod space;
+
 use crate::diagnostic::did_you_mean;
 use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
 use crate::expression::{Affine, Program, Symbols};
+use crate::geometry::DAffine2;
 use crate::ifs::{
-    Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, Shape, System, Verdict,
-    WeightOwner, hull,
+    AffineMap, Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, System, Verdict,
+    WeightOwner,
 };
 use crate::metadata::Metadata;
 
@@ -21,12 +24,20 @@ pub(super) struct OfIfs;
 
 /// Maps of a system, the default initial set, and whether its images, in the order of the maps, form
 /// one line.
-pub(super) struct Maps {
-    pub(super) maps: Vec<Map>,
+pub(super) struct Maps<M: AffineMap = DAffine2> {
+    pub(super) maps: Vec<Map<M>>,
     /// The maps as written.
-    pub(super) written: Vec<Affine<Program>>,
-    pub(super) initial: Option<Shape>,
+    pub(super) written: Vec<M::Written>,
+    pub(super) initial: Option<M::Set>,
     pub(super) chained: bool,
+}
+
+/// Parts of a system; `None` for what has mistakes.
+struct Parts<M: AffineMap> {
+    maps: Option<Maps<M>>,
+    condensation: Vec<Option<Condensation<M>>>,
+    /// The initial set, if the file has one.
+    initial: Option<Option<M::Set>>,
 }
 
 impl Resolver<OfIfs> {
@@ -46,6 +57,26 @@ impl Resolver<OfIfs> {
             })
             .collect();
         let initial = document.initial.as_ref().map(|set| self.set(set));
+        let parts = Parts {
+            maps,
+            condensation,
+            initial,
+        };
+        self.assembled(document, heading, parts)
+    }
+
+    /// Resolves the edges and puts the parts of a system together.
+    fn assembled<M: AffineMap>(
+        &mut self,
+        document: &IfsDocument,
+        heading: Metadata,
+        parts: Parts<M>,
+    ) -> Option<System<M>> {
+        let Parts {
+            maps,
+            condensation,
+            initial,
+        } = parts;
         let names = maps.as_ref().map(|maps| {
             let names = maps.maps.iter().map(|map| map.name.as_deref());
             names.collect::<Vec<_>>()
@@ -130,7 +161,7 @@ impl Resolver<OfIfs> {
                 Some(Maps {
                     maps: maps.collect::<Option<_>>()?,
                     written,
-                    initial: Some(hull(&values(&points))),
+                    initial: Some(DAffine2::hull(&values(&points))),
                     chained: false,
                 })
             }
@@ -215,10 +246,10 @@ impl Resolver<OfIfs> {
     }
 
     /// Refuses a system that does not contract, and warns if the verdict is undecided.
-    fn check_contraction(
+    fn check_contraction<M: AffineMap>(
         &mut self,
         document: &IfsDocument,
-        ifs: &Ifs,
+        ifs: &Ifs<M>,
         contraction: &Contraction,
     ) -> Option<()> {
         let first = contraction.word.first().copied();

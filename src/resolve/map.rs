@@ -37,6 +37,8 @@ impl<K> Resolver<K> {
                 let turns = rotate.map(|angle| Symbols.turn(&angle));
                 Some(Affine::turned_axes(&mut Symbols, &scale, turns.each_ref()))
             }
+            // Maps of space are resolved where systems are.
+            LinearDocument::MatrixInSpace(_) | LinearDocument::AxesInSpace { .. } => None,
             LinearDocument::Complex { times, conjugate } => {
                 let times = self.point(times)?;
                 Some(Affine::complex(&mut Symbols, times, *conjugate))

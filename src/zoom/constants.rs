@@ -88,6 +88,8 @@ impl<'a> Constants<'a> {
                 let maps = maps.collect();
                 Kind::System(system, maps)
             }
+            // Its graph is none of the plane.
+            Model::IfsInSpace(_) => return Err(ZoomError::NoReach),
             Model::Instancing(structure) => {
                 Kind::Structure(structure, Graph::canonical_objects(structure))
             }

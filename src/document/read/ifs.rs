@@ -16,6 +16,7 @@ use crate::kind::Kind;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, read_initial, read_set};
+use super::space::{self, SOLIDS, TURN};
 use super::{KindTable, OfKind};
 
 /// Keys of an iterated function system.
@@ -31,8 +32,10 @@ const IFS: Shape = Shape {
 };
 
 /// Keys that only an iterated function system has.
-const IFS_ALONE: [Member; 9] = keys![
+const IFS_ALONE: [Member; 10] = keys![
     needed kind: Form::Words(&[Kind::Ifs.name()]), "The kind of file.";
+    space: Form::Whole(2, Some(3)),
+        "3 for a system in space, whose points have three coordinates; 2, the plane, if left out.";
     extends: Form::File(Shelf::IFS),
         "Another system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
@@ -78,20 +81,28 @@ const MAP_HINT: &str =
     "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}";
 
 /// A point, or the name of a complex parameter.
-const COMPLEX: Form = Form::Either(&[Form::Point, Form::Expression]);
+const COMPLEX: Form = Form::Either(&[Form::Place, Form::Expression]);
 
 /// Keys that define a map.
-const PLACING: [Member; 7] = keys![
-    matrix: Form::List(&Form::Point, 2, Some(2)),
-        "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].";
-    scale: Form::Either(&[Form::Number, Form::Point]), "A factor, or one along x and one along y.";
-    rotate: Form::Either(&[Form::Number, Form::Point]),
-        "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis.";
+const PLACING: [Member; 8] = keys![
+    matrix: Form::List(&Form::Place, 2, Some(3)),
+        "The rows of the matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y]; in space there \
+         are three rows of three numbers.";
+    scale: Form::Either(&[Form::Number, Form::Place]), "A factor, or one along each axis.";
+    rotate: Form::Either(&[
+        Form::Number,
+        Form::Point,
+        Form::Mapping(&TURN),
+        Form::List(&Form::Mapping(&TURN), 1, None),
+    ]),
+        "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis; in space a \
+         turn about an axis, {y: 30} or {axis: [1, 1, 0], angle: 30}, or a list of turns in order.";
     times: COMPLEX,
         "A complex factor s, as [real part, imaginary part] or the name of a complex parameter: z goes \
          to s z.";
     conjugate: Form::Flag(false), "With `times`: z goes to s conj z.";
     shift: COMPLEX, "What is added last: [x, y], or the name of a complex parameter.";
+    translate: COMPLEX, "Another name of `shift`.";
     fixed: COMPLEX, "In place of `shift`: the point that stays where it is.";
 ];
 
@@ -104,13 +115,13 @@ const WAYS_TO_PLACE: [Way; 3] = [
 const VERTICES: Shape = Shape {
     what: "vertices",
     keys: &[&keys![
-        needed points: Form::List(&Form::Point, 1, None), "The vertices: a map towards each."
-            => "there are no `points`";
+        points: Form::List(&Form::Place, 1, None), "The vertices: a map towards each.";
+        solid: Form::Words(&SOLIDS), "In place of `points`, in space: the corners of a solid.";
         needed shrink: Form::Number,
             "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it."
             => "vertices need `shrink`: what is left of the way to one";
     ]],
-    ways: &[],
+    ways: &[way(&["points"], &["solid"]), way(&["solid"], &["points"])],
     hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
 };
 
@@ -143,6 +154,8 @@ impl OfKind for IfsDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let is_in_space = read_space(reader, fields);
+        reader.is_in_space = is_in_space;
         let condensation = fields.take("condensation").map_or(&[][..], |node| {
             let what = "a list of condensation sets";
             reader.filled(node, what, "condensation set", CONDENSATION.hint)
@@ -155,15 +168,42 @@ impl OfKind for IfsDocument {
             })
         });
         let edges = fields.take("edges");
-        Self {
+        let document = Self {
             heading,
+            is_in_space,
             condensation: condensation.collect(),
             maps: read_maps(reader, fields),
             initial: read_initial(reader, fields),
             edges: edges
                 .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
+        };
+        reader.is_in_space = false;
+        document
+    }
+}
+
+/// Reads whether a file lies in space. Reports keys that only files of the plane have.
+fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
+    let Some(node) = fields.take("space") else {
+        return false;
+    };
+    match node.value {
+        Value::Number(2.0) => return false,
+        Value::Number(3.0) => {}
+        _ => {
+            let message = format!("there is no space of dimension {}", node.place.text());
+            let hint = "space: 3, or space: 2 for the plane";
+            reader.error_with_hint(&node.place, message, hint);
         }
     }
+    for key in ["interpolate", "condensation", "initial"] {
+        if fields.take(key).is_some() {
+            let message = format!("`{key}` is known in the plane only");
+            let hint = "in space, a system has `maps` or `vertices`, and `edges`";
+            reader.error_with_hint(fields.place_of(key), message, hint);
+        }
+    }
+    true
 }
 
 /// Reads the maps of the one way in which they are given.
@@ -234,10 +274,20 @@ fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> 
 
 /// Reads a map without its name and weight.
 pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocument {
+    let linear = match reader.is_in_space {
+        true => space::read_linear(reader, fields),
+        false => read_linear(reader, fields),
+    };
+    if fields.take("shift").is_some() && fields.take("translate").is_some() {
+        let message = "`translate` is another name of `shift`";
+        let hint = "write one of them";
+        reader.error_with_hint(fields.place_of("translate"), message, hint);
+    }
+    let shift = fields.take("shift").or(fields.take("translate"));
     let map = MapDocument {
         name: None,
-        linear: read_linear(reader, fields),
-        shift: reader.optional_complex(fields.take("shift")),
+        linear,
+        shift: reader.optional_complex(shift),
         fixed: reader.optional_complex(fields.take("fixed")),
         weight: None,
         place: fields.place.clone(),
@@ -253,6 +303,12 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
 fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocument> {
     let matrix = fields.take("matrix");
     let scale = fields.optional(reader, "scale");
+    if let Some(node) = fields.take("rotate").filter(|node| space::is_turn(node)) {
+        let message = "a turn about an axis lies in space";
+        let hint = "write an angle in the plane, or `space: 3` at the top";
+        reader.error_with_hint(&node.place, message, hint);
+        return None;
+    }
     let rotate = fields.optional(reader, "rotate");
     let times = reader.optional_complex(fields.take("times"));
     let conjugate = fields.read(reader, "conjugate")?;
@@ -296,7 +352,23 @@ pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPo
 
 fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
     let fields = reader.fields(node, &VERTICES)?;
-    let points = read_points(reader, &fields, VERTICES.hint);
+    let points = match (fields.take("solid"), fields.take("points")) {
+        (Some(node), None) if reader.is_in_space => space::read_solid(reader, node),
+        (Some(_), given) => {
+            let (message, hint) = match given {
+                Some(_) => ("`solid` stands in place of `points`", "write one of them"),
+                None => ("a solid lies in space", "write `space: 3`"),
+            };
+            reader.error_with_hint(fields.place_of("solid"), message, hint);
+            None
+        }
+        (None, Some(_)) => read_points(reader, &fields, VERTICES.hint),
+        (None, None) => {
+            let place = node.place.first_line();
+            reader.error_with_hint(&place, "there are no `points`", VERTICES.hint);
+            None
+        }
+    };
     let shrink = fields.optional(reader, "shrink");
     Some(MapsDocument::Vertices {
         points: points?,

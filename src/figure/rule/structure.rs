@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::compile::{filling, outline as base_element};
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::Graph;
+use crate::ifs::{AffineMap, outline as base_element};
 use crate::instancing::{Instancing, Master, ObjectInstance};
 use crate::render::Paint;
 
@@ -167,7 +167,7 @@ impl<'a> Plan<'a> {
     fn drawn(&self, instance: &'a ObjectInstance) -> Option<Drawn<'a>> {
         let map = self.structure.map_of(instance);
         let own = match &instance.master {
-            Master::Object(number) => outline(&filling(Some(*self.boxes.get(number)?))),
+            Master::Object(number) => outline(&DAffine2::filling(Some(*self.boxes.get(number)?))),
             Master::Shape(shape) => outline(&base_element(shape)),
         };
         let outline = own.transformed(&map);

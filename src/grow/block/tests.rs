@@ -118,7 +118,11 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
         }
         let source = catalogue.open(&entry).unwrap();
         let document = Document::read(&source, &catalogue).unwrap();
-        let graph = document.resolve(&[]).unwrap().0.compile(20).unwrap();
+        let model = document.resolve(&[]).unwrap().0;
+        if model.is_in_space() {
+            continue;
+        }
+        let graph = model.compile(20).unwrap();
         if !graph.shrinks() {
             continue;
         }

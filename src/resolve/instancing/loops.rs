@@ -2,7 +2,7 @@
 
 use crate::digraph::{all_loops_shrink, components};
 use crate::document::InstancingDocument;
-use crate::geometry::{DMat2, stretch};
+use crate::geometry::{DAffine2, DMat2, stretch};
 use crate::ifs::{Contraction, Verdict};
 use crate::instancing::{Instancing, Master};
 use crate::resolve::Resolver;
@@ -54,7 +54,7 @@ impl Resolver<OfInstancing> {
             return Some(());
         }
         let after = edges.iter().map(|edge| outer[edge.from].clone()).collect();
-        let contraction = Contraction::of(&linear, Some(after));
+        let contraction = Contraction::of::<DAffine2>(&linear, Some(after));
         let name = |edge: &usize| structure.objects[edges[*edge].from].name.as_str();
         let object = contraction.word.last().map_or("", name);
         let written = document

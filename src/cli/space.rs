@@ -1,0 +1,44 @@
+//! Steps of fractals in space, and their limits.
+
+use anyhow::anyhow;
+
+use crate::geometry::Frame3;
+use crate::graph::Graph;
+
+use super::Failure;
+use super::readable::{counted, grouped};
+use super::rule::Loaded;
+
+/// Returns the number of steps that was given, or that the file proposes, or else the deepest step, up to 12, of at
+/// most 20,000 elements.
+pub(super) fn steps(asked: Option<u32>, loaded: &Loaded, graph: &Graph<Frame3>) -> u32 {
+    const DEEPEST: u32 = 12;
+    const MOST_ELEMENTS: u64 = 20_000;
+    let proposed = asked.or(loaded.model.metadata().steps);
+    proposed.unwrap_or_else(|| match graph.check_size(DEEPEST, MOST_ELEMENTS) {
+        Ok(_) => DEEPEST,
+        Err(error) => error.deepest.unwrap_or(0),
+    })
+}
+
+/// Returns an error if a step has too many elements.
+pub(super) fn check(
+    loaded: &Loaded,
+    graph: &Graph<Frame3>,
+    steps: u32,
+    most: u64,
+) -> Result<(), Failure> {
+    let Err(error) = graph.check_size(steps, most) else {
+        return Ok(());
+    };
+    let count = error.elements.as_ref().map_or_else(
+        || "more elements than can be counted".into(),
+        |elements| counted(elements, "element"),
+    );
+    let limit = grouped(&most.into());
+    let deepest = match error.deepest {
+        Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
+        None => format!("no step is within --max-elements {limit}"),
+    };
+    Err(anyhow!("step {steps} of {} has {count}; {deepest}", loaded.name).into())
+}

@@ -1,0 +1,128 @@
+//! Bounding box of a limit set by branch and bound, for frames whose subtrees are bounded by balls alone.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::geometry::{Bounds, Frame, Outline, Point};
+use crate::graph::{Graph, Instance, Object, Replacement};
+
+use super::Bounded;
+
+/// Limit of the number of instances that are replaced, for a direction.
+const MOST_WORK: usize = 1 << 17;
+
+/// Relative error of the box.
+const TOLERANCE: f64 = 1e-13;
+
+/// An instance, by the part of a linear functional that it contributes.
+struct Node<F: Frame> {
+    object: usize,
+    /// The functional in the coordinates of the object.
+    vector: F::Point,
+    offset: f64,
+    /// Upper bound of the functional.
+    farthest: f64,
+}
+
+impl<F: Frame> PartialEq for Node<F> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<F: Frame> Eq for Node<F> {}
+
+impl<F: Frame> PartialOrd for Node<F> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<F: Frame> Ord for Node<F> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.farthest.total_cmp(&other.farthest)
+    }
+}
+
+impl<F: Bounded> Graph<F> {
+    /// Returns the bounding box of the limit set, to within 1e-13 of its distance and extent. An instance is
+    /// replaced only while its ball may reach farther than all points that are known (Land & Doig 1960). `None`
+    /// if a subtree is not bounded, or if that takes too long.
+    pub(super) fn limit_bounds_by_balls(&self) -> Option<Bounds<F::Point>> {
+        let alive = self.alive(true);
+        let own = |object: &Object<F>| match object.replacement {
+            Replacement::Fixed(_) => 0.0,
+            _ => self.outline_radius(object),
+        };
+        let reaches = self.reaches(own);
+        let mut ends = [F::Point::ZERO; 2];
+        for (number, &axis) in F::Point::AXES.iter().enumerate() {
+            let far = self.farthest(axis, &alive, &reaches)?;
+            ends[number % 2] = ends[number % 2] + axis * far;
+        }
+        let bounds = Bounds::new(ends[1], ends[0]);
+        bounds.is_finite().then_some(bounds)
+    }
+
+    /// Returns the greatest value of a linear functional on the limit set.
+    fn farthest(&self, axis: F::Point, alive: &[bool], reaches: &[f64]) -> Option<f64> {
+        let mut heap: BinaryHeap<Node<F>> = BinaryHeap::new();
+        // The greatest value that is certain to be reached.
+        let mut surely = f64::NEG_INFINITY;
+        let add = |heap: &mut BinaryHeap<Node<F>>,
+                   surely: &mut f64,
+                   instance: &Instance<F>,
+                   outer: F::Point,
+                   offset: f64| {
+            if !alive[instance.object] {
+                return Some(());
+            }
+            let vector = instance.frame.pullback(outer);
+            let offset = offset + outer.dot(instance.frame.origin());
+            if !matches!(
+                self.objects()[instance.object].replacement,
+                Replacement::Fixed(_)
+            ) {
+                if let Some(outline) = self.drawn(instance.object) {
+                    *surely = surely.max(offset + outline.support(vector));
+                }
+                return Some(());
+            }
+            let radius = vector.length() * reaches[instance.object];
+            let middle = offset + vector.dot(self.middle());
+            if !radius.is_finite() {
+                return None;
+            }
+            *surely = surely.max(middle - radius);
+            heap.push(Node {
+                object: instance.object,
+                vector,
+                offset,
+                farthest: middle + radius,
+            });
+            Some(())
+        };
+        for instance in &self.initiator(0).instances {
+            add(&mut heap, &mut surely, instance, axis, 0.0)?;
+        }
+        let mut work = 0;
+        let size = heap.peek().map_or(0.0, |node| node.farthest - surely);
+        while let Some(node) = heap.pop() {
+            let tolerance = TOLERANCE * (size + surely.abs());
+            if node.farthest <= surely + tolerance {
+                return Some(f64::midpoint(node.farthest.max(surely), surely));
+            }
+            work += 1;
+            if work > MOST_WORK {
+                return None;
+            }
+            let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {
+                continue;
+            };
+            for (_, instance) in successor.placed_instances() {
+                add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
+            }
+        }
+        surely.is_finite().then_some(surely)
+    }
+}

@@ -1,0 +1,245 @@
+//! Linear maps of the plane and of space: what is common to both.
+
+use std::fmt::Debug;
+use std::ops::Mul;
+
+use glam::{DMat2, DMat3, DVec3};
+
+use super::frame2::stretch;
+
+/// A linear map: [`DMat2`] of the plane, [`DMat3`] of space.
+pub trait Linear:
+    Copy + Debug + PartialEq + Send + Sync + Mul<Output = Self> + Mul<f64, Output = Self> + 'static
+{
+    /// The identity.
+    const IDENTITY: Self;
+
+    /// Returns the determinant.
+    #[must_use]
+    fn determinant(&self) -> f64;
+
+    /// Returns the largest factor by which the map lengthens a vector: its largest singular value.
+    #[must_use]
+    fn stretch(&self) -> f64;
+
+    /// Returns the spectral radius: the largest modulus of an eigenvalue.
+    #[must_use]
+    fn spectral_radius(&self) -> f64;
+}
+
+impl Linear for DMat2 {
+    const IDENTITY: Self = Self::IDENTITY;
+
+    fn determinant(&self) -> f64 {
+        self.determinant()
+    }
+
+    fn stretch(&self) -> f64 {
+        stretch(self)
+    }
+
+    fn spectral_radius(&self) -> f64 {
+        let (a, c) = (self.x_axis.x, self.x_axis.y);
+        let (b, d) = (self.y_axis.x, self.y_axis.y);
+        largest_root(a / 2.0 + d / 2.0, a / 2.0 - d / 2.0, b * c)
+    }
+}
+
+/// Returns the largest modulus of the eigenvalues of a 2 × 2 matrix from the half of its trace, the half of the
+/// difference of its diagonal entries, and the product of the other two.
+fn largest_root(middle: f64, half: f64, product: f64) -> f64 {
+    let discriminant = half * half + product;
+    if discriminant >= 0.0 {
+        middle.abs() + discriminant.sqrt()
+    } else {
+        libm::hypot(middle, (-discriminant).sqrt())
+    }
+}
+
+impl Linear for DMat3 {
+    const IDENTITY: Self = Self::IDENTITY;
+
+    fn determinant(&self) -> f64 {
+        self.determinant()
+    }
+
+    fn stretch(&self) -> f64 {
+        stretch3(self)
+    }
+
+    fn spectral_radius(&self) -> f64 {
+        let size = largest_entry(self);
+        if !(size > 0.0 && size.is_finite()) {
+            return size;
+        }
+        let scaled = *self / size;
+        if let Some(ratio) = ratio(&scaled) {
+            return ratio * size;
+        }
+        size * largest_eigenvalue(&scaled)
+    }
+}
+
+fn largest_entry(matrix: &DMat3) -> f64 {
+    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let largest = columns.map(|column| column.abs().max_element());
+    largest.into_iter().fold(0.0, f64::max)
+}
+
+/// Returns the ratio of a similarity, to within rounding; `None` if the map is not one.
+fn ratio(matrix: &DMat3) -> Option<f64> {
+    const ROUNDING: f64 = 1e-14;
+    let square = matrix.transpose() * *matrix;
+    let mean = (square.x_axis.x + square.y_axis.y + square.z_axis.z) / 3.0;
+    let is_similarity = square.abs_diff_eq(DMat3::IDENTITY * mean, ROUNDING * mean);
+    (is_similarity && mean > 0.0).then(|| mean.sqrt())
+}
+
+/// Returns the largest modulus of an eigenvalue of a matrix whose entries are at most 1.
+///
+/// The characteristic polynomial λ³ − t λ² + m λ − d has a real root, found by Newton's method from beyond all
+/// roots or by bisection; the other two are those of the quadratic that remains.
+fn largest_eigenvalue(matrix: &DMat3) -> f64 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let trace = x.x + y.y + z.z;
+    let minors = x.x * y.y - y.x * x.y + x.x * z.z - z.x * x.z + y.y * z.z - z.y * y.z;
+    let determinant = matrix.determinant();
+    let value = |at: f64| ((at - trace) * at + minors) * at - determinant;
+    // All eigenvalues lie within the largest sum of a row.
+    let (mut low, mut high) = (-4.0, 4.0);
+    for _ in 0..200 {
+        let middle = f64::midpoint(low, high);
+        if value(middle) > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let real = f64::midpoint(low, high);
+    let middle = (trace - real) / 2.0;
+    // λ² − 2 middle λ + rest
+    let rest = minors - real * (trace - real);
+    real.abs()
+        .max(largest_root(middle, 0.0, middle * middle - rest))
+}
+
+/// Returns the largest singular value of a matrix of space.
+pub(crate) fn stretch3(matrix: &DMat3) -> f64 {
+    let size = largest_entry(matrix);
+    if !(size > 0.0 && size.is_finite()) {
+        return size;
+    }
+    let scaled = *matrix / size;
+    // A homothety stretches by its ratio exactly.
+    if is_diagonal(&scaled) {
+        return size;
+    }
+    let square = scaled.transpose() * scaled;
+    let (values, _) = eigen(&square);
+    size * values.max_element().sqrt()
+}
+
+fn is_diagonal(matrix: &DMat3) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    [x.y, x.z, y.x, y.z, z.x, z.y].iter().all(|it| *it == 0.0)
+}
+
+/// Returns eigenvalues and eigenvectors, as columns, of a symmetric matrix, by Jacobi's rotations.
+pub(crate) fn eigen(matrix: &DMat3) -> (DVec3, DMat3) {
+    const SWEEPS: u32 = 12;
+    let mut a = matrix.to_cols_array_2d();
+    let mut vectors = DMat3::IDENTITY.to_cols_array_2d();
+    for _ in 0..SWEEPS {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+            let root = (theta * theta + 1.0).sqrt();
+            let t = theta.signum() / (theta.abs() + root);
+            let t = if t.is_finite() { t } else { 0.0 };
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            for row in &mut a {
+                let (of_p, of_q) = (row[p], row[q]);
+                row[p] = c * of_p - s * of_q;
+                row[q] = s * of_p + c * of_q;
+            }
+            for k in 0..3 {
+                let (of_p, of_q) = (a[p][k], a[q][k]);
+                a[p][k] = c * of_p - s * of_q;
+                a[q][k] = s * of_p + c * of_q;
+                let (of_p, of_q) = (vectors[p][k], vectors[q][k]);
+                vectors[p][k] = c * of_p - s * of_q;
+                vectors[q][k] = s * of_p + c * of_q;
+            }
+        }
+    }
+    let values = DVec3::new(a[0][0], a[1][1], a[2][2]);
+    (values, DMat3::from_cols_array_2d(&vectors))
+}
+
+/// Returns the rotation about an axis by an angle, of which it takes the cosine and the sine, by the right-hand
+/// rule (Rodrigues 1840).
+#[must_use]
+pub fn rotation(axis: DVec3, cosine: f64, sine: f64) -> DMat3 {
+    let axis = axis.normalize();
+    let columns = [DVec3::X, DVec3::Y, DVec3::Z];
+    let [x, y, z] = columns.map(|unit| {
+        unit * cosine + axis.cross(unit) * sine + axis * (axis.dot(unit) * (1.0 - cosine))
+    });
+    DMat3::from_cols(x, y, z)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+
+    #[test]
+    fn largest_singular_values_and_eigenvalues() {
+        let turned = rotation(DVec3::new(1.0, 2.0, -0.5), 0.6, 0.8);
+        assert!((turned.determinant() - 1.0).abs() < 1e-15);
+        for (map, stretch, radius) in [
+            (turned * 0.5, 0.5, 0.5),
+            (DMat3::from_diagonal(DVec3::new(-0.9, 0.2, 0.0)), 0.9, 0.9),
+            (
+                turned * DMat3::from_diagonal(DVec3::new(3.0, 1.0, 1e-9)),
+                3.0,
+                f64::NAN,
+            ),
+        ] {
+            assert!((stretch3(&map) - stretch).abs() < 1e-14, "{map}");
+            let found = map.spectral_radius();
+            assert!(
+                radius.is_nan() || (found - radius).abs() < 1e-13,
+                "{map}: {found}"
+            );
+        }
+        // A Jordan block stretches, but does not expand when it is iterated.
+        let shear = DMat3::from_cols(DVec3::X * 0.5, DVec3::new(7.0, 0.5, 0.0), DVec3::Z * 0.1);
+        assert!(stretch3(&shear) > 7.0);
+        assert!((shear.spectral_radius() - 0.5).abs() < 1e-5);
+    }
+
+    #[test]
+    fn rotations_follow_the_right_hand_rule() {
+        let quarter = rotation(DVec3::Z, 0.0, 1.0);
+        assert!((quarter * DVec3::X - DVec3::Y).length() < 1e-15);
+        let quarter = rotation(DVec3::X * 3.0, 0.0, 1.0);
+        assert!((quarter * DVec3::Y - DVec3::Z).length() < 1e-15);
+    }
+
+    #[test]
+    fn plane_maps_agree_with_maps_of_space() {
+        let plane = DMat2::from_cols(DVec2::new(0.3, -0.8), DVec2::new(0.5, 0.2));
+        let space = DMat3::from_cols(
+            plane.x_axis.extend(0.0),
+            plane.y_axis.extend(0.0),
+            DVec3::ZERO,
+        );
+        assert!((stretch(&plane) - stretch3(&space)).abs() < 1e-15);
+        assert!((plane.spectral_radius() - space.spectral_radius()).abs() < 1e-14);
+    }
+}

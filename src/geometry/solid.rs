@@ -1,0 +1,343 @@
+//! Convex solids: shapes of elements in space.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+
+use super::linear::eigen;
+use super::{Bounds, Frame, Frame3, Outline, convex_hull};
+
+/// Largest number of points of which a convex hull is computed; more are enclosed by a box.
+const MOST_POINTS: usize = 100;
+
+/// Tolerance of comparisons, relative to the size of a solid.
+const ROUNDING: f64 = 1e-10;
+
+/// A half-space: the points x with normal · x ≤ distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfSpace {
+    /// Vector across the boundary, outwards.
+    pub normal: DVec3,
+    /// Largest value of normal · x.
+    pub distance: f64,
+}
+
+/// A convex polyhedron, which may be flat: a polygon, a segment or a point.
+///
+/// A flat solid is the image of a polyhedron with an inside under a singular map, which is kept apart: see
+/// [`place`](Self::place).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    place: DAffine3,
+    /// Half-spaces whose intersection is the solid before it is placed.
+    faces: Arc<[HalfSpace]>,
+    /// Corners of the solid in its place.
+    corners: Arc<[DVec3]>,
+    /// Surface in its place; of a flat solid, both sides.
+    surface: f64,
+}
+
+impl Solid {
+    /// Returns the box between two opposite corners, which may be flat.
+    #[must_use]
+    pub fn cuboid(bounds: &Bounds<DVec3>) -> Self {
+        let half = bounds.size() / 2.0;
+        let place =
+            DAffine3::from_mat3_translation(DMat3::from_diagonal(half), bounds.min() + half);
+        let sides = [DVec3::X, DVec3::Y, DVec3::Z]
+            .into_iter()
+            .flat_map(|axis| [axis, -axis]);
+        let faces = sides.map(|normal| HalfSpace {
+            normal,
+            distance: 1.0,
+        });
+        let ends = [bounds.min(), bounds.max()];
+        let corners = (0..8).map(|corner: usize| {
+            let [x, y, z] = [corner & 1, corner >> 1 & 1, corner >> 2].map(|end| ends[end]);
+            DVec3::new(x.x, y.y, z.z)
+        });
+        let sides = bounds.size();
+        Self {
+            place,
+            faces: faces.collect(),
+            corners: corners.collect(),
+            surface: 2.0 * (sides.x * sides.y + sides.y * sides.z + sides.z * sides.x),
+        }
+    }
+
+    /// Returns the convex hull of points, or their box where they are more than 100; a point at the origin if
+    /// there are none.
+    #[must_use]
+    pub fn hull(points: &[DVec3]) -> Self {
+        let mut bounds = Bounds::EMPTY;
+        points.iter().for_each(|point| bounds.add(*point));
+        if points.is_empty() {
+            return Self::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ZERO));
+        }
+        let size = bounds.size().max_element();
+        if points.len() > MOST_POINTS || size <= 0.0 {
+            return Self::cuboid(&bounds);
+        }
+        let middle = bounds.min() + bounds.size() / 2.0;
+        let near: Vec<DVec3> = points
+            .iter()
+            .map(|point| (*point - middle) / size)
+            .collect();
+        let (axes, rank) = main_axes(&near);
+        let solid = match rank {
+            3 => Self::polyhedron(&near),
+            2 => Self::polygon(&near, axes),
+            _ => Self::segment(&near, axes.x_axis),
+        };
+        let place =
+            DAffine3::from_mat3_translation(DMat3::from_diagonal(DVec3::splat(size)), middle);
+        let corners = solid
+            .corners
+            .iter()
+            .map(|corner| place.transform_point3(*corner));
+        Self {
+            place: place * solid.place,
+            corners: corners.collect(),
+            surface: solid.surface * size * size,
+            faces: solid.faces,
+        }
+    }
+
+    /// Returns the hull of points that do not lie in a plane. Every plane through three points with no point
+    /// beyond it is a face.
+    fn polyhedron(points: &[DVec3]) -> Self {
+        let mut faces: Vec<HalfSpace> = Vec::new();
+        let mut surface = 0.0;
+        for (a, &first) in points.iter().enumerate() {
+            for (b, &second) in points.iter().enumerate().skip(a + 1) {
+                for &third in &points[b + 1..] {
+                    let normal = (second - first).cross(third - first);
+                    if normal.length() <= ROUNDING {
+                        continue;
+                    }
+                    let normal = normal.normalize();
+                    for normal in [normal, -normal] {
+                        let distance = normal.dot(first);
+                        let is_known = |face: &HalfSpace| {
+                            (face.normal - normal).length() <= 1e-7
+                                && (face.distance - distance).abs() <= 1e-7
+                        };
+                        let beyond = |point: &DVec3| normal.dot(*point) > distance + ROUNDING;
+                        if faces.iter().any(is_known) || points.iter().any(beyond) {
+                            continue;
+                        }
+                        faces.push(HalfSpace { normal, distance });
+                        surface += face_area(points, normal, distance);
+                    }
+                }
+            }
+        }
+        // Other points lie on the surface or inside, and change no support function.
+        let is_corner = |point: &&DVec3| {
+            let on = faces
+                .iter()
+                .filter(|face| (face.normal.dot(**point) - face.distance).abs() <= ROUNDING);
+            on.count() >= 3
+        };
+        let corners: Vec<DVec3> = points.iter().filter(is_corner).copied().collect();
+        Self {
+            place: DAffine3::IDENTITY,
+            faces: faces.into(),
+            corners: corners.into(),
+            surface,
+        }
+    }
+
+    /// Returns the hull of points in a plane: a prism without height. The last axis is across the plane.
+    fn polygon(points: &[DVec3], axes: DMat3) -> Self {
+        let origin = points[0];
+        let flat = points.iter().map(|point| {
+            let away = *point - origin;
+            DVec2::new(away.dot(axes.x_axis), away.dot(axes.y_axis))
+        });
+        let around = convex_hull(flat.collect(), ROUNDING);
+        let place = |point: DVec2| origin + axes.x_axis * point.x + axes.y_axis * point.y;
+        let mut faces = vec![DVec3::Z, DVec3::NEG_Z]
+            .into_iter()
+            .map(|normal| HalfSpace {
+                normal,
+                distance: 1.0,
+            })
+            .collect::<Vec<_>>();
+        let mut area = 0.0;
+        for (number, &from) in around.iter().enumerate() {
+            let to = around[(number + 1) % around.len()];
+            let outward = -(to - from).perp().normalize_or_zero();
+            let normal = outward.extend(0.0);
+            faces.push(HalfSpace {
+                normal,
+                distance: outward.dot(from),
+            });
+            area += from.perp_dot(to) / 2.0;
+        }
+        let linear = DMat3::from_cols(axes.x_axis, axes.y_axis, DVec3::ZERO);
+        Self {
+            place: DAffine3::from_mat3_translation(linear, origin),
+            faces: faces.into(),
+            corners: around.iter().map(|point| place(*point)).collect(),
+            surface: 2.0 * area,
+        }
+    }
+
+    /// Returns the hull of points along a line.
+    fn segment(points: &[DVec3], axis: DVec3) -> Self {
+        let along = |point: &DVec3| point.dot(axis);
+        let origin = points[0] - axis * along(&points[0]);
+        let ends = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| {
+            points.iter().map(along).reduce(pick).unwrap_or_default()
+        });
+        let [from, to] = ends.map(|end| origin + axis * end);
+        let unit = Self::cuboid(&Bounds::new(DVec3::NEG_ONE, DVec3::ONE));
+        let linear = DMat3::from_cols((to - from) / 2.0, DVec3::ZERO, DVec3::ZERO);
+        Self {
+            place: DAffine3::from_mat3_translation(linear, (from + to) / 2.0),
+            faces: unit.faces,
+            corners: vec![from, to].into(),
+            surface: 0.0,
+        }
+    }
+
+    /// Returns the map that places the intersection of the [faces](Self::faces); it is singular for a flat
+    /// solid.
+    #[must_use]
+    pub fn place(&self) -> &DAffine3 {
+        &self.place
+    }
+
+    /// Returns half-spaces whose intersection, which is bounded and has an inside, is the solid before it is
+    /// [placed](Self::place).
+    #[must_use]
+    pub fn faces(&self) -> &[HalfSpace] {
+        &self.faces
+    }
+
+    /// Returns the corners.
+    #[must_use]
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
+    }
+}
+
+/// Returns the area of a face of the convex hull of points.
+fn face_area(points: &[DVec3], normal: DVec3, distance: f64) -> f64 {
+    let (right, up) = normal.any_orthonormal_pair();
+    let on = points
+        .iter()
+        .filter(|point| (normal.dot(**point) - distance).abs() <= ROUNDING);
+    let around = convex_hull(
+        on.map(|point| DVec2::new(point.dot(right), point.dot(up)))
+            .collect(),
+        0.0,
+    );
+    let turned = around.iter().skip(1).chain(around.first());
+    around
+        .iter()
+        .zip(turned)
+        .map(|(from, to)| from.perp_dot(*to) / 2.0)
+        .sum::<f64>()
+        .abs()
+}
+
+/// Returns orthonormal axes along which points extend from the most to the least, and the number of those
+/// along which they extend at all. The points lie in the unit box around the origin.
+fn main_axes(points: &[DVec3]) -> (DMat3, usize) {
+    let origin = points[0];
+    let mut square = DMat3::ZERO;
+    for point in points {
+        let away = *point - origin;
+        square += DMat3::from_cols(away * away.x, away * away.y, away * away.z);
+    }
+    let (values, vectors) = eigen(&square);
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
+    let axes = order.map(|axis| vectors.col(axis));
+    let extends = |axis: &DVec3| {
+        let away = points
+            .iter()
+            .map(|point| (*point - origin).dot(*axis).abs());
+        away.fold(0.0, f64::max) > ROUNDING
+    };
+    let rank = axes.iter().take_while(|axis| extends(axis)).count();
+    let [x, y, z] = axes;
+    (DMat3::from_cols(x, y, z), rank)
+}
+
+impl Outline<Frame3> for Solid {
+    fn is_closed(&self) -> bool {
+        true
+    }
+
+    fn is_line(&self) -> bool {
+        false
+    }
+
+    fn ends_meet_frame(&self) -> [bool; 2] {
+        [false; 2]
+    }
+
+    fn signed_area(&self) -> f64 {
+        self.surface
+    }
+
+    fn support(&self, direction: DVec3) -> f64 {
+        let along = self.corners.iter().map(|corner| corner.dot(direction));
+        along.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    fn add_to(&self, bounds: &mut Bounds<DVec3>, frame: &Frame3, pad: f64) {
+        for corner in self.corners.iter().map(|corner| frame.apply(*corner)) {
+            bounds.add(corner - pad);
+            bounds.add(corner + pad);
+        }
+    }
+
+    fn add_corners(&self, corners: &mut Vec<DVec3>, frame: &Frame3) -> bool {
+        corners.extend(self.corners.iter().map(|corner| frame.apply(*corner)));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hulls_of_platonic_solids() {
+        let tetrahedron = [
+            DVec3::ONE,
+            DVec3::new(1.0, -1.0, -1.0),
+            DVec3::new(-1.0, 1.0, -1.0),
+            DVec3::new(-1.0, -1.0, 1.0),
+            DVec3::ZERO,
+        ];
+        let hull = Solid::hull(&tetrahedron);
+        assert_eq!((hull.faces().len(), hull.corners().len()), (4, 4));
+        assert!((hull.signed_area() - 8.0 * 3f64.sqrt()).abs() < 1e-9);
+        let cube = Solid::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ONE));
+        let hull = Solid::hull(cube.corners());
+        assert_eq!((hull.faces().len(), hull.corners().len()), (6, 8));
+        assert!((hull.signed_area() - 6.0).abs() < 1e-9);
+        assert!((hull.support(DVec3::ONE) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn flat_hulls_keep_their_shape() {
+        let triangle = [DVec3::X, DVec3::Y, DVec3::Z];
+        let hull = Solid::hull(&triangle);
+        assert_eq!((hull.faces().len(), hull.corners().len()), (5, 3));
+        assert!((hull.signed_area() - 3f64.sqrt()).abs() < 1e-9);
+        assert!(hull.place().matrix3.determinant().abs() < 1e-12);
+        let line = Solid::hull(&[DVec3::ZERO, DVec3::ONE, DVec3::splat(0.25)]);
+        assert_eq!(line.corners().len(), 2);
+        assert!(
+            line.corners()[1].abs_diff_eq(DVec3::ONE, 1e-12)
+                || line.corners()[0].abs_diff_eq(DVec3::ONE, 1e-12)
+        );
+        assert_eq!(Solid::hull(&[DVec3::ONE; 3]).support(DVec3::X), 1.0);
+    }
+}

@@ -1,0 +1,297 @@
+//! Pictures of sets in space: an exact descent of the graph into depth buffers.
+//!
+//! The picture is divided into tiles, each of which is drawn from the whole graph, by any thread: instances that
+//! lie beside the tile or strictly behind what is drawn already are left out, and the nearest are drawn first.
+//! The cost is that of the visible part, at any number of steps. Elements smaller than a detail are not replaced,
+//! and drawn as the convex solid that the graph has for them.
+//!
+//! A pixel has 4 × 4 samples, whose depths are multiples of 2⁻²² of the exact range of the set; the nearer wins,
+//! and of two that are equally near the one of the first class. Threads and timing change no byte.
+
+mod buffer;
+mod camera;
+mod copies;
+mod descent;
+mod place;
+mod relief;
+mod scene;
+mod shade;
+mod solid;
+
+pub use camera::{Camera, CameraError};
+pub use shade::{Light, Shade};
+
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use tiny_skia::{Pixmap, PremultipliedColorU8};
+
+use crate::geometry::Frame3;
+use crate::graph::Graph;
+use crate::grow::WalkError;
+use crate::parallel::with_team;
+use crate::style::Colour;
+
+use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
+use self::camera::Placement;
+use self::descent::{Descent, Roots};
+use self::relief::Relief;
+use self::scene::{Child, ClassBy, End};
+use self::shade::Inks;
+use self::solid::{Depths, View};
+use super::png::{TooManyPixels, write_pixels};
+use super::{NoRoom, Options, Picture, RenderError};
+
+/// Error of drawing in space.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpaceError {
+    /// The camera is not valid.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// There is no room for the picture, or nothing to draw.
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    /// The graph does not determine the extent of the set.
+    #[error("the extent of the set is not known: no bound is found by which its maps contract")]
+    NoBounds,
+}
+
+/// Options of pictures in space, beside those of all pictures.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct SpaceOptions {
+    /// Direction of view and projection.
+    pub camera: Camera,
+    /// Shading.
+    pub shade: Shade,
+    /// Light for relief.
+    pub light: Light,
+}
+
+setters!(SpaceOptions {
+    camera: Camera,
+    shade: Shade,
+    light: Light,
+});
+
+/// White: the paper of pictures whose style has no background.
+const PAPER: Colour = Colour::grey(255);
+
+/// Draws a set in space and writes it as PNG: approximant `steps`, or the limit set. Elements of at most
+/// [`Options::detail`] pixels, or of one pixel where it is not given, are not replaced.
+///
+/// # Errors
+///
+/// If there is nothing to draw or no room for it, if the camera is not valid, if the extent of the set is not
+/// known, if it is cancelled, or if `out` fails.
+pub fn write_space(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
+    let (pixmap, picture) = draw(graph, steps, options, space, cancel)?;
+    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
+    let mut bytes = Vec::new();
+    write_pixels(&pixmap, &options.labels, options.png, &mut bytes)?;
+    out.write_all(&bytes)?;
+    Ok(picture)
+}
+
+/// Piece of work: a tile of the picture.
+struct Tile<'a> {
+    scene: &'a Scene<'a>,
+    /// Column and row of the tile.
+    at: [u32; 2],
+    buffer: Buffer,
+    descent: Descent,
+    /// Premultiplied colours and depths of the pixels, in rows.
+    colours: Vec<[f64; 4]>,
+    depths: Vec<Option<u32>>,
+}
+
+/// State that all tiles share.
+struct Scene<'a> {
+    roots: Roots<'a>,
+    placement: Placement,
+    inks: Inks,
+    cancel: Option<&'a AtomicBool>,
+}
+
+impl Scene<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|it| it.load(Ordering::Relaxed))
+    }
+}
+
+impl Tile<'_> {
+    fn draw(&mut self) {
+        let Scene {
+            roots,
+            placement,
+            inks,
+            ..
+        } = self.scene;
+        self.colours.clear();
+        self.depths.clear();
+        if self.scene.is_cancelled() {
+            return;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a tile has few samples")]
+        let side = SIDE as f64;
+        let view = View {
+            projection: placement.projection,
+            depths: Depths::new(placement.range),
+            cuts: &[],
+            corner: self.at.map(|tile| f64::from(tile) * side),
+        };
+        self.buffer.clear();
+        self.descent.drawn = 0;
+        self.descent.deepest = 0;
+        self.descent.run(roots, &view, &mut self.buffer);
+        for y in 0..TILE {
+            let rows: [&[u32]; SAMPLES] =
+                std::array::from_fn(|row| self.buffer.row(y * SAMPLES + row));
+            for x in 0..TILE {
+                let samples = rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES]);
+                let (colour, depth) = inks.pixel(samples);
+                self.colours.push(colour);
+                self.depths.push(depth);
+            }
+        }
+    }
+}
+
+/// Draws the picture into memory.
+fn draw(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+    cancel: Option<&AtomicBool>,
+) -> Result<(Pixmap, Picture), RenderError> {
+    const MOST_STEPS: u32 = 1_000_000;
+    let style = &options.style;
+    let placement = place::place(
+        graph,
+        steps,
+        &space.camera,
+        options.size,
+        options.view.margin,
+    )?;
+    let parts = scene::parts(graph, steps);
+    let seen = scene::seen(graph, &placement.map);
+    let start: Vec<Child> = seen
+        .initiator(0)
+        .instances
+        .iter()
+        .map(scene::child)
+        .collect();
+    let detail = options.detail.as_ref().map_or(1.0, |detail| detail.pixels);
+    #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+    let end = End {
+        steps: steps.unwrap_or(MOST_STEPS),
+        detail: detail * SAMPLES as f64,
+    };
+    let class_by = ClassBy::of(style.color_by);
+    let classes = match class_by {
+        ClassBy::Nothing => 1,
+        ClassBy::FirstMap | ClassBy::LastMap => graph.origins(),
+        ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
+    };
+    let scene = Scene {
+        roots: Roots {
+            parts: &parts,
+            start: &start,
+            end,
+            class_by,
+            unit: graph.unit(),
+            pad: solid::pad(graph),
+            overlap: copies::overlap(&parts),
+        },
+        placement,
+        inks: Inks::of(style, class_by, classes, space.shade),
+        cancel,
+    };
+    let size @ [width, height] = placement.size;
+    let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+    let mut relief = match space.shade.has_relief() {
+        true => Some(
+            Relief::new(&scene.placement, &space.camera, space.light).map_err(SpaceError::from)?,
+        ),
+        false => None,
+    };
+    let background = Some(style.background.unwrap_or(PAPER));
+    let (mut drawn, mut deepest) = (0, 0);
+    let mut take = |tile: &mut Tile<'_>| {
+        if scene.is_cancelled() {
+            return Err(RenderError::Walk(WalkError::Cancelled));
+        }
+        drawn += tile.descent.drawn;
+        deepest = deepest.max(tile.descent.deepest);
+        if let Some(relief) = &mut relief {
+            relief.add(tile.at, &tile.depths);
+        }
+        copy(tile, &mut pixmap);
+        Ok(())
+    };
+    with_team(options.threads, |team| {
+        let mut line = team.line(Tile::draw);
+        for row in 0..height.div_ceil(TILE_SIZE) {
+            for column in 0..width.div_ceil(TILE_SIZE) {
+                let mut tile = line.spare().unwrap_or_else(|| Tile {
+                    scene: &scene,
+                    at: [0, 0],
+                    buffer: Buffer::new(),
+                    descent: Descent::default(),
+                    colours: Vec::new(),
+                    depths: Vec::new(),
+                });
+                tile.at = [column, row];
+                line.hand_on(tile, &mut take)?;
+            }
+        }
+        line.finish(&mut take)
+    })?;
+    if let Some(relief) = &relief {
+        relief.light(&mut pixmap);
+    }
+    let pixels = pixmap.pixels_mut().iter_mut();
+    pixels.for_each(|pixel| *pixel = shade::over(background, *pixel));
+    let picture = Picture {
+        size,
+        steps: steps.unwrap_or(deepest),
+        elements: drawn,
+        is_limit: false,
+        fractals: 1,
+        is_part: true,
+        empty: None,
+        plotted: None,
+        instanced: None,
+    };
+    Ok((pixmap, picture))
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
+const TILE_SIZE: u32 = TILE as u32;
+
+/// Copies the pixels of a tile into the picture.
+fn copy(tile: &Tile<'_>, pixmap: &mut Pixmap) {
+    let [width, height] = [pixmap.width(), pixmap.height()];
+    let [left, top] = tile.at.map(|at| at * TILE_SIZE);
+    let columns = TILE_SIZE.min(width - left) as usize;
+    let pixels: &mut [PremultipliedColorU8] = pixmap.pixels_mut();
+    for row in 0..TILE_SIZE.min(height - top) as usize {
+        let start = (top as usize + row) * width as usize + left as usize;
+        let colours = &tile.colours[row * TILE..row * TILE + columns];
+        for (pixel, colour) in pixels[start..start + columns].iter_mut().zip(colours) {
+            *pixel = shade::premultiplied(*colour);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

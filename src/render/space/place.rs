@@ -1,0 +1,149 @@
+//! Placement of a set in space on a picture, by the exact extent of its projection.
+
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec2, DVec3, Frame3};
+use crate::graph::Graph;
+use crate::render::{Canvas, NoRoom, Size};
+
+use super::SpaceError;
+use super::buffer::SAMPLES;
+use super::camera::{Camera, Placement, Projection};
+use super::scene::extent_along;
+
+/// Number of steps of the search for the extent of a perspective picture.
+const MOST_ROUNDS: usize = 60;
+
+/// Places a set: the limit set, and approximant `steps` if it is given.
+pub(super) fn place(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    camera: &Camera,
+    size: Size,
+    margin: f64,
+) -> Result<Placement, SpaceError> {
+    camera.check()?;
+    let rotation = camera.rotation()?;
+    let extent = |rows: DMat3| -> Result<Bounds<DVec3>, SpaceError> {
+        let mut bounds = extent_along(graph, rows, None);
+        if let Some(steps) = steps {
+            let own = extent_along(graph, rows, Some(steps)).ok_or(SpaceError::NoBounds)?;
+            bounds.get_or_insert(Bounds::EMPTY).add_all(&own);
+        }
+        let bounds = bounds.ok_or(SpaceError::NoBounds)?;
+        if bounds.is_empty() {
+            return Err(NoRoom::Nothing.into());
+        }
+        Ok(bounds)
+    };
+    let bounds = extent(rotation)?;
+    let middle = bounds.min() + bounds.size() / 2.0;
+    let centre = camera.look_at.map_or(middle, |point| rotation * point);
+    let Some(angle) = camera.perspective else {
+        let canvas = Canvas::fit(&around(&bounds, centre, camera), size, margin)?;
+        let samples = canvas.scale() * SAMPLES_A_PIXEL;
+        let corner = canvas.to_pixels().translation * SAMPLES_A_PIXEL;
+        let linear = DMat3::from_diagonal(DVec3::new(samples, -samples, samples)) * rotation;
+        return Ok(Placement {
+            map: DAffine3::from_mat3_translation(linear, corner.extend(0.0)),
+            projection: Projection::Parallel,
+            range: [bounds.min().z * samples, bounds.max().z * samples],
+            size: canvas.size(),
+        });
+    };
+    // The sphere about the centre that contains the box of the set is seen under the angle.
+    let away = (bounds.min() - centre)
+        .abs()
+        .max((bounds.max() - centre).abs());
+    let distance = away.length() / crate::expression::degrees::sin(angle / 2.0);
+    let distance = if distance > 0.0 { distance } else { 1.0 };
+    let viewer = centre + DVec3::Z * distance;
+    let window = window(rotation, viewer, &bounds, &extent)?;
+    let flat = Bounds::new(window.min().extend(0.0), window.max().extend(0.0));
+    let canvas = Canvas::fit(&around(&flat, DVec3::ZERO, camera), size, margin)?;
+    let focus = canvas.scale() * SAMPLES_A_PIXEL;
+    let axis = canvas.pixel(DVec2::ZERO) * SAMPLES_A_PIXEL;
+    let flip = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    Ok(Placement {
+        map: DAffine3::from_mat3_translation(flip * rotation, flip * -viewer),
+        projection: Projection::Central {
+            focus,
+            middle: axis.to_array(),
+        },
+        range: [bounds.min().z - viewer.z, bounds.max().z - viewer.z],
+        size: canvas.size(),
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+const SAMPLES_A_PIXEL: f64 = SAMPLES as f64;
+
+/// Returns the box of the picture: that of the projection, made symmetric about the centre if the camera looks
+/// at a point.
+fn around(bounds: &Bounds<DVec3>, centre: DVec3, camera: &Camera) -> Bounds {
+    let (min, max) = (bounds.min().truncate(), bounds.max().truncate());
+    if camera.look_at.is_none() {
+        return Bounds::new(min, max);
+    }
+    let centre = centre.truncate();
+    let half = (min - centre).abs().max((max - centre).abs());
+    Bounds::new(centre - half, centre + half)
+}
+
+/// Returns the extent of a perspective picture, in units at distance 1: the greatest x/w and y/w, w being the
+/// distance along the direction of view, and the least.
+///
+/// The greatest x/w is the t at which the greatest value of x − t w is 0 (Dinkelbach 1967); that value is a
+/// support function of the set, and falls with t.
+fn window(
+    rotation: DMat3,
+    viewer: DVec3,
+    bounds: &Bounds<DVec3>,
+    extent: &impl Fn(DMat3) -> Result<Bounds<DVec3>, SpaceError>,
+) -> Result<Bounds, SpaceError> {
+    let rows = rotation.transpose();
+    let nearest = viewer.z - bounds.max().z;
+    let far = (bounds.min() - viewer)
+        .abs()
+        .max((bounds.max() - viewer).abs());
+    let most = far.x.max(far.y) / nearest;
+    let ends = [
+        (rows.x_axis, viewer.x, 1.0),
+        (rows.x_axis, viewer.x, -1.0),
+        (rows.y_axis, viewer.y, 1.0),
+        (rows.y_axis, viewer.y, -1.0),
+    ];
+    let mut found = [0.0; 4];
+    for (end, (axis, at, sign)) in found.iter_mut().zip(ends) {
+        // The functional sign (x − at) − t (viewer.z − z).
+        let value = |t: f64| -> Result<f64, SpaceError> {
+            let row = axis * sign + rows.z_axis * t;
+            let seen = extent(DMat3::from_cols(row, DVec3::ZERO, DVec3::ZERO).transpose())?;
+            Ok(seen.max().x - sign * at - t * viewer.z)
+        };
+        let (mut low, mut high) = (-most, most);
+        let (mut at_low, mut at_high) = (value(low)?, value(high)?);
+        for _ in 0..MOST_ROUNDS {
+            if high - low <= 1e-12 * most {
+                break;
+            }
+            // The chord of a convex function meets 0 beyond its root; every other step halves.
+            let chord = low + (high - low) * at_low / (at_low - at_high);
+            let middle = f64::midpoint(low, high);
+            for t in [chord, middle] {
+                if t > low && t < high {
+                    let there = value(t)?;
+                    if there > 0.0 {
+                        (low, at_low) = (t, there);
+                    } else {
+                        (high, at_high) = (t, there);
+                    }
+                }
+            }
+        }
+        *end = sign * f64::midpoint(low, high);
+    }
+    let [right, left, top, bottom] = found;
+    Ok(Bounds::new(
+        DVec2::new(left, bottom),
+        DVec2::new(right, top),
+    ))
+}

@@ -1,0 +1,267 @@
+//! Scene of a picture in space: the graph, prepared for descents.
+
+use crate::extent::{Bounded, bounding_box};
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Frame, Frame3, Solid};
+use crate::graph::{Chain, Graph, Instance, Replacement};
+use crate::grow::Growth;
+use crate::style::ColorBy;
+
+/// Tolerance of boxes that contain images of boxes.
+const SLACK: f64 = 1e-9;
+
+/// Limit of the number of elements that are visited for the box of an approximant.
+const MOST_WALKED: u64 = 1_000_000;
+
+/// A convex set that contains the subtree of an object.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Hull {
+    /// A box: its middle and its half sides.
+    Cuboid(DVec3, DVec3),
+    /// A ball: its centre and its radius.
+    Ball(DVec3, f64),
+}
+
+impl Hull {
+    fn of(bounds: &Bounds<DVec3>) -> Self {
+        let half = bounds.size() / 2.0;
+        Self::Cuboid(bounds.min() + half, half)
+    }
+
+    /// Returns the middle and the half sides of the box of the image under a map.
+    #[inline]
+    pub(super) fn image(&self, map: &DAffine3) -> (DVec3, DVec3) {
+        let linear = &map.matrix3;
+        match self {
+            Self::Cuboid(middle, half) => {
+                let half = linear.x_axis.abs() * half.x
+                    + linear.y_axis.abs() * half.y
+                    + linear.z_axis.abs() * half.z;
+                (map.transform_point3(*middle), half)
+            }
+            Self::Ball(middle, radius) => {
+                let rows = linear.transpose();
+                let along = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.length());
+                (
+                    map.transform_point3(*middle),
+                    DVec3::from_array(along) * *radius,
+                )
+            }
+        }
+    }
+}
+
+/// An instance in the place of an object.
+pub(super) struct Child {
+    pub(super) map: DAffine3,
+    /// Upper bound of the stretch.
+    pub(super) length: f64,
+    pub(super) object: usize,
+}
+
+/// An object of the graph.
+pub(super) struct Part {
+    pub(super) children: Vec<Child>,
+    /// Whether the object is replaced.
+    pub(super) is_replaced: bool,
+    /// Solid that is drawn for it, if it is visible.
+    pub(super) solid: Option<Solid>,
+    pub(super) hull: Hull,
+    /// Number of the map that is applied first.
+    pub(super) origin: Option<usize>,
+    /// Number that objects share which draw the same, but for classes.
+    pub(super) kind: usize,
+}
+
+/// End of a descent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End {
+    /// Number of steps.
+    pub(super) steps: u32,
+    /// Length in samples below which nothing is replaced; 0 if there is none.
+    pub(super) detail: f64,
+}
+
+/// Property that the class of a solid depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ClassBy {
+    Nothing,
+    FirstMap,
+    LastMap,
+    Step,
+}
+
+impl ClassBy {
+    pub(super) fn of(by: ColorBy) -> Self {
+        match by {
+            ColorBy::FirstMap | ColorBy::Generator => Self::FirstMap,
+            ColorBy::LastMap => Self::LastMap,
+            ColorBy::Step => Self::Step,
+            _ => Self::Nothing,
+        }
+    }
+}
+
+/// Prepares the objects of a graph for descents to the limit or to a number of steps.
+pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
+    let hulls = hulls(graph, steps);
+    let objects = graph.objects().iter().zip(hulls).enumerate();
+    let parts = objects.map(|(number, (object, hull))| {
+        let children = match &object.replacement {
+            Replacement::Fixed(successor) => {
+                let instances = successor.placed_instances();
+                instances.map(|(_, instance)| child(instance)).collect()
+            }
+            _ => Vec::new(),
+        };
+        Part {
+            children,
+            is_replaced: graph.is_fertile(number),
+            solid: graph.drawn(number).cloned(),
+            hull,
+            origin: object.origin,
+            kind: match graph.is_fertile(number) {
+                true => object.behaviour,
+                false => graph.objects().len() + number,
+            },
+        }
+    });
+    parts.collect()
+}
+
+pub(super) fn child(instance: &Instance<Frame3>) -> Child {
+    Child {
+        map: *instance.frame.map(),
+        length: instance.length,
+        object: instance.object,
+    }
+}
+
+/// Returns a convex set for every object that contains what its subtree draws: within a number of steps, or in
+/// the limit.
+fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
+    let mut own = graph.clone();
+    let mut known: Vec<Option<Bounds<DVec3>>> = Vec::new();
+    for (number, object) in graph.objects().iter().enumerate() {
+        // Behaviours are numbered in the order of the objects.
+        if object.behaviour == known.len() {
+            known.push(match graph.is_fertile(number) {
+                true => box_of(&mut own, number),
+                false => None,
+            });
+        }
+    }
+    let boxes: Vec<Option<Bounds<DVec3>>> = { graph.objects().iter().enumerate() }
+        .map(|(number, object)| {
+            let mut bounds = match graph.is_fertile(number) {
+                true => known[object.behaviour]?,
+                false => Bounds::EMPTY,
+            };
+            if let Some(solid) = graph.drawn(number)
+                && (steps.is_some() || !graph.is_fertile(number))
+            {
+                solid
+                    .corners()
+                    .iter()
+                    .for_each(|corner| bounds.add(*corner));
+            }
+            Some(bounds)
+        })
+        .collect();
+    let hold = steps.is_none() || holds(graph, &boxes);
+    let reaches = match hold && boxes.iter().all(Option::is_some) {
+        true => Vec::new(),
+        false => graph.reaches(|object| graph.outline_radius(object)),
+    };
+    let hulls = boxes
+        .iter()
+        .enumerate()
+        .map(|(number, bounds)| match bounds {
+            Some(bounds) if hold && !bounds.is_empty() => Hull::of(bounds),
+            Some(bounds) if bounds.is_empty() => Hull::Ball(graph.middle(), 0.0),
+            _ => Hull::Ball(
+                graph.middle(),
+                reaches.get(number).copied().unwrap_or(f64::INFINITY),
+            ),
+        });
+    hulls.collect()
+}
+
+/// Returns whether the boxes of all objects contain the images of those of their instances, and hence all
+/// approximants.
+fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
+    graph.objects().iter().zip(boxes).all(|(object, bounds)| {
+        let (Some(bounds), Replacement::Fixed(successor)) = (bounds, &object.replacement) else {
+            return bounds.is_some();
+        };
+        let slack =
+            DVec3::splat(SLACK * (bounds.size().max_element() + bounds.max().abs().max_element()));
+        successor.placed_instances().all(|(_, instance)| {
+            let Some(inner) = &boxes[instance.object] else {
+                return false;
+            };
+            if inner.is_empty() {
+                return true;
+            }
+            let (middle, half) = Hull::of(inner).image(instance.frame.map());
+            (middle - half).cmpge(bounds.min() - slack).all()
+                && (middle + half).cmple(bounds.max() + slack).all()
+        })
+    })
+}
+
+/// Returns the box of the limit of an object's subtree, in its unit frame. Overwrites the initiator.
+fn box_of(graph: &mut Graph<Frame3>, object: usize) -> Option<Bounds<DVec3>> {
+    start(graph, object, Frame3::UNIT);
+    graph.limit_bounds()
+}
+
+fn start(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
+    let root = Instance {
+        length: frame.stretch(),
+        frame,
+        joined: false,
+        position: 0,
+        object,
+    };
+    graph.initiators = vec![Chain {
+        instances: vec![root],
+        meets_frame: [false; 2],
+    }];
+}
+
+/// Returns the graph as it is seen under a map.
+pub(super) fn seen(graph: &Graph<Frame3>, map: &DAffine3) -> Graph<Frame3> {
+    let mut seen = graph.clone();
+    for instance in seen
+        .initiators
+        .iter_mut()
+        .flat_map(|chain| &mut chain.instances)
+    {
+        instance.frame = Frame3::from(*map).compose(&instance.frame);
+        instance.length = instance.frame.stretch();
+    }
+    seen
+}
+
+/// Returns the greatest values of three linear functionals, given as rows, on the limit set, or on an
+/// approximant; and their least values.
+pub(super) fn extent_along(
+    graph: &Graph<Frame3>,
+    rows: DMat3,
+    steps: Option<u32>,
+) -> Option<Bounds<DVec3>>
+where
+    Frame3: Bounded,
+{
+    let seen = seen(graph, &DAffine3::from_mat3(rows));
+    match steps {
+        Some(steps) => seen.bounds(steps).or_else(|| {
+            let growth = Growth {
+                most_elements: MOST_WALKED,
+                ..Growth::steps(steps)
+            };
+            bounding_box(&seen, &growth).ok()
+        }),
+        None => seen.limit_bounds(),
+    }
+}

@@ -1,0 +1,387 @@
+//! Drawing of convex solids into a depth buffer.
+
+use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, Solid, eigen};
+use crate::graph::Graph;
+
+use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
+use super::camera::Projection;
+
+/// Least thickness of a solid, in samples: what is flat would fall between them.
+const THINNEST: f64 = 1.5;
+
+/// Samples by which a flat solid may exceed its extent, as it is drawn.
+const PAD: f64 = 1.5;
+
+/// Determinant of a matrix whose columns have a mean square of 1, above which it is not flat.
+const FLAT: f64 = 0.02;
+
+/// Share of its slope by which a plane counts as seen edge-on.
+const EDGE_ON: f64 = 1e-12;
+
+/// Depths in multiples of 2⁻²² of the range.
+#[derive(Clone, Copy)]
+pub(super) struct Depths {
+    near: f64,
+    steps: f64,
+}
+
+impl Depths {
+    /// Creates the depths of a range of z.
+    pub(super) fn new([far, near]: [f64; 2]) -> Self {
+        let range = near - far;
+        let steps = if range > 0.0 { STEPS / range } else { 0.0 };
+        Self { near, steps }
+    }
+
+    /// Returns the depth of a point, 0 at the near end.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the value is clamped"
+    )]
+    pub(super) fn of(&self, z: f64) -> u32 {
+        ((self.near - z) * self.steps).clamp(0.0, STEPS) as u32
+    }
+}
+
+/// A face of a solid that is drawn, as z − `x` · x − `y` · y ≤ `z`, or ≥ where it is seen from behind.
+#[derive(Clone, Copy, Default)]
+struct Plane {
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+/// Draws solids; the lists of planes are reused.
+#[derive(Default)]
+pub(super) struct Pencil {
+    front: Vec<Plane>,
+    back: Vec<Plane>,
+    edges: Vec<Plane>,
+    highest: Vec<f64>,
+    lowest: Vec<f64>,
+}
+
+impl Pencil {
+    /// Draws a solid under a map to the coordinates of the projection. `rectangle` contains what is seen of it on
+    /// the tile.
+    pub(super) fn draw(
+        &mut self,
+        buffer: &mut Buffer,
+        view: &View,
+        solid: &Solid,
+        map: &DAffine3,
+        rectangle: [usize; 4],
+        class: u16,
+    ) {
+        let place = *map * *solid.place();
+        let linear = thickened(
+            &place.matrix3,
+            THINNEST / 2.0 / view.scale(place.translation.z),
+        );
+        let inverse = linear.inverse().transpose();
+        let faces = solid.faces().iter().map(|face| {
+            let normal = inverse * face.normal;
+            (normal, face.distance + normal.dot(place.translation))
+        });
+        let faces = faces.chain(view.cuts.iter().copied());
+        let [left, top, right, bottom] = rectangle;
+        match view.projection {
+            Projection::Parallel => {
+                self.set_planes(faces);
+                for y in top..bottom {
+                    self.draw_row(buffer, view, [left, right], y, class);
+                }
+            }
+            Projection::Central { focus, middle } => {
+                let faces: Vec<(DVec3, f64)> = faces.collect();
+                for y in top..bottom {
+                    draw_row_centrally(
+                        buffer,
+                        view,
+                        &faces,
+                        (focus, middle),
+                        [left, right],
+                        y,
+                        class,
+                    );
+                }
+            }
+        }
+        buffer.refresh(rectangle);
+    }
+
+    /// Sorts half-spaces n · x ≤ d by the side from which they are seen.
+    fn set_planes(&mut self, faces: impl Iterator<Item = (DVec3, f64)>) {
+        self.front.clear();
+        self.back.clear();
+        self.edges.clear();
+        for (normal, distance) in faces {
+            let slope = normal.x.abs() + normal.y.abs();
+            if normal.z.abs() <= EDGE_ON * slope {
+                self.edges.push(Plane {
+                    x: normal.x,
+                    y: normal.y,
+                    z: distance,
+                });
+                continue;
+            }
+            let plane = Plane {
+                x: -normal.x / normal.z,
+                y: -normal.y / normal.z,
+                z: distance / normal.z,
+            };
+            if normal.z > 0.0 {
+                self.front.push(plane);
+            } else {
+                self.back.push(plane);
+            }
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+    fn draw_row(
+        &mut self,
+        buffer: &mut Buffer,
+        view: &View,
+        [mut left, mut right]: [usize; 2],
+        y: usize,
+        class: u16,
+    ) {
+        let [corner_x, corner_y] = view.corner;
+        let at_y = corner_y + y as f64 + 0.5;
+        for plane in &self.edges {
+            // The samples of the row with x · plane.x ≤ rest.
+            let rest = plane.z - plane.y * at_y;
+            let inside = |x: usize| plane.x * (corner_x + x as f64 + 0.5) <= rest;
+            while left < right && !inside(left) {
+                left += 1;
+            }
+            while left < right && !inside(right - 1) {
+                right -= 1;
+            }
+        }
+        if left >= right {
+            return;
+        }
+        let count = right - left;
+        let first = corner_x + left as f64 + 0.5;
+        self.highest.clear();
+        self.highest.resize(count, f64::INFINITY);
+        self.lowest.clear();
+        self.lowest.resize(count, f64::NEG_INFINITY);
+        for plane in &self.front {
+            let start = plane.z + plane.y * at_y + plane.x * first;
+            for (step, highest) in self.highest.iter_mut().enumerate() {
+                *highest = highest.min(start + plane.x * step as f64);
+            }
+        }
+        for plane in &self.back {
+            let start = plane.z + plane.y * at_y + plane.x * first;
+            for (step, lowest) in self.lowest.iter_mut().enumerate() {
+                *lowest = lowest.max(start + plane.x * step as f64);
+            }
+        }
+        let row = &mut buffer.row_mut(y)[left..right];
+        for ((key, highest), lowest) in row.iter_mut().zip(&self.highest).zip(&self.lowest) {
+            if highest >= lowest {
+                *key = (*key).min(view.depths.of(*highest) << CLASS_BITS | u32::from(class));
+            }
+        }
+    }
+}
+
+/// Draws a row of a solid that is seen from a point.
+#[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+fn draw_row_centrally(
+    buffer: &mut Buffer,
+    view: &View,
+    faces: &[(DVec3, f64)],
+    (focus, middle): (f64, [f64; 2]),
+    [left, right]: [usize; 2],
+    y: usize,
+    class: u16,
+) {
+    let up = (view.corner[1] + y as f64 + 0.5 - middle[1]) / focus;
+    for x in left..right {
+        let across = (view.corner[0] + x as f64 + 0.5 - middle[0]) / focus;
+        // The points of the ray are far · (across, up, −1).
+        let ray = DVec3::new(across, up, -1.0);
+        let (mut near, mut far) = (0.0f64, f64::INFINITY);
+        for (normal, distance) in faces {
+            let along = normal.dot(ray);
+            if along > 0.0 {
+                far = far.min(distance / along);
+            } else if along < 0.0 {
+                near = near.max(distance / along);
+            } else if *distance < 0.0 {
+                far = -1.0;
+            }
+        }
+        if near <= far && near > 0.0 {
+            let key = &mut buffer.row_mut(y)[x];
+            *key = (*key).min(view.depths.of(-near) << CLASS_BITS | u32::from(class));
+        }
+    }
+}
+
+/// View of a tile, which all its solids share.
+pub(super) struct View<'a> {
+    pub(super) projection: Projection,
+    pub(super) depths: Depths,
+    /// Half-spaces that are shown, in the coordinates of the projection: normals and distances.
+    pub(super) cuts: &'a [(DVec3, f64)],
+    /// Upper left corner of the tile, in samples.
+    pub(super) corner: [f64; 2],
+}
+
+impl View<'_> {
+    /// Returns the number of samples a unit at a z.
+    fn scale(&self, z: f64) -> f64 {
+        match self.projection {
+            Projection::Parallel => 1.0,
+            Projection::Central { focus, .. } => focus / (-z).max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Returns the largest number of samples a unit of a box whose nearest point is at a z.
+    #[inline]
+    pub(super) fn scale_of_box(&self, near: f64) -> f64 {
+        match self.projection {
+            Projection::Parallel => 1.0,
+            Projection::Central { focus, .. } if near < 0.0 => focus / -near,
+            Projection::Central { .. } => f64::INFINITY,
+        }
+    }
+
+    /// Returns the samples of the tile that a box about a point meets; `None` if there are none.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the values are clamped"
+    )]
+    pub(super) fn rectangle(&self, middle: DVec3, half: DVec3) -> Option<[usize; 4]> {
+        let spans: [[f64; 2]; 2] = match self.projection {
+            Projection::Parallel => [
+                [middle.x - half.x, middle.x + half.x],
+                [middle.y - half.y, middle.y + half.y],
+            ],
+            Projection::Central {
+                focus,
+                middle: axis,
+            } => {
+                let (near, far) = (-(middle.z + half.z), -(middle.z - half.z));
+                if near <= 0.0 {
+                    // The box reaches behind the viewer, who may see any part of it.
+                    return (far > 0.0).then_some([0, 0, SIDE, SIDE]);
+                }
+                let span = |at: f64, half: f64, axis: f64| {
+                    let seen = |side: f64, end: f64| axis + focus * side / end;
+                    let (low, high) = (at - half, at + half);
+                    [
+                        seen(low, near).min(seen(low, far)),
+                        seen(high, near).max(seen(high, far)),
+                    ]
+                };
+                [
+                    span(middle.x, half.x, axis[0]),
+                    span(middle.y, half.y, axis[1]),
+                ]
+            }
+        };
+        let [[left, right], [top, bottom]] = [0, 1].map(|axis| {
+            let corner = self.corner[axis];
+            let [low, high] = spans[axis].map(|end| end - corner);
+            #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+            let side = SIDE as f64;
+            // Samples lie in the middle of their squares.
+            let low = (low - 0.5).ceil().clamp(0.0, side);
+            let high = (high + 0.5).floor().clamp(0.0, side);
+            [low as usize, high as usize]
+        });
+        (left < right && top < bottom).then_some([left, top, right, bottom])
+    }
+}
+
+/// Returns whether the image of a cube is not flat.
+fn is_thick(matrix: &DMat3) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let square = x.length_squared() + y.length_squared() + z.length_squared();
+    let mean = (square / 3.0).sqrt();
+    matrix.determinant().abs() > FLAT * mean * mean * mean
+}
+
+/// Returns a matrix whose singular values are at least `least`; the matrix itself if it is not flat.
+fn thickened(matrix: &DMat3, least: f64) -> DMat3 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let square = x.length_squared() + y.length_squared() + z.length_squared();
+    let volume = matrix.determinant().abs();
+    // The product of all singular values is the determinant, and that of two is at most half the sum of squares.
+    if is_thick(matrix) || volume >= least * square / 2.0 && volume > 0.0 {
+        return *matrix;
+    }
+    let (squares, inner) = eigen(&(matrix.transpose() * *matrix));
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| squares[*b].total_cmp(&squares[*a]));
+    let mut outer = [DVec3::ZERO; 3];
+    let mut thick = DMat3::ZERO;
+    for (number, &axis) in order.iter().enumerate() {
+        let image = *matrix * inner.col(axis);
+        let value = image.length();
+        // The directions of vanishing images are those that remain.
+        let mut across = image;
+        for known in &outer[..number] {
+            across -= *known * across.dot(*known);
+        }
+        let unit = match number {
+            _ if across.length() > 1e-9 * square.sqrt() => across.normalize(),
+            0 => DVec3::Z,
+            1 => outer[0].any_orthonormal_vector(),
+            _ => outer[0].cross(outer[1]),
+        };
+        outer[number] = unit;
+        let direction = inner.col(axis);
+        let image = unit * value.max(least);
+        thick += DMat3::from_cols(
+            image * direction.x,
+            image * direction.y,
+            image * direction.z,
+        );
+    }
+    thick
+}
+
+/// Returns the samples by which solids may exceed the hulls of their objects: flat ones are drawn thicker than
+/// they are, unless all maps are similarities and no solid is flat.
+pub(super) fn pad(graph: &Graph<Frame3>) -> f64 {
+    let is_flat = |solid: &Solid| !is_thick(&solid.place().matrix3);
+    match graph.is_similar() && !graph.base_elements().iter().any(is_flat) {
+        true => 0.0,
+        false => PAD,
+    }
+}
+
+/// Returns the depth of a key; `None` if the sample shows nothing.
+#[inline]
+pub(super) fn depth_of(key: u32) -> Option<u32> {
+    (key != EMPTY).then_some(key >> CLASS_BITS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flat_maps_become_as_thick_as_a_sample() {
+        let flat = DMat3::from_diagonal(DVec3::new(5.0, 3.0, 0.0));
+        let thick = thickened(&flat, 0.5);
+        assert!(
+            thick.abs_diff_eq(DMat3::from_diagonal(DVec3::new(5.0, 3.0, 0.5)), 1e-12)
+                || thick.abs_diff_eq(DMat3::from_diagonal(DVec3::new(5.0, 3.0, -0.5)), 1e-12)
+        );
+        assert!((thickened(&DMat3::ZERO, 1.0).determinant().abs() - 1.0).abs() < 1e-12);
+        let fine = DMat3::from_diagonal(DVec3::splat(2.0));
+        assert_eq!(thickened(&fine, 0.3), fine);
+    }
+}

@@ -1,0 +1,260 @@
+//! Tests of pictures in space, against the plane, closed forms and drawing without culling.
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use super::buffer::EMPTY;
+use super::*;
+use crate::catalogue::Catalogue;
+use crate::diagnostic::Source;
+use crate::document::Document;
+use crate::geometry::DVec3;
+use crate::grow::{Elements, Growth};
+use crate::model::Model;
+use crate::render::Size;
+use crate::style::View as Window;
+
+fn model(text: &str) -> Model {
+    let source = Source::new("test", text.to_owned());
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    document.resolve(&[]).unwrap().0
+}
+
+fn graph_of(text: &str) -> Graph<Frame3> {
+    model(text).compile_in_space(false).unwrap()
+}
+
+fn vertices(what: &str, shrink: &str) -> Graph<Frame3> {
+    graph_of(&format!(
+        "{{kind: ifs, space: 3, vertices: {{{what}, shrink: {shrink}}}}}"
+    ))
+}
+
+/// A Menger sponge as maps rather than vertices, so that it begins with a box.
+fn sponge() -> Graph<Frame3> {
+    let mut text = "kind: ifs\nspace: 3\nmaps:\n".to_owned();
+    for cell in 0..27 {
+        let at = [cell % 3, cell / 3 % 3, cell / 9];
+        if at.iter().filter(|at| **at == 1).count() < 2 {
+            let [x, y, z] = at;
+            text.push_str(&format!(
+                "  - {{scale: 1/3, translate: [{x}/3, {y}/3, {z}/3]}}\n"
+            ));
+        }
+    }
+    graph_of(&text)
+}
+
+fn seen(graph: &Graph<Frame3>, steps: Option<u32>, from: [f64; 2], side: u32) -> Pixmap {
+    seen_by(graph, steps, Camera::default().from(from), side, 1)
+}
+
+fn seen_by(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    camera: Camera,
+    side: u32,
+    threads: usize,
+) -> Pixmap {
+    let options = Options::default()
+        .size(Size::Long(side))
+        .view(Window::default())
+        .threads(NonZero::new(threads).unwrap());
+    let space = SpaceOptions::default().camera(camera);
+    draw(graph, steps, &options, &space, None).unwrap().0
+}
+
+/// Returns whether each pixel is paper, in rows.
+fn paper(pixmap: &Pixmap) -> Vec<bool> {
+    let white = PremultipliedColorU8::from_rgba(255, 255, 255, 255);
+    pixmap
+        .pixels()
+        .iter()
+        .map(|pixel| Some(*pixel) == white)
+        .collect()
+}
+
+/// Returns the share of the picture that is not paper.
+fn share(pixmap: &Pixmap) -> f64 {
+    let paper = paper(pixmap);
+    let ink = paper.iter().filter(|is_paper| !**is_paper).count();
+    ink as f64 / paper.len() as f64
+}
+
+#[test]
+fn a_sponge_along_an_axis_is_the_carpet() {
+    for graph in [sponge(), {
+        let corners = "[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1], [1, 1, 1]";
+        let edges = "[1/2, 0, 0], [0, 1/2, 0], [0, 0, 1/2], [1/2, 1, 0], [1, 1/2, 0], [1/2, 0, 1], \
+                     [1, 0, 1/2], [0, 1/2, 1], [0, 1, 1/2], [1/2, 1, 1], [1, 1/2, 1], [1, 1, 1/2]";
+        vertices(&format!("points: [{corners}, {edges}]"), "1/3")
+    }] {
+        for from in [[0.0, 0.0], [90.0, 0.0], [0.0, 90.0], [180.0, 0.0]] {
+            for steps in [None, Some(4), Some(40)] {
+                let seen = seen(&graph, steps, from, 81);
+                assert_eq!([seen.width(), seen.height()], [81, 81]);
+                for (at, is_paper) in paper(&seen).into_iter().enumerate() {
+                    let (mut x, mut y) = (at % 81, at / 81);
+                    let mut is_hole = false;
+                    for _ in 0..4 {
+                        is_hole |= x % 3 == 1 && y % 3 == 1;
+                        (x, y) = (x / 3, y / 3);
+                    }
+                    assert_eq!(is_paper, is_hole, "{from:?} {steps:?} {at}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tetrahedron_along_a_two_fold_axis_is_a_square() {
+    let graph = vertices("solid: tetrahedron", "1/2");
+    for steps in [None, Some(0), Some(1), Some(3), Some(6)] {
+        let seen = seen(&graph, steps, [0.0, 0.0], 64);
+        assert_eq!(share(&seen), 1.0, "{steps:?}");
+        assert_eq!([seen.width(), seen.height()], [64, 64]);
+    }
+}
+
+#[test]
+fn a_cube_from_a_corner_is_a_hexagon() {
+    let graph = vertices("solid: cube", "1/2");
+    let camera = Camera::default().from(Camera::NAMED[3].1);
+    for steps in [None, Some(3)] {
+        let seen = seen_by(&graph, steps, camera, 200, 1);
+        // The hexagon is as high as a diagonal, and fills three quarters of its box.
+        let expected = 200.0 * 3f64.sqrt() / 2.0;
+        assert!((f64::from(seen.width()) - expected).abs() < 1.5);
+        assert!((share(&seen) - 0.75).abs() < 0.02, "{}", share(&seen));
+        let paper = paper(&seen);
+        for row in paper.chunks(seen.width() as usize) {
+            let changes = row.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            assert!(changes <= 2);
+        }
+    }
+}
+
+#[test]
+fn threads_change_no_byte() {
+    let graph = vertices("solid: icosahedron", "1/(1 + phi)");
+    let camera = Camera::default();
+    let one = seen_by(&graph, None, camera, 200, 1);
+    for threads in [2, 5] {
+        assert!(seen_by(&graph, None, camera, 200, threads) == one);
+    }
+}
+
+/// Leaving out hidden instances changes no sample.
+#[test]
+fn a_descent_agrees_with_drawing_everything() {
+    let fern = "{kind: ifs, space: 3, maps: [
+        {matrix: [[0, 0, 0], [0, 0.18, 0], [0, 0, 0]], weight: 1},
+        {matrix: [[0.85, 0, 0], [0, 0.85, 0.1], [0, -0.1, 0.85]], translate: [0, 1.6, 0], weight: 85},
+        {matrix: [[0.2, -0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], translate: [0, 0.8, 0], weight: 7},
+        {matrix: [[-0.2, 0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], translate: [0, 0.8, 0], weight: 7}]}";
+    for (graph, steps) in [
+        (vertices("solid: octahedron", "1/2"), 3),
+        (sponge(), 2),
+        (graph_of(fern), 4),
+    ] {
+        for perspective in [None, Some(50.0)] {
+            let camera = Camera::default().perspective(perspective);
+            let placement =
+                place::place(&graph, Some(steps), &camera, Size::Long(64), 0.0).unwrap();
+            let view = View {
+                projection: placement.projection,
+                depths: Depths::new(placement.range),
+                cuts: &[],
+                corner: [0.0; 2],
+            };
+            let parts = scene::parts(&graph, Some(steps));
+            let within = scene::seen(&graph, &placement.map);
+            let start: Vec<Child> = within
+                .initiator(0)
+                .instances
+                .iter()
+                .map(scene::child)
+                .collect();
+            let roots = Roots {
+                parts: &parts,
+                start: &start,
+                end: End { steps, detail: 0.0 },
+                class_by: ClassBy::Nothing,
+                unit: graph.unit(),
+                pad: solid::pad(&graph),
+                overlap: false,
+            };
+            let mut descended = Buffer::new();
+            Descent::default().run(&roots, &view, &mut descended);
+            let mut all = Buffer::new();
+            let mut pencil = solid::Pencil::default();
+            for element in Elements::of(&within, &Growth::steps(steps)) {
+                let (_, element) = element.unwrap();
+                let solid = within.drawn(element.object).unwrap();
+                let map = element.frame.map();
+                pencil.draw(&mut all, &view, solid, map, [0, 0, SIDE, SIDE], 0);
+            }
+            let mut ink = 0;
+            for y in 0..SIDE {
+                for (x, (a, b)) in descended.row(y).iter().zip(all.row(y)).enumerate() {
+                    // Rounding may show at edges.
+                    let near = a.abs_diff(*b) <= 4 << buffer::CLASS_BITS;
+                    assert!(near, "{x} {y}: {a} {b}");
+                    ink += usize::from(*a != EMPTY);
+                }
+            }
+            assert!(ink > 1000, "{ink}");
+        }
+    }
+}
+
+#[test]
+fn the_nearest_is_the_brightest() {
+    let graph = vertices("solid: cube", "1/2");
+    let front = seen(&graph, Some(0), [0.0, 0.0], 16);
+    let ink = PremultipliedColorU8::from_rgba(255, 214, 120, 255).unwrap();
+    assert!(front.pixels().iter().all(|pixel| *pixel == ink));
+    // From above and aside, the brightness falls from the nearest edge on.
+    let aside = seen(&graph, Some(0), [45.0, 0.0], 64);
+    let row = &aside.pixels()[..aside.width() as usize];
+    let middle = row.len() / 2;
+    assert!(row[middle].red() > row[middle / 2].red());
+    assert!(row[middle].red() > row[middle + middle / 2].red());
+}
+
+#[test]
+fn a_perspective_picture_is_fitted_exactly() {
+    let graph = vertices("solid: icosahedron", "1/(1 + phi)");
+    let camera = Camera::default().perspective(Some(60.0));
+    let seen = seen_by(&graph, None, camera, 120, 2);
+    let (width, height) = (seen.width() as usize, seen.height() as usize);
+    let paper = paper(&seen);
+    let column = |x: usize| (0..height).any(|y| !paper[y * width + x]);
+    let row = |y: usize| paper[y * width..(y + 1) * width].contains(&false);
+    assert!(
+        [column(0), column(width - 1), row(0), row(height - 1)]
+            .iter()
+            .all(|it| *it)
+    );
+}
+
+#[test]
+fn unknown_extents_and_wrong_cameras_are_errors() {
+    let graph = sponge();
+    let options = Options::default();
+    let up = Camera::default().from([0.0, 90.0]).up(Some(DVec3::Y));
+    let angle = Camera::default().perspective(Some(170.0));
+    for camera in [up, angle] {
+        let space = SpaceOptions::default().camera(camera);
+        let error = draw(&graph, None, &options, &space, None).unwrap_err();
+        assert!(
+            matches!(error, RenderError::Space(SpaceError::Camera(_))),
+            "{error}"
+        );
+    }
+    let cancelled = Arc::new(AtomicBool::new(true));
+    let space = SpaceOptions::default();
+    let error = draw(&graph, None, &options, &space, Some(&cancelled)).unwrap_err();
+    assert!(matches!(error, RenderError::Walk(WalkError::Cancelled)));
+}
