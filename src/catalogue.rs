@@ -415,7 +415,7 @@ pub(crate) fn is_same_file(a: &Source, b: &Source) -> bool {
 pub(crate) fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     use std::io::Read;
     // One byte more than the limit suffices to detect a file that is too large.
-    let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+    let most = u64::try_from(Source::MAX_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
     let read = open_file(path)?.take(most).read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;

@@ -48,7 +48,7 @@ fn hash_of_name(name: &str) -> u64 {
 
 /// Largest deviation of a normal draw from its mean, in standard deviations: √(−2 ln 2⁻⁵³), because the
 /// Box–Muller transform is applied to numbers of 53 bits.
-const MOST_DEVIATIONS: f64 = 8.572;
+const MAX_DEVIATIONS: f64 = 8.572;
 
 /// Returns the probability of an interval, in standard deviations from the mean, under the normal
 /// distribution.
@@ -151,7 +151,7 @@ impl Variable {
             Distribution::Normal(mean, deviation) => {
                 let (mean, deviation) = (mean.range(slots), deviation.range(slots));
                 let part = |number| {
-                    let part = Interval::new(-MOST_DEVIATIONS, MOST_DEVIATIONS).part(number, count);
+                    let part = Interval::new(-MAX_DEVIATIONS, MAX_DEVIATIONS).part(number, count);
                     (mean + deviation * part, normal(part))
                 };
                 (0..count).map(part).collect()

@@ -78,7 +78,7 @@ pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f
 }
 
 fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
-    const MOST_GROWN: u64 = 20_000;
+    const MAX_GROWN: u64 = 20_000;
     struct Length(u64);
     impl Write for Length {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -96,7 +96,7 @@ fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Opti
         ..options.clone()
     };
     let growth = Growth {
-        most_elements: MOST_GROWN,
+        max_elements: MAX_GROWN,
         ..Growth::steps(steps)
     };
     let mut length = Length(0);

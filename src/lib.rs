@@ -26,9 +26,20 @@
 //! # }
 //! ```
 //!
+//! | for | see |
+//! |---|---|
+//! | parameters, a family of curves | [`Fractal::set`] |
+//! | elements one by one, tables | [`Fractal::elements`], [`Fractal::write`] |
+//! | raw pixels, frames of a film, cancelling | [`Fractal::pixels`], [`Fractal::view`], [`Fractal::cancel`] |
+//! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::bounds`], [`Fractal::dimension`] |
+//! | mistakes in a file, with their places | [`Error::diagnostics`] |
+//! | the format of files, and their keys | [`document`] |
+//! | names in the library | [`catalogue`] |
+//! | rules made by a program | [`build`] |
+//!
 //! Everything that the front door does is done by the rooms behind it, which are public as far as programs
-//! need them: to build rules ([`build`]), to measure pictures and points ([`measure`]), to visit elements
-//! without an iterator ([`grow`]), or to draw into memory with all options ([`render`]).
+//! need them: to measure pictures and points ([`measure`]), to visit elements without an iterator ([`grow`]), or
+//! to draw into memory with all options ([`render`]).
 //!
 //! # Features
 //!
@@ -143,9 +154,12 @@ pub mod zoom;
 pub use count::Count;
 pub use draws::{Distribution, Path, Variable};
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
+pub use grow::Element;
 pub use kind::Kind;
 pub use metadata::{Description, Metadata, Parameter};
 pub use output_file::WriteError;
+pub use render::{Pixels, PngEncoding, Size};
+pub use style::{Style, View};
 pub use written::{Written, WrittenNumber, WrittenPoint};
 
 /// Random rules for the tests of several modules.

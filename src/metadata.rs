@@ -4,7 +4,7 @@ use crate::expression::Program;
 use crate::style::{Style, View};
 
 /// Maximum number of steps that a file may propose.
-pub(crate) const MOST_STEPS: u32 = 1_000_000;
+pub(crate) const MAX_STEPS: u32 = 1_000_000;
 
 /// Description of a file.
 #[derive(Clone, Debug, Default, PartialEq)]

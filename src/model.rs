@@ -83,7 +83,7 @@ pub(crate) trait OfKind {
     fn metadata(&self) -> &Metadata;
 
     /// Compiles the model as [`Model::compile_for`] does.
-    fn compile(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Graph, CompileError>;
+    fn compile(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Graph, CompileError>;
 
     /// Converts an error of compiling or of a walk to a diagnostic of the model's file.
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {
@@ -167,21 +167,21 @@ impl Model {
     }
 
     /// Compiles the model to a graph that is resolved for at least `steps` steps, with the seed 0 and the
-    /// limit [`MOST_ELEMENTS`](Self::MOST_ELEMENTS) where these matter.
+    /// limit [`MAX_ELEMENTS`](Self::MAX_ELEMENTS) where these matter.
     ///
     /// # Errors
     ///
     /// As for [`Model::compile_for`].
     pub fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
-        self.compile_for(steps, 0, Self::MOST_ELEMENTS)
+        self.compile_for(steps, 0, Self::MAX_ELEMENTS)
     }
 
     /// Default limit of the number of elements that are drawn.
-    pub const MOST_ELEMENTS: u64 = 50_000_000;
+    pub const MAX_ELEMENTS: u64 = 50_000_000;
 
     /// Compiles the model to a graph that is resolved for at least `steps` steps. For an L-system that is
     /// not compiled, its word is derived for exactly `steps` steps, with the draws of `seed`, if it draws
-    /// at most `most_elements` elements.
+    /// at most `max_elements` elements.
     ///
     /// # Errors
     ///
@@ -190,9 +190,9 @@ impl Model {
         &self,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Result<Graph, CompileError> {
-        self.as_kind().compile(steps, seed, most_elements)
+        self.as_kind().compile(steps, seed, max_elements)
     }
 
     /// Returns the model whose graph has the limit set: the model itself, except for an L-system that

@@ -195,9 +195,9 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// Returns the file that a symbolic link resolves to, which need not exist.
 pub(crate) fn behind_links(named: &Path) -> Result<PathBuf, WriteError> {
-    const MOST_LINKS: usize = 40;
+    const MAX_LINKS: usize = 40;
     let mut path = named.to_path_buf();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         let Ok(target) = path.read_link() else {
             return Ok(path);
         };

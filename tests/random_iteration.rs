@@ -97,7 +97,7 @@ fn deterministic(system: &ifs::System, view: View) -> Pixels {
         pixels: 1.0,
         decides_steps: true,
     });
-    let growth = Growth::steps(10_000).most_elements(50_000_000);
+    let growth = Growth::steps(10_000).max_elements(50_000_000);
     let mut bytes = Vec::new();
     render::write(&graph, &growth, &options, &mut bytes).unwrap();
     let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));

@@ -23,7 +23,7 @@ use kfrac::measure::similarity_dimension;
 const CLOSE: f64 = 1e-12;
 
 /// Limit of the number of elements of an approximant.
-const MOST_ELEMENTS: u64 = 20_000;
+const MAX_ELEMENTS: u64 = 20_000;
 
 #[track_caller]
 fn assert_close(what: &str, value: f64, expected: f64) {
@@ -49,7 +49,7 @@ fn assert_same_box(what: &str, bounds: &Bounds, expected: [f64; 4]) {
 
 /// Returns the deepest step up to 4 within the limit of elements.
 fn deepest(graph: &Graph) -> u32 {
-    match graph.check_size(4, MOST_ELEMENTS) {
+    match graph.check_size(4, MAX_ELEMENTS) {
         Ok(_) => 4,
         Err(error) => error.deepest.unwrap(),
     }

@@ -201,7 +201,7 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
 
 /// Iterates over all fractals of the library with their graphs, at the deepest step within a limit of
 /// elements.
-fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
+fn library(max_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
     let catalogue = Catalogue::embedded();
     let mut entries = catalogue.entries();
     entries.retain(|entry| Shelf::grown().contains(&entry.shelf));
@@ -211,13 +211,13 @@ fn library(most_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u3
     });
     let models = models.filter(|(_, model)| !model.is_in_space());
     models.map(move |(name, model)| {
-        let compile = |steps| model.compile_for(steps, 0, most_elements).ok();
+        let compile = |steps| model.compile_for(steps, 0, max_elements).ok();
         let fits = |steps| {
             let graph = compile(steps)?;
             // An element may be a whole fractal.
             let pieces = graph.base_elements().iter().map(|it| it.pieces().len());
             let pieces = pieces.max().unwrap_or(1) as u64;
-            let most = (20 * most_elements / pieces).min(most_elements);
+            let most = (20 * max_elements / pieces).min(max_elements);
             match graph.check_size(steps, most) {
                 Ok(Some(_)) => Some((graph, steps)),
                 // The draws decide the counts.
@@ -303,7 +303,7 @@ fn limits_and_failures_are_met_on_any_number_of_threads() {
         .into_rule()
         .unwrap();
     let graph = Graph::compile(&rule, 8).unwrap();
-    let growth = Growth::steps(8).most_elements(40_000);
+    let growth = Growth::steps(8).max_elements(40_000);
     let cancel = std::sync::atomic::AtomicBool::new(true);
     let cancelled = Growth::steps(8).cancel(Some(&cancel));
     for number in THREADS {
@@ -403,7 +403,7 @@ proptest! {
     fn files_do_not_depend_on_the_number_of_threads(text in rules::rule(Features::ALL), seed in 0..3u64) {
         let rule = document_of(&text).resolve(&[]).unwrap().0.into_rule().unwrap();
         let graph = Graph::compile(&rule, 6).unwrap();
-        let growth = Growth::steps(6).seed(seed).most_elements(30_000);
+        let growth = Growth::steps(6).seed(seed).max_elements(30_000);
         let write = |number| {
             let options = Options::of(rule.metadata()).size(Size::Long(300)).threads(threads(number));
             let mut bytes = Vec::new();

@@ -29,11 +29,11 @@ use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use mutate::{Random, mutated};
 
 /// Maximum number of elements, small enough for milliseconds per input.
-const MOST_ELEMENTS: u64 = 1_000;
-const MOST_STEPS: u32 = 64;
+const MAX_ELEMENTS: u64 = 1_000;
+const MAX_STEPS: u32 = 64;
 
 /// Maximum length of the messages about one file, in bytes.
-const MOST_SAID: usize = 1 << 20;
+const MAX_SAID: usize = 1 << 20;
 
 /// Maximum distance of bounding boxes, as a multiple of the coordinates.
 const TOLERANCE: f64 = 1e-9;
@@ -48,7 +48,7 @@ fuzz_target!(|bytes: &[u8]| {
     let yaml = document.to_yaml();
     let grown = grow(&rule);
     // Expanded aliases may exceed the maximum size of a file.
-    if yaml.len() <= Source::MOST_BYTES {
+    if yaml.len() <= Source::MAX_BYTES {
         let (again, rule) = read(&Source::new("fuzz.yaml", yaml.as_str()))
             .unwrap_or_else(|| panic!("what was printed cannot be read:\n{yaml}"));
         assert_eq!(again.to_yaml(), yaml);
@@ -91,12 +91,12 @@ fn read(source: &Arc<Source>) -> Option<(Document, Arc<Rule>)> {
 }
 
 fn said(found: &Diagnostics) {
-    assert!(found.to_string().len() < MOST_SAID, "too much is said");
+    assert!(found.to_string().len() < MAX_SAID, "too much is said");
 }
 
 /// Returns the table and the picture of a rule, or the reason why it does not grow.
 fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
-    let steps = rule.steps().unwrap_or(3).min(MOST_STEPS);
+    let steps = rule.steps().unwrap_or(3).min(MAX_STEPS);
     let graph = Graph::compile(rule, steps).map_err(|error| {
         said(&error.diagnostic(rule).into());
         error.to_string()
@@ -105,8 +105,8 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let _ = graph.limit_bounds();
     let bounds = graph.bounds(steps);
     let level = forecast(&graph, steps);
-    let allowed = graph.check_size(steps, MOST_ELEMENTS).is_ok();
-    let growth = Growth::steps(steps).most_elements(MOST_ELEMENTS);
+    let allowed = graph.check_size(steps, MAX_ELEMENTS).is_ok();
+    let growth = Growth::steps(steps).max_elements(MAX_ELEMENTS);
     let mut table = Vec::new();
     let walked = export::write(&graph, &growth, export::Format::Csv, NonZero::<usize>::MIN, &mut table);
     if let Ok(walked) = walked {
@@ -119,7 +119,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
             near(&bounds, &extent);
         }
     } else if let (Some(level), Err(WalkError::TooManyElements { .. })) = (level, &walked) {
-        assert!(level.elements > Count::from(MOST_ELEMENTS));
+        assert!(level.elements > Count::from(MAX_ELEMENTS));
     }
     let table = text(walked.map(|_| table))?;
     Ok([table, text(picture(rule, &graph, &growth))?])

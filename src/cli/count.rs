@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     if let Some(graph) = loaded.model.compile_in_space(false) {
         let steps = space::steps(arguments.steps, &loaded, &graph);
-        space::check(&loaded, &graph, steps, growth.most_elements())?;
+        space::check(&loaded, &graph, steps, growth.max_elements())?;
         return arguments.count(&loaded, &graph, steps);
     }
     let steps = steps::choose(arguments.steps, &loaded)?;
@@ -89,7 +89,7 @@ impl Arguments {
         let found = progress::watched(!growth.quiet, |progress| {
             let limits = growth.to(steps, progress);
             if let Some(progress) = progress
-                && let Ok(Some(elements)) = graph.check_size(steps, limits.most_elements)
+                && let Ok(Some(elements)) = graph.check_size(steps, limits.max_elements)
             {
                 progress.expect(elements);
             }

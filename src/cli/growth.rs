@@ -22,10 +22,10 @@ use crate::fractal::Goal;
 
 /// Default limit of the number of elements, where a detail in pixels bounds them: at most as many are drawn
 /// as there are pixels.
-const MAX_GROWN_TO_DETAIL: u64 = 10 * Model::MOST_ELEMENTS;
+const MAX_GROWN_TO_DETAIL: u64 = 10 * Model::MAX_ELEMENTS;
 
 /// Default limit where all elements are held in memory: a gigabyte, at about 200 bytes each.
-const MAX_PLOTTED: u64 = Model::MOST_ELEMENTS / 10;
+const MAX_PLOTTED: u64 = Model::MAX_ELEMENTS / 10;
 
 /// Options of growth and its limits.
 #[derive(clap::Args)]
@@ -68,8 +68,8 @@ impl GrowthArguments {
         self.max_elements.is_some()
     }
 
-    pub(super) fn most_elements(&self) -> u64 {
-        self.max_elements.unwrap_or(Model::MOST_ELEMENTS)
+    pub(super) fn max_elements(&self) -> u64 {
+        self.max_elements.unwrap_or(Model::MAX_ELEMENTS)
     }
 
     /// Returns the limit of the number of elements of a picture.
@@ -86,7 +86,7 @@ impl GrowthArguments {
                 detail: Some(_),
                 ..
             } => MAX_GROWN_TO_DETAIL,
-            _ => Model::MOST_ELEMENTS,
+            _ => Model::MAX_ELEMENTS,
         };
         self.max_elements.unwrap_or(default)
     }
@@ -103,7 +103,7 @@ impl GrowthArguments {
     ) -> Result<(), Failure> {
         let most = match picture {
             Some(picture) => self.most_elements_of(picture),
-            None => self.most_elements(),
+            None => self.max_elements(),
         };
         let checked = graph.check_size(steps, most);
         checked.map_err(|error| {
@@ -117,7 +117,7 @@ impl GrowthArguments {
         Growth {
             steps,
             seed: self.seed,
-            most_elements: self.most_elements(),
+            max_elements: self.max_elements(),
             cancel: None,
             progress,
         }
@@ -131,7 +131,7 @@ impl GrowthArguments {
         progress: Option<&'a Progress>,
     ) -> Growth<'a> {
         Growth {
-            most_elements: self.most_elements_of(picture),
+            max_elements: self.most_elements_of(picture),
             ..self.to(steps, progress)
         }
     }
@@ -257,7 +257,7 @@ pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) ->
 pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     const MAX_ELEMENTS: u64 = 1_000_000;
     let growth = Growth {
-        most_elements: MAX_ELEMENTS,
+        max_elements: MAX_ELEMENTS,
         ..Growth::steps(steps)
     };
     let walked = || {

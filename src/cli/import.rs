@@ -150,13 +150,13 @@ fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
     };
     let mut bytes = Vec::new();
     let read = open_file(path)?
-        .take(Source::MOST_BYTES as u64 + 1)
+        .take(Source::MAX_BYTES as u64 + 1)
         .read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;
     // Files of Fractint may be older than UTF-8: other bytes are read as Latin-1.
     if std::str::from_utf8(&bytes).is_err()
         && !bytes.contains(&0)
-        && bytes.len() <= Source::MOST_BYTES
+        && bytes.len() <= Source::MAX_BYTES
     {
         bytes = bytes
             .iter()

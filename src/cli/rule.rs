@@ -77,7 +77,7 @@ pub(super) struct Loaded {
 impl Loaded {
     /// Sets the seed and the limit of the number of elements.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
-        self.growth = (growth.seed, growth.most_elements());
+        self.growth = (growth.seed, growth.max_elements());
         self
     }
 
@@ -102,10 +102,10 @@ impl Loaded {
     }
 
     fn graph_of(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
-        let (seed, most_elements) = self.growth;
+        let (seed, max_elements) = self.growth;
         match &self.place {
-            Some(place) => model.compile_within(place, steps, seed, most_elements),
-            None => model.compile_normalised(steps, seed, most_elements),
+            Some(place) => model.compile_within(place, steps, seed, max_elements),
+            None => model.compile_normalised(steps, seed, max_elements),
         }
     }
 
@@ -165,7 +165,7 @@ impl Loaded {
 
 /// Reads standard input, up to the limit of a rule file.
 fn standard_input() -> Result<Arc<Source>, Failure> {
-    let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+    let most = u64::try_from(Source::MAX_BYTES).unwrap_or(u64::MAX) + 1;
     let mut bytes = Vec::new();
     std::io::stdin().lock().take(most).read_to_end(&mut bytes)?;
     Ok(Source::read("<stdin>", bytes)?)
@@ -266,7 +266,7 @@ impl RuleArguments {
             model,
             settings,
             omitted: self.omit.clone(),
-            growth: (0, Model::MOST_ELEMENTS),
+            growth: (0, Model::MAX_ELEMENTS),
             place: None,
         })
     }

@@ -144,7 +144,7 @@ impl Sheet {
                 name: name.clone(),
                 graph: &self.graphs[*graph],
                 growth: Growth {
-                    most_elements: most.unwrap_or(growth.most_elements),
+                    max_elements: most.unwrap_or(growth.max_elements),
                     ..growth
                 },
             }

@@ -13,9 +13,9 @@ use super::rule::Loaded;
 /// most 20,000 elements.
 pub(super) fn steps(asked: Option<u32>, loaded: &Loaded, graph: &Graph<Frame3>) -> u32 {
     const DEEPEST: u32 = 12;
-    const MOST_ELEMENTS: u64 = 20_000;
+    const MAX_ELEMENTS: u64 = 20_000;
     let proposed = asked.or(loaded.model.metadata().steps);
-    proposed.unwrap_or_else(|| match graph.check_size(DEEPEST, MOST_ELEMENTS) {
+    proposed.unwrap_or_else(|| match graph.check_size(DEEPEST, MAX_ELEMENTS) {
         Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
     })

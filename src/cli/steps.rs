@@ -9,7 +9,7 @@ use super::{Failure, number};
 
 /// Reads a number of steps.
 pub(super) fn parse(text: &str) -> Result<u32, String> {
-    number::whole("a number of steps", 0..=Goal::MOST_STEPS)(text)
+    number::whole("a number of steps", 0..=Goal::MAX_STEPS)(text)
 }
 
 /// Largest number of approximants on a sheet by default.

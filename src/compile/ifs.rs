@@ -10,7 +10,7 @@ use crate::extent::{Bounded, Fineness, Own};
 use crate::graph::{Chain, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of instances in a graph whose objects record the last map.
-const MOST_INSTANCES: usize = 4_000_000;
+const MAX_INSTANCES: usize = 4_000_000;
 
 /// Number of the base element of the initial set; it is provisional until the limit set is known.
 const INITIAL: usize = 0;
@@ -40,7 +40,7 @@ impl<F: Bounded> Graph<F> {
             .ifs()
             .size()
             .saturating_mul(system.ifs().maps().len());
-        (size <= MOST_INSTANCES).then(|| Self::compile_system(system, true))
+        (size <= MAX_INSTANCES).then(|| Self::compile_system(system, true))
     }
 
     fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, tells_last: bool) -> Self {

@@ -12,10 +12,10 @@ use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::ifs::{AffineMap, outline};
 
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
-const MOST_BOXES: usize = 256;
+const MAX_BOXES: usize = 256;
 
 /// Limit of the number of instances that are visited for all boxes together.
-const MOST_LOOKS: usize = 250_000;
+const MAX_LOOKS: usize = 250_000;
 
 impl Graph {
     /// Compiles a structure to its graph, whose unit frame is the plane itself.
@@ -71,7 +71,7 @@ impl Graph {
     }
 
     fn most_boxes(&self) -> usize {
-        MOST_BOXES.min(MOST_LOOKS / self.instances().count().max(1))
+        MAX_BOXES.min(MAX_LOOKS / self.instances().count().max(1))
     }
 
     /// Returns the bounding box of the subtree of an object. Overwrites the initiator.

@@ -45,7 +45,7 @@ impl Graph {
         system: &LSystem,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Result<Self, CompileError> {
         let levels = |NotCompiled| {
             let effects = Effects::of_system(system, steps)?;
@@ -53,7 +53,7 @@ impl Graph {
         };
         match Self::of_edges(system).or_else(levels) {
             Ok(graph) => Ok(graph),
-            Err(NotCompiled) => Self::of_derived_word(system, steps, seed, most_elements),
+            Err(NotCompiled) => Self::of_derived_word(system, steps, seed, max_elements),
         }
     }
 
@@ -62,17 +62,17 @@ impl Graph {
     ///
     /// # Errors
     ///
-    /// If there are more than `most_elements` elements, or if numbers are not finite.
+    /// If there are more than `max_elements` elements, or if numbers are not finite.
     pub fn of_derived_word(
         system: &LSystem,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Result<Self, CompileError> {
         let mut turtle = Turtle::new(system);
         let mut strings = Strings::new(system);
         let mut instances = Vec::new();
-        system.read(steps, seed, most_elements, |symbol, arguments| {
+        system.read(steps, seed, max_elements, |symbol, arguments| {
             turtle.read(symbol, arguments);
             let drawn = turtle.drawing.elements.drain(..);
             instances.extend(drawn.map(|placed| strings.instance(&placed)));

@@ -13,13 +13,13 @@ use super::state::{Class, Dependences, State};
 use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
-const MOST_OBJECTS: usize = 200_000;
+const MAX_OBJECTS: usize = 200_000;
 
 /// Limit of the number of instances, with the same consequence.
-const MOST_INSTANCES: usize = 2_000_000;
+const MAX_INSTANCES: usize = 2_000_000;
 /// Limit of the work, with the same consequence: conditions that are tried, and counts of elements that
 /// are carried along.
-const MOST_WORK: usize = 20_000_000;
+const MAX_WORK: usize = 20_000_000;
 
 /// Limit of the number of objects up to which a graph is resolved for more steps than were requested.
 const SOON: usize = 4_096;
@@ -187,7 +187,7 @@ impl<'r> Compiler<'r> {
     fn spend(&mut self, instances: usize, work: usize) -> Result<(), Stop> {
         self.instances += instances;
         self.work += work;
-        let too_much = self.instances > MOST_INSTANCES || self.work > MOST_WORK;
+        let too_much = self.instances > MAX_INSTANCES || self.work > MAX_WORK;
         if too_much && !self.depends.index_is_free {
             return Err(Stop::Irregular);
         }
@@ -209,7 +209,7 @@ impl<'r> Compiler<'r> {
             return Ok(number);
         }
         let number = self.objects.len();
-        if number >= MOST_OBJECTS {
+        if number >= MAX_OBJECTS {
             return Err(Stop::Irregular);
         }
         let behaviours = self.behaviours.len();

@@ -16,7 +16,7 @@ pub struct Source {
 
 impl Source {
     /// Maximum size of a file in bytes: 4 MiB.
-    pub const MOST_BYTES: usize = 4 << 20;
+    pub const MAX_BYTES: usize = 4 << 20;
 
     /// Creates a source from a name and a text. A leading byte order mark is removed from the text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
@@ -65,7 +65,7 @@ impl Source {
     }
 
     fn read_as(name: String, path: PathBuf, bytes: Vec<u8>) -> Result<Arc<Self>, Diagnostic> {
-        if bytes.len() > Self::MOST_BYTES {
+        if bytes.len() > Self::MAX_BYTES {
             return Err(Self::too_large(&name));
         }
         let not_text = Diagnostic::error(format!("'{name}' is not a text file"));
@@ -88,9 +88,9 @@ impl Source {
         Diagnostic::error(format!("'{name}' is larger than 4 MiB"))
     }
 
-    /// Returns an error if the text is longer than [`Source::MOST_BYTES`].
+    /// Returns an error if the text is longer than [`Source::MAX_BYTES`].
     pub(crate) fn check_size(&self) -> Result<(), Diagnostic> {
-        if self.text.len() > Self::MOST_BYTES {
+        if self.text.len() > Self::MAX_BYTES {
             Err(Self::too_large(&self.name))
         } else {
             Ok(())

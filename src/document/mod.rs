@@ -3,6 +3,10 @@
 //!
 //! [`Document::read`] parses a file, inlines its parents (`extends`) and components, and reads the
 //! result into the document of its kind. YAML is not visible outside this module.
+//!
+//! The reference of files follows; `library/README.md` has it too.
+//!
+#![doc = include_str!("../../library/README.md")]
 
 mod assemble;
 mod data;

@@ -80,7 +80,7 @@ pub fn write(
         writeln!(out, "{}", columns.join(",")).map_err(WalkError::Visitor)?;
     }
     if let Some(progress) = growth.progress
-        && let Ok(Some(elements)) = graph.check_size(growth.steps, growth.most_elements)
+        && let Ok(Some(elements)) = graph.check_size(growth.steps, growth.max_elements)
     {
         progress.expect(elements);
     }

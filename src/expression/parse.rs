@@ -9,13 +9,13 @@ use super::scope;
 use super::{Expression, ExpressionError, Node};
 use crate::diagnostic::nearest;
 
-const MOST_BYTES: usize = 4096;
+const MAX_BYTES: usize = 4096;
 /// Maximum nesting depth of parentheses, prefix operators and powers, which the parser handles by
 /// recursion.
-const MOST_LEVELS: usize = 64;
+const MAX_LEVELS: usize = 64;
 /// Maximum number of operators: a chain of operators is a tree of the same depth, which is visited
 /// recursively.
-const MOST_OPERATORS: usize = 256;
+const MAX_OPERATORS: usize = 256;
 
 const FLOW_STYLE: &str = "in YAML's flow style a comma ends the value: quote it, or write it on \
                           a line of its own";
@@ -23,9 +23,9 @@ const FLOW_STYLE: &str = "in YAML's flow style a comma ends the value: quote it,
 type Parsed<T = Expression> = Result<T, ExpressionError>;
 
 pub(super) fn parse(text: &str) -> Parsed {
-    if text.len() > MOST_BYTES {
+    if text.len() > MAX_BYTES {
         let message = format!("this is too long: {} bytes", text.len());
-        let hint = format!("{MOST_BYTES} bytes at most");
+        let hint = format!("{MAX_BYTES} bytes at most");
         return Err(ExpressionError::new(0..text.len(), message).hint(hint));
     }
     let (token, range) = lex::token(text, 0)?;
@@ -217,9 +217,9 @@ impl Parser<'_> {
 
     /// Parses one nesting level deeper, and reports excessive depth at the next token.
     fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
-        if self.levels == MOST_LEVELS {
+        if self.levels == MAX_LEVELS {
             let error = ExpressionError::new(self.range.clone(), "this is nested too deeply");
-            return Err(error.hint(format!("{MOST_LEVELS} levels at most")));
+            return Err(error.hint(format!("{MAX_LEVELS} levels at most")));
         }
         self.levels += 1;
         let parsed = parse(self)?;
@@ -228,9 +228,9 @@ impl Parser<'_> {
     }
 
     fn count_operator(&mut self) -> Parsed<()> {
-        if self.operators == MOST_OPERATORS {
+        if self.operators == MAX_OPERATORS {
             let error = ExpressionError::new(self.range.clone(), "there are too many operators");
-            return Err(error.hint(format!("{MOST_OPERATORS} at most")));
+            return Err(error.hint(format!("{MAX_OPERATORS} at most")));
         }
         self.operators += 1;
         Ok(())

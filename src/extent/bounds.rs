@@ -16,12 +16,12 @@ use super::bounded::{Bounded, Fineness, Hulls, Own};
 use crate::graph::{Graph, Instance, Object};
 
 /// Limit of the number of states at one level.
-const MOST_STATES: usize = 20_000;
+const MAX_STATES: usize = 20_000;
 /// Limit of the number of states at all levels together.
-const MOST_WORK: usize = 1_000_000;
+const MAX_WORK: usize = 1_000_000;
 
 /// Limit of the number of levels.
-const MOST_LEVELS: u32 = 20_000;
+const MAX_LEVELS: u32 = 20_000;
 
 /// Relative size of terms that do not change a double.
 const NEGLIGIBLE: f64 = 1e-17;
@@ -276,7 +276,7 @@ impl<F: Bounded> Graph<F> {
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         let mut work = 0;
-        for level in 0..=MOST_LEVELS {
+        for level in 0..=MAX_LEVELS {
             let last = steps == Some(level);
             let levels = steps.map(|steps| steps - level);
             let mut next = Vec::new();
@@ -327,7 +327,7 @@ impl<F: Bounded> Graph<F> {
                     next.extend(all.map(|(_, instance)| {
                         child(instance, state.vector, state.offset, state.lost)
                     }));
-                    if next.len() > MOST_WORK {
+                    if next.len() > MAX_WORK {
                         return None;
                     }
                 }
@@ -337,7 +337,7 @@ impl<F: Bounded> Graph<F> {
             }
             states = merged(next.into_iter());
             work += states.len();
-            if states.len() > MOST_STATES || work > MOST_WORK {
+            if states.len() > MAX_STATES || work > MAX_WORK {
                 return None;
             }
         }

@@ -9,7 +9,7 @@ use crate::graph::{Graph, Instance, Object, Replacement};
 use super::Bounded;
 
 /// Limit of the number of instances that are replaced, for a direction.
-const MOST_WORK: usize = 1 << 17;
+const MAX_WORK: usize = 1 << 17;
 
 /// Relative error of the box.
 const TOLERANCE: f64 = 1e-13;
@@ -113,7 +113,7 @@ impl<F: Bounded> Graph<F> {
                 return Some(f64::midpoint(node.farthest.max(surely), surely));
             }
             work += 1;
-            if work > MOST_WORK {
+            if work > MAX_WORK {
                 return None;
             }
             let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {

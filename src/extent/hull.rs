@@ -13,7 +13,7 @@ use crate::graph::{Graph, Instance};
 const ROUNDING: f64 = 1e-14;
 
 /// Number of rounds that are taken regardless of the number of corners that are mapped.
-const LEAST_ROUNDS: usize = 4;
+const MIN_ROUNDS: usize = 4;
 /// Number of rounds after which corners are followed to their limits.
 const FEW_ROUNDS: usize = 4;
 
@@ -154,7 +154,7 @@ impl Graph {
                 thinned(&convex_hull(points, 0.0), tolerance)
             });
             let next: Vec<Vec<DVec2>> = next.collect();
-            let ends = work > fineness.most_work && round >= LEAST_ROUNDS;
+            let ends = work > fineness.most_work && round >= MIN_ROUNDS;
             if next
                 .iter()
                 .any(|corners| corners.len() > fineness.most_corners)

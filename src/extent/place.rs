@@ -9,7 +9,7 @@ const TALL: f64 = 64.0;
 
 /// Largest growth, as an exponent of 2; above it, sums of elements side by side would leave the range of
 /// doubles.
-const MOST_GROWTH: f64 = 1010.0;
+const MAX_GROWTH: f64 = 1010.0;
 
 impl Graph {
     /// Scales the graph to the extent of an approximant that is much larger than the initiator, because
@@ -24,7 +24,7 @@ impl Graph {
         if growth <= TALL {
             return Some(self);
         }
-        if growth > MOST_GROWTH {
+        if growth > MAX_GROWTH {
             return None;
         }
         // Scales by the growth of the longest element, which keeps the bounds in range, then by the
@@ -36,7 +36,7 @@ impl Graph {
         let size = size.map_or(1.0, |size| size.max_element());
         let back = if size > 0.0 { exponent_of(size) } else { 0 };
         let exponent = before + most + back;
-        let fits = exponent <= Homothety::<DVec2>::MOST_EXPONENT;
+        let fits = exponent <= Homothety::<DVec2>::MAX_EXPONENT;
         fits.then(|| Self {
             place: Homothety::new(exponent, shift),
             ..small.started_within(&Homothety::new(back, DVec2::ZERO))

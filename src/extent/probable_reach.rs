@@ -11,7 +11,7 @@ const POWERS: [f64; 5] = [8.0, 16.0, 24.0, 36.0, 54.0];
 const NEVER: f64 = 64.0;
 
 /// Limit of the number of sweeps that update all norms.
-const MOST_SWEEPS: usize = 200;
+const MAX_SWEEPS: usize = 200;
 
 /// Limit beyond which norms are taken to diverge.
 const MOST: f64 = 1e6;
@@ -68,7 +68,7 @@ impl<F: Frame> Graph<F> {
             libm::pow(sum, 1.0 / power)
         };
         let mut norms = own.to_vec();
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let mut grows = false;
             for object in (0..own.len()).rev() {
                 let norm = next(&norms, object);

@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-3;
 const LITTLE: f64 = 0.75;
 
 /// Limit of the number of sweeps that decrease the radii.
-const MOST_SWEEPS: usize = 64;
+const MAX_SWEEPS: usize = 64;
 
 impl<F: Bounded> Graph<F> {
     /// Returns, for every object, the radius of a disc about the [middle](Graph::middle) of its unit
@@ -53,7 +53,7 @@ impl<F: Bounded> Graph<F> {
                 _ => own[object],
             })
             .collect();
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let mut change = 1.0;
             // Children have larger numbers than the objects that reach them first.
             for object in (0..own.len()).rev() {

@@ -13,7 +13,7 @@ use crate::parallel::is_cancelled;
 use crate::priority::Keyed;
 
 /// Maximum number of replacements; beyond it the search is abandoned.
-const MOST_WORK: usize = 1 << 18;
+const MAX_WORK: usize = 1 << 18;
 
 /// Radii of subtrees and padding, by object.
 pub(crate) struct Reaches<'a> {
@@ -84,7 +84,7 @@ pub(crate) fn search<F: Frame>(
                 break;
             }
             work += 1;
-            if work > MOST_WORK || is_cancelled(growth.cancel) {
+            if work > MAX_WORK || is_cancelled(growth.cancel) {
                 return None;
             }
             let moment = ReplacementContext {

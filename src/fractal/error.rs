@@ -38,6 +38,16 @@ impl Error {
             _ => None,
         }
     }
+
+    /// Returns whether the flag of [`Fractal::cancel`](super::Fractal::cancel) has ended it.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Walk(WalkError::Cancelled)
+                | Self::Render(RenderError::Walk(WalkError::Cancelled))
+        )
+    }
 }
 
 impl From<Diagnostics> for Error {

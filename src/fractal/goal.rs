@@ -18,7 +18,7 @@ pub enum Goal {
 
 impl Goal {
     /// Largest number of steps.
-    pub const MOST_STEPS: u32 = 1_000_000;
+    pub const MAX_STEPS: u32 = 1_000_000;
 
     /// Number of steps that a search for a detail starts with.
     const FIRST_STEPS: u32 = 64;
@@ -83,7 +83,7 @@ impl Goal {
     /// Draws a picture with as many steps as the goal takes.
     ///
     /// `graph` is compiled for [`steps`](Self::steps) steps. Where `draw` reports that a detail needs more
-    /// steps, the number is doubled, up to [`MOST_STEPS`](Self::MOST_STEPS), and the graph is compiled again.
+    /// steps, the number is doubled, up to [`MAX_STEPS`](Self::MAX_STEPS), and the graph is compiled again.
     ///
     /// # Errors
     ///
@@ -95,7 +95,7 @@ impl Goal {
         mut draw: impl FnMut(&Graph, u32) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         let mut steps = match self {
-            Self::Detail(_) if graph.depth().is_none() && graph.is_plain() => Self::MOST_STEPS,
+            Self::Detail(_) if graph.depth().is_none() && graph.is_plain() => Self::MAX_STEPS,
             _ => self.steps(),
         };
         loop {
@@ -108,7 +108,7 @@ impl Goal {
             if !is_too_few {
                 return drawn;
             }
-            let more = (2 * steps).min(Self::MOST_STEPS);
+            let more = (2 * steps).min(Self::MAX_STEPS);
             graph =
                 compile(more).map_err(|error| RenderError::Walk(WalkError::NotFinite(error)))?;
             // A graph that is too large to resolve cannot be cut.
@@ -145,7 +145,7 @@ pub fn proposed_steps(
         return Ok(DEEPEST / 2);
     }
     if let Some(depth) = model.as_kind().ends()
-        && depth <= Goal::MOST_STEPS
+        && depth <= Goal::MAX_STEPS
         && graph.check_size(depth, MAX_ELEMENTS).is_ok()
     {
         return Ok(depth);

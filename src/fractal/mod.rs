@@ -47,7 +47,7 @@ pub struct Fractal {
     steps: Option<u32>,
     detail: Option<f64>,
     seed: u64,
-    most_elements: u64,
+    max_elements: u64,
     threads: NonZero<usize>,
     size: Size,
     style: Option<Style>,
@@ -68,7 +68,7 @@ impl From<Model> for Fractal {
             steps: None,
             detail: None,
             seed: 0,
-            most_elements: Model::MOST_ELEMENTS,
+            max_elements: Model::MAX_ELEMENTS,
             threads: all_cores(),
             size: Size::Long(1024),
             style: None,
@@ -81,7 +81,7 @@ impl From<Model> for Fractal {
 }
 
 impl Fractal {
-    /// Returns a fractal of the embedded library.
+    /// Returns a fractal of the embedded library; [`Catalogue::entries`] lists the names.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -118,7 +118,7 @@ impl Fractal {
         Self::read(&source, &Catalogue::embedded())
     }
 
-    /// Reads the text of a file.
+    /// Reads the text of a file; [`document`](crate::document) describes files.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {

@@ -12,7 +12,7 @@ use crate::style::{Style, View};
 use super::{Error, Fractal};
 
 impl Fractal {
-    /// Sets a parameter of the file.
+    /// Sets a parameter of the file; `model().metadata().parameters` lists them.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -63,7 +63,8 @@ impl Fractal {
         Ok(self.anew())
     }
 
-    /// Sets the number of steps: how often fertile elements are replaced.
+    /// Sets the number of steps: how often fertile elements are replaced. By default, it is that of the file, or as
+    /// many as [`proposed_steps`](crate::proposed_steps).
     #[must_use]
     pub fn steps(mut self, steps: u32) -> Self {
         self.steps = Some(steps);
@@ -87,8 +88,8 @@ impl Fractal {
 
     /// Sets the largest number of elements that are grown; 50 million by default.
     #[must_use]
-    pub fn most_elements(mut self, most_elements: u64) -> Self {
-        self.most_elements = most_elements;
+    pub fn max_elements(mut self, max_elements: u64) -> Self {
+        self.max_elements = max_elements;
         self.anew()
     }
 
@@ -108,13 +109,26 @@ impl Fractal {
     }
 
     /// Sets the style in place of the file's.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// use kfrac::style::{ColorBy, Style};
+    ///
+    /// let koch = kfrac::Fractal::named("koch")?;
+    /// let style = koch.model().metadata().style.clone();
+    /// let koch = koch.style(Style { color_by: ColorBy::Index, ..style });
+    /// assert!(koch.steps(3).svg()?.contains("stroke="));
+    /// # Ok(())
+    /// # }
+    /// ```
     #[must_use]
     pub fn style(mut self, style: Style) -> Self {
         self.style = Some(style);
         self
     }
 
-    /// Sets the window and the margin in place of the file's.
+    /// Sets the window, in the file's units, and the margin in place of the file's. A window keeps the frames of a film
+    /// in place.
     #[must_use]
     pub fn view(mut self, view: View) -> Self {
         self.view = Some(view);
@@ -139,7 +153,22 @@ impl Fractal {
         self
     }
 
-    /// Sets a flag that ends growing and drawing with an error soon after it becomes true.
+    /// Sets a flag that ends growing and drawing with an error soon after it becomes true. It is tested before
+    /// every result, and then at intervals of some thousand elements; the measuring of a dimension goes on.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    ///
+    /// let flag = Arc::new(AtomicBool::new(false));
+    /// let dragon = kfrac::Fractal::named("dragon")?.steps(24).cancel(Arc::clone(&flag));
+    /// let drawing = std::thread::spawn(move || dragon.pixels(600));
+    /// flag.store(true, Ordering::Relaxed);
+    /// assert!(drawing.join().unwrap().unwrap_err().is_cancelled());
+    /// # Ok(())
+    /// # }
+    /// ```
     #[must_use]
     pub fn cancel(mut self, cancel: Arc<AtomicBool>) -> Self {
         self.cancel = Some(cancel);

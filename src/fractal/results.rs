@@ -14,6 +14,7 @@ use crate::measure::exact::dimensions_of_graph;
 use crate::measure::{BoxCounting, Grid, LimitSet};
 use crate::model::Model;
 use crate::output_file::{OutputFile, WriteError};
+use crate::parallel::is_cancelled;
 use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
 use crate::style::{ColorBy, Named};
 
@@ -128,7 +129,8 @@ impl Fractal {
         })
     }
 
-    /// Returns the elements of the approximant, one after another. Memory is proportional to the number of steps.
+    /// Returns the elements of the approximant, one after another, infertile and invisible ones included. Memory is
+    /// proportional to the number of steps.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -149,13 +151,14 @@ impl Fractal {
     pub fn elements(
         &self,
     ) -> Result<impl Iterator<Item = Result<Element, Error>> + use<'_>, Error> {
+        self.check_cancelled()?;
         let growth = self.growth(self.steps_grown()?);
         let elements = Elements::of(self.graph()?, &growth);
         Ok(elements.map(|item| item.map(|(_, element)| element).map_err(Error::from)))
     }
 
     /// Returns the sizes of the approximant as the graph determines them, without growing it; `None` if they depend on
-    /// draws, or on the number of all elements before one.
+    /// draws, or on the number of all elements before one. The forecast is at the approximant's step.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -184,6 +187,7 @@ impl Fractal {
     ///
     /// If the model cannot be compiled, or has to be grown and has more elements than allowed.
     pub fn bounds(&self) -> Result<Bounds, Error> {
+        self.check_cancelled()?;
         let steps = self.steps_grown()?;
         let graph = self.graph()?;
         match graph.bounds(steps) {
@@ -192,7 +196,8 @@ impl Fractal {
         }
     }
 
-    /// Returns the dimension of the limit set: exact where that is decided, and measured by boxes otherwise.
+    /// Returns the dimension of the limit set, which does not depend on the number of steps: exact where that is decided,
+    /// and otherwise measured by boxes, which takes seconds.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -208,8 +213,9 @@ impl Fractal {
     /// If there is no limit set, or none that can be measured.
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
+        self.check_cancelled()?;
         let model = self.model.of_limit();
-        let graph = model.compile_normalised(STEPS, self.seed, self.most_elements);
+        let graph = model.compile_normalised(STEPS, self.seed, self.max_elements);
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
         let exact = dimensions_of_graph(&graph)
             .dimensions
@@ -223,6 +229,7 @@ impl Fractal {
                 closed_form: exact.closed_form,
             });
         }
+        self.check_cancelled()?;
         let none = |reason: String| Error::NoDimension(reason);
         let set = LimitSet::of(&graph).map_err(|error| none(error.to_string()))?;
         let grids = Grid::spread(const { NonZero::new(8).expect("8 is not zero") });
@@ -251,7 +258,7 @@ pub struct Dimension {
 impl Fractal {
     fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
         self.model
-            .compile_normalised(steps, self.seed, self.most_elements)
+            .compile_normalised(steps, self.seed, self.max_elements)
     }
 
     /// Compiles a graph that has what colours distinguish.
@@ -289,15 +296,22 @@ impl Fractal {
             return Ok(graph);
         }
         let steps = self.steps_grown()?;
-        let graph = self.model.compile_for(steps, self.seed, self.most_elements);
+        let graph = self.model.compile_for(steps, self.seed, self.max_elements);
         let graph = graph.map_err(|error| self.invalid(&error))?;
         Ok(self.graph.get_or_init(|| graph))
+    }
+
+    fn check_cancelled(&self) -> Result<(), Error> {
+        if is_cancelled(self.cancel.as_deref()) {
+            return Err(WalkError::Cancelled.into());
+        }
+        Ok(())
     }
 
     fn growth(&self, steps: u32) -> Growth<'_> {
         Growth {
             seed: self.seed,
-            most_elements: self.most_elements,
+            max_elements: self.max_elements,
             cancel: self.cancel.as_deref(),
             ..Growth::steps(steps)
         }
@@ -335,6 +349,7 @@ impl Fractal {
         options: &Options,
         mut draw: impl FnMut(&Graph, &Growth<'_>, &Options) -> Result<T, RenderError>,
     ) -> Result<T, Error> {
+        self.check_cancelled()?;
         let goal = self.goal()?;
         let compile = |steps| self.compile(steps);
         let graph = self.compile_for(goal.steps(), options.style.color_by)?;

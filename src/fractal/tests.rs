@@ -74,7 +74,7 @@ fn results_are_those_of_the_rooms() -> Result<(), Error> {
 
 #[test]
 fn limits_and_flags_end_growing_with_an_error() {
-    let koch = named("koch").steps(12).most_elements(1000);
+    let koch = named("koch").steps(12).max_elements(1000);
     let error = koch.svg().expect_err("it has more elements");
     assert!(matches!(
         error,
@@ -106,7 +106,7 @@ fn a_file_appears_whole_or_not_at_all() {
     koch.write(&path).expect("it is written");
     let before = std::fs::read(&path).expect("it is there");
     assert_eq!(before, koch.svg().expect("it is drawn").into_bytes());
-    koch.most_elements(10)
+    koch.max_elements(10)
         .write(&path)
         .expect_err("it has more elements");
     assert_eq!(std::fs::read(&path).expect("it is there"), before);

@@ -230,7 +230,7 @@ impl From<DAffine2> for Frame2 {
 }
 
 /// Least stretch that is computed from sums of squares, of which none that matters underflows.
-const LEAST_BY_SQUARES: f64 = 1e-140;
+const MIN_BY_SQUARES: f64 = 1e-140;
 
 /// Returns the larger singular value of a linear map: the largest factor by which it lengthens a vector.
 #[inline]
@@ -244,7 +244,7 @@ pub(crate) fn stretch(matrix: &DMat2) -> f64 {
     } else {
         (kept.sqrt() + reversed.sqrt()) / 2.0
     };
-    if (LEAST_BY_SQUARES..f64::INFINITY).contains(&stretch) {
+    if (MIN_BY_SQUARES..f64::INFINITY).contains(&stretch) {
         stretch
     } else {
         scaled_stretch(matrix)

@@ -20,13 +20,13 @@ impl<P: Point> Homothety<P> {
     };
 
     /// The largest absolute value of an exponent: ratios and their inverses are normal doubles.
-    pub const MOST_EXPONENT: i32 = 1021;
+    pub const MAX_EXPONENT: i32 = 1021;
 
-    /// Creates the map x → 2ⁿ x + c; exponents are clamped to ± [`MOST_EXPONENT`](Self::MOST_EXPONENT).
+    /// Creates the map x → 2ⁿ x + c; exponents are clamped to ± [`MAX_EXPONENT`](Self::MAX_EXPONENT).
     #[must_use]
     pub fn new(exponent: i32, shift: P) -> Self {
         Self {
-            exponent: exponent.clamp(-Self::MOST_EXPONENT, Self::MOST_EXPONENT),
+            exponent: exponent.clamp(-Self::MAX_EXPONENT, Self::MAX_EXPONENT),
             shift,
         }
     }

@@ -8,7 +8,7 @@ use super::linear::eigen;
 use super::{Bounds, Frame, Frame3, Outline, convex_hull};
 
 /// Largest number of points of which a convex hull is computed; more are enclosed by a box.
-const MOST_POINTS: usize = 100;
+const MAX_POINTS: usize = 100;
 
 /// Tolerance of comparisons, relative to the size of a solid.
 const ROUNDING: f64 = 1e-10;
@@ -75,7 +75,7 @@ impl Solid {
             return Self::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ZERO));
         }
         let size = bounds.size().max_element();
-        if points.len() > MOST_POINTS || size <= 0.0 {
+        if points.len() > MAX_POINTS || size <= 0.0 {
             return Self::cuboid(&bounds);
         }
         let middle = bounds.min() + bounds.size() / 2.0;

@@ -16,23 +16,23 @@ pub struct TooLarge {
 }
 
 /// Limit of digits beyond which the number of elements of a refused approximant is not computed.
-const MOST_DIGITS: usize = 5_000;
+const MAX_DIGITS: usize = 5_000;
 
 /// Limit of additions beyond which a forecast is abandoned.
-const MOST_WORK: usize = 2_000_000;
+const MAX_WORK: usize = 2_000_000;
 
 impl<F: Frame> Graph<F> {
     /// Returns the number of elements of approximant `steps`, provided that no approximant up to it
-    /// exceeds `most_elements`; `None` if the graph has no forecast, or none within a reasonable time.
+    /// exceeds `max_elements`; `None` if the graph has no forecast, or none within a reasonable time.
     ///
     /// # Errors
     ///
     /// If the limit is exceeded: the number of elements, and the deepest step within the limit.
-    pub fn check_size(&self, steps: u32, most_elements: u64) -> Result<Option<u64>, TooLarge> {
+    pub fn check_size(&self, steps: u32, max_elements: u64) -> Result<Option<u64>, TooLarge> {
         let Some(mut forecast) = self.forecast() else {
             return Ok(None);
         };
-        let most = Count::from(most_elements);
+        let most = Count::from(max_elements);
         let mut deepest = None;
         let mut refused = false;
         for step in 0..=steps {
@@ -45,7 +45,7 @@ impl<F: Frame> Graph<F> {
                     elements: Some(elements),
                     deepest,
                 });
-            } else if elements.digits() > MOST_DIGITS || forecast.work > MOST_WORK {
+            } else if elements.digits() > MAX_DIGITS || forecast.work > MAX_WORK {
                 return Err(TooLarge {
                     elements: None,
                     deepest,
@@ -54,7 +54,7 @@ impl<F: Frame> Graph<F> {
             if step == steps {
                 return Ok(elements.to_u64());
             }
-            if !refused && forecast.work > MOST_WORK || !forecast.advance() {
+            if !refused && forecast.work > MAX_WORK || !forecast.advance() {
                 break;
             }
         }

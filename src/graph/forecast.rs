@@ -33,7 +33,7 @@ pub struct Level {
     pub area: Option<f64>,
 }
 
-/// Sizes of successive approximants, from approximant 0 on.
+/// Sizes of successive approximants, from that of the current step on: approximant 0 at first.
 pub struct Forecast<'g, F: Frame = Frame2> {
     graph: &'g Graph<F>,
     /// Whether every successor is a list of fixed maps.

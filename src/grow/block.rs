@@ -9,7 +9,7 @@ mod made;
 #[cfg(test)]
 mod tests;
 
-pub(super) use made::{Blocks, MOST_LEAVES};
+pub(super) use made::{Blocks, MAX_LEAVES};
 
 use std::ops::{Range, RangeInclusive};
 

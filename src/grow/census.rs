@@ -12,7 +12,7 @@ use crate::graph::{Chain, Graph, Instance, Replacement};
 use super::Subtree;
 
 /// Maximum number of kinds, over all steps; beyond it no census is made.
-const MOST_KINDS: usize = 1 << 18;
+const MAX_KINDS: usize = 1 << 18;
 
 /// Number of low bits of a length that are rounded away.
 const ROUNDED: u32 = 12;
@@ -88,7 +88,7 @@ impl Census {
                 break;
             }
             kinds += standing.len();
-            if kinds > MOST_KINDS {
+            if kinds > MAX_KINDS {
                 return None;
             }
             let mut next = Standing::new();

@@ -14,7 +14,7 @@ use super::walk::walk_over;
 use super::{Visitor, WalkError, Walked};
 
 /// Maximum number of kinds of fertile elements, over all steps.
-const MOST_KINDS: usize = 1 << 14;
+const MAX_KINDS: usize = 1 << 14;
 
 /// Relative tolerance within which lengths are equal, and tolerance of the entries of maps.
 const NEAR: f64 = 1e-10;
@@ -220,7 +220,7 @@ impl ColonyKinds {
         let mut visited = 0;
         for step in 0..steps {
             visited += standing.len();
-            if visited > MOST_KINDS {
+            if visited > MAX_KINDS {
                 return Self::default();
             }
             let mut next = Fertile::new();

@@ -175,7 +175,7 @@ mod tests {
             }
             let growth = Growth {
                 seed: 7,
-                most_elements: 3_000,
+                max_elements: 3_000,
                 ..Growth::steps(3)
             };
             let graph = model.compile_for(3, 7, 50_000_000).expect("it is compiled");

@@ -61,7 +61,7 @@ use crate::instancing::Appearance;
 pub struct Element<F: Frame = Frame2> {
     /// Frame, in the graph's coordinates.
     pub frame: F,
-    /// Length as a multiple of that of the initiator's element from which it descends.
+    /// Length as a multiple of that of the initiator's element from which it descends; that of the frame is absolute.
     pub length: f64,
     /// Appearance composed of its own and those of its ancestors.
     pub appearance: Appearance,

@@ -5,15 +5,15 @@ use crate::graph::{Alternative, Graph, Object, Replacement};
 use crate::saturating::whole;
 
 /// Largest number of steps for which sizes are computed.
-const MOST_STEPS: usize = 64;
+const MAX_STEPS: usize = 64;
 
 /// Maximum number of objects of a graph; for larger graphs no sizes are computed.
-const MOST_OBJECTS: usize = 1 << 14;
+const MAX_OBJECTS: usize = 1 << 14;
 
 /// Number of classes of lengths for a factor of 2.
 const LENGTHS_AN_OCTAVE: f64 = 32.0;
 /// Maximum number of classes of lengths.
-const MOST_LENGTHS: usize = 640;
+const MAX_LENGTHS: usize = 640;
 
 /// Tolerance in units of a class: a length this close to the edge of a class lies on it.
 const ROUNDING: f64 = 1e-6;
@@ -73,12 +73,12 @@ impl Sizes {
                 ..Self::of_steps(counts.map(Iterator::collect).collect())
             };
         }
-        if objects.len() > MOST_OBJECTS {
+        if objects.len() > MAX_OBJECTS {
             return Self::of_steps(Vec::new());
         }
         let mut counts = vec![vec![1]; objects.len()];
         let mut now = vec![1; objects.len()];
-        for steps in 1..=MOST_STEPS {
+        for steps in 1..=MAX_STEPS {
             let count = |object: &Object<F>| count(object, u64::MAX, &now);
             let next: Vec<_> = objects.iter().map(count).collect();
             let mut grows = false;
@@ -108,7 +108,7 @@ impl Sizes {
     /// Adds the sizes of expansions of at most `most` elements in which elements shorter than `shortest` are
     /// not replaced.
     pub(super) fn down_to<F: Frame>(self, graph: &Graph<F>, shortest: f64, most: u64) -> Self {
-        if shortest <= 0.0 || graph.objects().len() > MOST_OBJECTS {
+        if shortest <= 0.0 || graph.objects().len() > MAX_OBJECTS {
             return self;
         }
         // Children with the number of classes by which they are shorter. Infertile children count as one
@@ -132,7 +132,7 @@ impl Sizes {
             })
             .collect();
         let mut by_length = vec![vec![1]; children.len()];
-        for class in 1..=MOST_LENGTHS {
+        for class in 1..=MAX_LENGTHS {
             let mut is_any = false;
             // Children of their parent's length belong to the class itself, so it is repeated until stable.
             while lengthen(&mut by_length, &children, class, most) {

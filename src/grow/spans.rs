@@ -14,7 +14,7 @@ use crate::geometry::Frame;
 use crate::graph::Graph;
 use crate::parallel::{Line, Team, with_team};
 
-use super::block::{Blocks, MOST_LEAVES};
+use super::block::{Blocks, MAX_LEAVES};
 use super::census::Census;
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
@@ -133,7 +133,7 @@ where
     let (takes_runs, cuts) = (asked.takes_runs(), asked.cuts());
     // Spans at least as long as blocks keep the blocks of a walk that is not divided.
     let size = if takes_runs {
-        size.max(MOST_LEAVES.min(asked.longest_run()))
+        size.max(MAX_LEAVES.min(asked.longest_run()))
     } else {
         size
     };

@@ -40,9 +40,9 @@ impl<'v> Tally<'v> {
     #[inline]
     pub(super) fn count<E>(&mut self, elements: u64) -> Result<(), WalkError<E>> {
         self.walked.elements += elements;
-        if self.walked.elements > self.growth.most_elements {
+        if self.walked.elements > self.growth.max_elements {
             return Err(WalkError::TooManyElements {
-                limit: self.growth.most_elements,
+                limit: self.growth.max_elements,
             });
         }
         Ok(())
@@ -61,7 +61,7 @@ impl<'v> Tally<'v> {
     fn look<E>(&mut self) -> Result<(), WalkError<E>> {
         self.next_look = self.visited + PATIENCE;
         self.tell_progress();
-        let most = FEW_VISITS.max(self.growth.most_elements.saturating_mul(VISITS_AN_ELEMENT));
+        let most = FEW_VISITS.max(self.growth.max_elements.saturating_mul(VISITS_AN_ELEMENT));
         if self.visited > most {
             return Err(WalkError::TooLong { limit: most });
         }

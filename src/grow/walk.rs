@@ -25,7 +25,7 @@ pub struct Growth<'a> {
     /// Seed of random draws, which depend on the path as well.
     pub seed: u64,
     /// The walk ends with an error once it has more elements than this.
-    pub most_elements: u64,
+    pub max_elements: u64,
     /// The walk ends soon after this is set.
     pub cancel: Option<&'a AtomicBool>,
     /// Counter of the walk's progress.
@@ -34,7 +34,7 @@ pub struct Growth<'a> {
 
 setters!(Growth<'a> {
     seed: u64,
-    most_elements: u64,
+    max_elements: u64,
     cancel: Option<&'a AtomicBool>,
     progress: Option<&'a Progress>,
 });
@@ -46,7 +46,7 @@ impl Growth<'_> {
         Self {
             steps,
             seed: 0,
-            most_elements: 50_000_000,
+            max_elements: 50_000_000,
             cancel: None,
             progress: None,
         }

@@ -4,7 +4,7 @@ use super::{AffineMap, Ifs};
 use crate::geometry::Linear;
 
 /// Default limit of the number of products that are formed.
-const MOST_PRODUCTS: usize = 100_000;
+const MAX_PRODUCTS: usize = 100_000;
 
 /// Tolerance of comparisons with 1, and of two factors that count as equal.
 const ROUNDING: f64 = 1e-12;
@@ -88,7 +88,7 @@ impl Contraction {
         linear: &[M::Linear],
         successors: Option<Vec<Vec<usize>>>,
     ) -> Self {
-        let mut contraction = Self::within::<M>(linear, successors.clone(), MOST_PRODUCTS);
+        let mut contraction = Self::within::<M>(linear, successors.clone(), MAX_PRODUCTS);
         if contraction.verdict == Verdict::Undecided {
             let mut images = Vec::new();
             match successors {

@@ -3,9 +3,9 @@
 use crate::geometry::{DMat2, DVec2, convex_hull, thinned};
 
 /// Limit of the number of corners that are mapped.
-const MOST_WORK: usize = 1 << 20;
+const MAX_WORK: usize = 1 << 20;
 /// Limit of the length of products.
-const MOST_LENGTH: u32 = 20_000;
+const MAX_LENGTH: u32 = 20_000;
 
 /// Distance from a side, as a share of the size, below which corners are left out.
 const FLAT: f64 = 1e-9;
@@ -33,7 +33,7 @@ impl Shrinking {
         let square = square.into_iter().flat_map(|corner| [corner, -corner]);
         let mut polygons = vec![convex_hull(square.collect(), 0.0); images.len()];
         let (mut sum, mut most, mut lost, mut work) = (1.0, 1.0f64, 0.0, 0);
-        for length in 1..=MOST_LENGTH {
+        for length in 1..=MAX_LENGTH {
             let (mut longest, mut dropped) = (0.0f64, 0.0f64);
             let next = images.iter().map(|images| {
                 let points = images.iter().flat_map(|(linear, inner)| {
@@ -52,7 +52,7 @@ impl Shrinking {
             // The corners left out may have been stretched by as much as any product.
             let stretch = longest + most * lost;
             lost += dropped;
-            if !stretch.is_finite() || work > MOST_WORK {
+            if !stretch.is_finite() || work > MAX_WORK {
                 return None;
             }
             if stretch <= 0.5 {

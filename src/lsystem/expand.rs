@@ -21,21 +21,21 @@ impl LSystem {
         &self,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
         mut read: impl FnMut(usize, &[f64]),
     ) -> Result<(), RewriteError> {
         if !self.is_context_free() {
-            let word = self.word(steps, seed, most_elements)?;
+            let word = self.word(steps, seed, max_elements)?;
             for (symbol, arguments) in word.modules(self) {
                 read(symbol, arguments);
             }
             return Ok(());
         }
-        if let Some(error) = self.too_long(steps, MAX_MODULES, most_elements) {
+        if let Some(error) = self.too_long(steps, MAX_MODULES, max_elements) {
             return Err(error);
         }
         let axiom = Word::axiom(self, seed);
-        let mut expander = Expander::new(self, most_elements);
+        let mut expander = Expander::new(self, max_elements);
         expander.expand(&axiom, steps, read).or_else(|error| {
             // The first step whose word cannot be read.
             expander.rewriter.work = 0;
@@ -48,7 +48,7 @@ impl LSystem {
 struct Expander<'s> {
     system: &'s LSystem,
     rewriter: Rewriter<'s>,
-    most_elements: u64,
+    max_elements: u64,
     /// The modules being replaced, from the axiom's down to the one that the next module descends from.
     ancestors: Vec<Ancestor>,
     /// Arguments that the ancestors' productions see, one after the other.
@@ -68,11 +68,11 @@ struct Ancestor {
 }
 
 impl<'s> Expander<'s> {
-    fn new(system: &'s LSystem, most_elements: u64) -> Self {
+    fn new(system: &'s LSystem, max_elements: u64) -> Self {
         Self {
             system,
             rewriter: Rewriter::new(system),
-            most_elements,
+            max_elements,
             ancestors: Vec::new(),
             slots: Vec::new(),
             modules: 0,
@@ -131,7 +131,7 @@ impl<'s> Expander<'s> {
         let modules = (self.modules, MAX_MODULES, "modules");
         check_length(
             step,
-            &[modules, (self.elements, self.most_elements, "elements")],
+            &[modules, (self.elements, self.max_elements, "elements")],
         )?;
         if self.rewriter.work > MAX_WORK {
             return Err(RewriteError::TooMuchWork { step });

@@ -72,27 +72,27 @@ impl LSystem {
     /// # Errors
     ///
     /// Returns an error if a word has more than 25 million modules or arguments or draws more than
-    /// `most_elements` lines and polygons, if rewriting takes too much work, or if an argument is not finite.
+    /// `max_elements` lines and polygons, if rewriting takes too much work, or if an argument is not finite.
     /// Where lengths of words can be predicted, too long a word is reported before any rewriting.
-    pub fn word(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Word, RewriteError> {
-        if let Some(error) = self.too_long(steps, MAX_MODULES, most_elements) {
+    pub fn word(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Word, RewriteError> {
+        if let Some(error) = self.too_long(steps, MAX_MODULES, max_elements) {
             return Err(error);
         }
-        self.rewritten(steps, seed, most_elements, MAX_WORK)
+        self.rewritten(steps, seed, max_elements, MAX_WORK)
     }
 
     fn rewritten(
         &self,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
         most_work: u64,
     ) -> Result<Word, RewriteError> {
         let mut word = Word::axiom(self, seed);
         let mut rewriter = Rewriter::new(self);
         for step in 1..=steps {
             let mut next = Word::default();
-            rewriter.step(&word, &mut next, step, most_elements, most_work)?;
+            rewriter.step(&word, &mut next, step, max_elements, most_work)?;
             // Without draws, a word that a step leaves unchanged never changes again.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
@@ -109,8 +109,8 @@ impl LSystem {
     /// draws, returns the first step that draws where that can be predicted without rewriting, and otherwise
     /// the deepest step whose word is within the limits.
     #[must_use]
-    pub fn deepest(&self, steps: u32, most_elements: u64) -> u32 {
-        let word = |steps| self.word(steps, 0, most_elements);
+    pub fn deepest(&self, steps: u32, max_elements: u64) -> u32 {
+        let word = |steps| self.word(steps, 0, max_elements);
         let (mut deepest, mut last) = (steps, word(steps));
         if let Err(
             RewriteError::TooLong { step, .. }
@@ -145,7 +145,7 @@ impl LSystem {
         &self,
         steps: u32,
         most_modules: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Option<RewriteError> {
         let mut lengths = self.lengths()?;
         let successors = self.productions.iter().map(|p| p.successor.len());
@@ -154,7 +154,7 @@ impl LSystem {
         for step in 0..=steps.min(soon) {
             let (modules, elements) = lengths.count();
             let modules = (modules, most_modules, "modules");
-            let too_long = check_length(step, &[modules, (elements, most_elements, "elements")]);
+            let too_long = check_length(step, &[modules, (elements, max_elements, "elements")]);
             if too_long.is_err() || !lengths.advance() {
                 return too_long.err();
             }
@@ -288,7 +288,7 @@ impl<'s> Rewriter<'s> {
         word: &Word,
         next: &mut Word,
         step: u32,
-        most_elements: u64,
+        max_elements: u64,
         most_work: u64,
     ) -> Result<(), RewriteError> {
         let system = self.system;
@@ -323,7 +323,7 @@ impl<'s> Rewriter<'s> {
             elements += draws.sum::<u64>();
             let modules = (next.symbols.len() as u64, MAX_MODULES, "modules");
             let arguments = (next.arguments.len() as u64, MAX_MODULES, "arguments");
-            let elements = (elements, most_elements, "elements");
+            let elements = (elements, max_elements, "elements");
             check_length(step, &[modules, arguments, elements])?;
         }
         self.work += surroundings.map_or(0, |around| around.looks());

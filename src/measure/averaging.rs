@@ -20,7 +20,7 @@ use super::statistics::weighted_mean;
 const EXPONENTS: [f64; 2] = [0.1, 1.6];
 const EXPONENT_STEPS: i32 = 24;
 const MAX_PART: [f64; 2] = [0.1, 50.0];
-const LEAST_PART: [f64; 2] = [0.1, 0.8];
+const MIN_PART: [f64; 2] = [0.1, 0.8];
 const PARTS_ABOVE: i32 = 32;
 const PARTS_BELOW: i32 = 8;
 
@@ -35,10 +35,10 @@ const POWER_COSTS: f64 = 4.0;
 const LOGARITHM_COSTS: f64 = 1.5;
 
 /// Lower bound of the error of a growth.
-const LEAST_ERROR: f64 = 0.001;
+const MIN_ERROR: f64 = 0.001;
 
 /// Minimum number of sizes in every range.
-const LEAST_SIZES: usize = 4;
+const MIN_SIZES: usize = 4;
 
 /// Growth of counts from a size to the next smaller one.
 struct Growth {
@@ -69,12 +69,12 @@ struct Fit {
 /// Estimates the slope of readings, from the largest size to the smallest, as a mean over models whose slopes
 /// are at most `most`. Returns `None` if there are fewer than five readings.
 pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
-    if readings.len() < LEAST_SIZES + 1 {
+    if readings.len() < MIN_SIZES + 1 {
         return None;
     }
     let growths: Vec<Growth> = readings.windows(2).map(Growth::between).collect();
     let corrections = corrections(readings);
-    let last = growths.len() + 1 - LEAST_SIZES;
+    let last = growths.len() + 1 - MIN_SIZES;
     let starts = (0..=last).flat_map(|from| {
         let fit = |correction: &Correction| Fit::of(&growths, correction, from, most);
         corrections.iter().map(fit).collect::<Vec<_>>()
@@ -117,7 +117,7 @@ impl Growth {
         Self {
             step: libm::log(coarse.size / fine.size),
             log: fine.growth,
-            weight: 1.0 / (error * error + LEAST_ERROR * LEAST_ERROR),
+            weight: 1.0 / (error * error + MIN_ERROR * MIN_ERROR),
         }
     }
 }
@@ -149,7 +149,7 @@ impl Fit {
 /// powers.
 fn corrections(readings: &[Reading]) -> Vec<Correction> {
     let parts =
-        spread(MAX_PART, PARTS_ABOVE).chain(spread(LEAST_PART, PARTS_BELOW).map(|part| -part));
+        spread(MAX_PART, PARTS_ABOVE).chain(spread(MIN_PART, PARTS_BELOW).map(|part| -part));
     let parts: Vec<f64> = parts.collect();
     let models = real(parts.len()) * f64::from(EXPONENT_STEPS);
     let correction = |log: &dyn Fn(f64) -> f64, prior: f64| {

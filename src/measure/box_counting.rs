@@ -19,10 +19,10 @@ use super::trend::Trend;
 pub(super) const PLANE: f64 = 2.0;
 
 /// Minimum number of boxes of a size that is used: fewer depend only on the position of the grid.
-const LEAST_BOXES: u64 = 9;
+const MIN_BOXES: u64 = 9;
 
 /// Minimum standard error where boxes fit a picture, which its pixels do not improve.
-const LEAST_ERROR: f64 = 0.001;
+const MIN_ERROR: f64 = 0.001;
 
 /// Box-counting dimension of a set, and its evidence.
 #[derive(Clone, Debug, Default)]
@@ -110,7 +110,7 @@ impl BoxCounting {
         let window = Window {
             finest: 0.0,
             coarsest: extent / 2.0,
-            least_boxes: LEAST_BOXES,
+            least_boxes: MIN_BOXES,
         };
         let base = base.unwrap_or_else(|| whole_power(set.period()));
         let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
@@ -151,7 +151,7 @@ impl BoxCounting {
         let estimate = match regular(&scales) {
             Some((value, away)) => Some(Estimate {
                 value,
-                std_error: away.max(LEAST_ERROR),
+                std_error: away.max(MIN_ERROR),
                 range: [1.0, scales[1].size],
                 sizes: scales.len() - 1,
                 ..Estimate::default()

@@ -38,7 +38,7 @@ const APART: f64 = 0.03;
 /// Lower bound of the added power, as a share of the main one at the coarsest size.
 const MAX_TAKEN: f64 = -0.9;
 /// Minimum share of the main power in the count at the finest size.
-const LEAST_SHARE: f64 = 0.7;
+const MIN_SHARE: f64 = 0.7;
 
 /// Finest boxes in pixels, and the coarsest of every range as a fraction of the long side.
 const FINEST: f64 = 3.0;
@@ -53,7 +53,7 @@ const LEFT_OUT: f64 = 0.03;
 const COUNTED: f64 = 0.3;
 
 /// Minimum number of sizes of a range.
-const LEAST_SIZES: usize = 5;
+const MIN_SIZES: usize = 5;
 
 /// Correlation length of the residuals in ln s.
 const TOGETHER: f64 = 1.0;
@@ -62,7 +62,7 @@ const TOGETHER: f64 = 1.0;
 const ROUGH: [f64; 2] = [3.0, 9.0];
 
 /// Minimum standard error: that of the steps.
-const LEAST_ERROR: f64 = 0.003;
+const MIN_ERROR: f64 = 0.003;
 
 /// Thickness from which a set is filled, and not made of lines of a pen.
 const FILLED: f64 = 4.5;
@@ -185,7 +185,7 @@ pub(super) fn extrapolated(means: &[Mean], longest: f64, thickness: f64) -> Opti
     let sizes = whole(mean(&sizes).round());
     Some(Estimate {
         value: value + 0.0,
-        std_error: libm::hypot(spread.sqrt(), LEAST_ERROR),
+        std_error: libm::hypot(spread.sqrt(), MIN_ERROR),
         range: [means[0].size, means[sizes - 1].size],
         r_squared: 1.0,
         intercept: 0.0,
@@ -210,10 +210,10 @@ impl Range {
     /// `None` if there is no model.
     fn of(sizes: usize, evidence: &[Evidence], whole: f64) -> Option<Self> {
         /// Logarithm of the likelihood, relative to the best, below which models are ignored.
-        const LEAST_LOG: f64 = -40.0;
+        const MIN_LOG: f64 = -40.0;
         let best = evidence.iter().map(|it| it.1).max_by(f64::total_cmp)?;
         let mut weights = vec![0.0; usize::from(STEPS) + 1];
-        for &(step, log) in evidence.iter().filter(|it| it.1 > best + LEAST_LOG) {
+        for &(step, log) in evidence.iter().filter(|it| it.1 > best + MIN_LOG) {
             weights[usize::from(step)] += libm::exp(log - best);
         }
         weights[usize::from(STEPS)] *= 1.0 + whole / STEP;
@@ -332,7 +332,7 @@ impl<'a> Models<'a> {
     /// Appends every model to those of its range.
     fn weigh(&self, evidence: &mut [Vec<Evidence>; RANGES]) {
         let ranges: Vec<usize> = (0..RANGES)
-            .filter(|&it| self.ends[it] >= LEAST_SIZES)
+            .filter(|&it| self.ends[it] >= MIN_SIZES)
             .collect();
         let sizes = self.ends.map(real);
         let volumes = self.ends.map(|end| self.whitened.volume(end));
@@ -371,7 +371,7 @@ impl<'a> Models<'a> {
                     let (share, rest) = (part * fine, more * other.fine);
                     let is_sound = part > 0.0
                         && more * other.coarse[range] > MAX_TAKEN * part * coarse[range]
-                        && share >= LEAST_SHARE * (share + rest);
+                        && share >= MIN_SHARE * (share + rest);
                     if is_sound {
                         let left = all[range] - part * sum - more * other_sum;
                         evidence[range].push((step, log(range, left) - price));

@@ -88,7 +88,7 @@ pub(super) fn own_base(pixels: &Bits) -> Option<NonZero<usize>> {
 /// Returns the mean of the local slopes of counts, and the largest deviation from it, where all slopes are
 /// equal to the precision of pixels.
 pub(super) fn regular(scales: &[Scale]) -> Option<(f64, f64)> {
-    const LEAST_SLOPES: usize = 4;
+    const MIN_SLOPES: usize = 4;
     const TOLERANCE: f64 = 0.004;
     let slopes = scales.windows(2).map(|pair| {
         let [coarse, fine] = [&pair[0], &pair[1]];
@@ -99,5 +99,5 @@ pub(super) fn regular(scales: &[Scale]) -> Option<(f64, f64)> {
     let slope = mean(&slopes);
     let away = slopes.iter().map(|it| (it - slope).abs());
     let most = away.fold(0.0, f64::max);
-    (slopes.len() >= LEAST_SLOPES && most <= TOLERANCE).then_some((slope, most))
+    (slopes.len() >= MIN_SLOPES && most <= TOLERANCE).then_some((slope, most))
 }

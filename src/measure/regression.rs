@@ -68,14 +68,14 @@ impl Estimate {
 }
 
 /// Lower bound of the scatter: grids are few, and none of them is optimal.
-const LEAST_SCATTER: f64 = 0.01;
+const MIN_SCATTER: f64 = 0.01;
 
 /// Lower bound of the factor by which the variance is reduced where a line fits better than the scatter
 /// implies.
-const LEAST_FACTOR: f64 = 0.05;
+const MIN_FACTOR: f64 = 0.05;
 
 /// Minimum number of sizes for a correction to scaling.
-const LEAST_SIZES: usize = 5;
+const MIN_SIZES: usize = 5;
 
 /// Number of standard errors above 0 beyond which a coefficient is significant.
 const SIGNIFICANT: f64 = 3.0;
@@ -146,7 +146,7 @@ impl Points {
     }
 
     fn of(readings: &[Reading]) -> Self {
-        let weight = |it: &Reading| 1.0 / (it.scatter * it.scatter + LEAST_SCATTER * LEAST_SCATTER);
+        let weight = |it: &Reading| 1.0 / (it.scatter * it.scatter + MIN_SCATTER * MIN_SCATTER);
         Self {
             x: readings.iter().map(|it| -libm::log(it.size)).collect(),
             y: readings.iter().map(|it| it.log).collect(),
@@ -156,7 +156,7 @@ impl Points {
 
     /// Returns the best of all lines with a correction, if its coefficient is significant.
     fn corrected(&self) -> Option<Fit> {
-        if self.x.len() < LEAST_SIZES {
+        if self.x.len() < MIN_SIZES {
             return None;
         }
         let exponents = (4..=30).map(|number| 0.05 * f64::from(number));
@@ -189,7 +189,7 @@ impl Points {
         // The exponent is fitted as well.
         let fitted = 2 + 2 * usize::from(bend.is_some());
         let freedom = real(self.x.len().saturating_sub(fitted).max(1));
-        let factor = (residual / freedom).max(LEAST_FACTOR);
+        let factor = (residual / freedom).max(MIN_FACTOR);
         let significance = bend.as_ref().map_or(0.0, |bend| {
             let rest = self.rest(bend, &[&ones, &x]);
             let norm = self.dot(&rest, &rest);

@@ -123,7 +123,7 @@ impl Generalised {
             let Some(estimate) = &spectrum[number].estimate else {
                 continue;
             };
-            let error = estimate.std_error.max(LEAST_ERROR);
+            let error = estimate.std_error.max(MIN_ERROR);
             let mut pool = Pool {
                 value: estimate.value,
                 weight: 1.0 / (error * error),
@@ -173,7 +173,7 @@ struct Pool {
 }
 
 /// Minimum error where dimensions are averaged.
-const LEAST_ERROR: f64 = 1e-9;
+const MIN_ERROR: f64 = 1e-9;
 
 impl Pool {
     fn with(mut self, next: Self) -> Self {

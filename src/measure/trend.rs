@@ -12,13 +12,13 @@ pub struct Trend {
 }
 
 /// Minimum number of local slopes for a trend.
-const LEAST_SLOPES: usize = 4;
+const MIN_SLOPES: usize = 4;
 
 /// Number of standard errors from 0 beyond which a trend is significant.
 const SIGNIFICANT: f64 = 4.0;
 
 /// Lower bound of the standard error of a growth between sizes, in nats.
-const LEAST_ERROR: f64 = 0.001;
+const MIN_ERROR: f64 = 0.001;
 
 impl Trend {
     /// Fits a trend to readings, from the largest size to the smallest. Returns `None` if there are too few.
@@ -26,11 +26,11 @@ impl Trend {
         let slope = |pair: &[Reading]| {
             let [coarse, fine] = [pair[0], pair[1]];
             let step = libm::log(coarse.size / fine.size);
-            let error = fine.growth_error.max(LEAST_ERROR) / step;
+            let error = fine.growth_error.max(MIN_ERROR) / step;
             let middle = -libm::log(coarse.size * fine.size) / 2.0;
             (middle, fine.growth / step, 1.0 / (error * error))
         };
-        if readings.len() <= LEAST_SLOPES {
+        if readings.len() <= MIN_SLOPES {
             return None;
         }
         let fit = Points::new(readings.windows(2).map(slope)).fit(None);

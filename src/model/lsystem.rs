@@ -14,8 +14,8 @@ impl OfKind for Arc<LSystem> {
         &self.heading
     }
 
-    fn compile(&self, steps: u32, seed: u64, most_elements: u64) -> Result<Graph, CompileError> {
-        Graph::of_lsystem(self, steps, seed, most_elements)
+    fn compile(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Graph, CompileError> {
+        Graph::of_lsystem(self, steps, seed, max_elements)
     }
 
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {
@@ -34,7 +34,7 @@ impl OfKind for Arc<LSystem> {
         !Graph::rewrites_edges(self)
     }
 
-    fn deepest(&self, most_steps: u32, most_elements: u64) -> Option<u32> {
-        Some(LSystem::deepest(self, most_steps, most_elements))
+    fn deepest(&self, most_steps: u32, max_elements: u64) -> Option<u32> {
+        Some(LSystem::deepest(self, most_steps, max_elements))
     }
 }

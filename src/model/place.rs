@@ -97,7 +97,7 @@ impl Model {
     /// from the origin reaches 1e12 times its extent.
     pub fn place(&self) -> Result<Homothety, OutOfRange> {
         let exactly = |place: &Homothety| {
-            let graph = (self.compile_within(place, 0, 0, Self::MOST_ELEMENTS)).ok()?;
+            let graph = (self.compile_within(place, 0, 0, Self::MAX_ELEMENTS)).ok()?;
             Some(graph.limit_bounds()?.size().max_element())
         };
         let extent = self.as_kind().extent();
@@ -133,9 +133,9 @@ impl Model {
         &self,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Result<Graph, CompileError> {
-        let graph = self.compile_within(&self.place()?, steps, seed, most_elements)?;
+        let graph = self.compile_within(&self.place()?, steps, seed, max_elements)?;
         let graph = self.as_kind().normalised(graph, steps);
         graph.ok_or_else(|| OutOfRange::Growth { step: steps }.into())
     }
@@ -151,14 +151,14 @@ impl Model {
         place: &Homothety,
         steps: u32,
         seed: u64,
-        most_elements: u64,
+        max_elements: u64,
     ) -> Result<Graph, CompileError> {
         if let Some(moved) = self.moved(place) {
-            let mut graph = moved.compile_for(steps, seed, most_elements)?;
+            let mut graph = moved.compile_for(steps, seed, max_elements)?;
             graph.place = *place;
             return Ok(graph);
         }
-        let graph = self.compile_for(steps, seed, most_elements)?;
+        let graph = self.compile_for(steps, seed, max_elements)?;
         Ok(match self.as_kind().has_plane_maps() {
             true => graph,
             false => graph.started_within(place),

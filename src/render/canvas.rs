@@ -38,7 +38,7 @@ impl fmt::Display for Size {
 }
 
 /// Largest distance from the picture, in pixels, at which positions are drawn.
-const MOST_PIXELS: f64 = 1e9;
+const MAX_PIXELS: f64 = 1e9;
 
 /// Largest distance from the origin to the part shown, in pixels: a double resolves about 10⁻⁴ of a pixel
 /// there, which leaves room for the rounding errors of many levels.
@@ -76,7 +76,7 @@ pub enum NoRoom {
     Nothing,
     /// The window is so small that the rest of the set lies too far away.
     #[error(
-        "the window is too small: what is drawn would be more than {MOST_PIXELS} pixels wide as a whole"
+        "the window is too small: what is drawn would be more than {MAX_PIXELS} pixels wide as a whole"
     )]
     TooClose,
     /// The window is so small that rounding is visible.
@@ -201,7 +201,7 @@ impl Canvas {
         let corners = [bounds.min(), bounds.max()].map(|corner| self.pixel(corner));
         corners
             .iter()
-            .all(|corner| corner.abs().max_element() <= MOST_PIXELS)
+            .all(|corner| corner.abs().max_element() <= MAX_PIXELS)
     }
 
     /// Returns the width and height in pixels.

@@ -54,8 +54,8 @@ impl Prepass<'_> {
                 }
             }
         }
-        if prepass.elements > growth.most_elements {
-            let limit = growth.most_elements;
+        if prepass.elements > growth.max_elements {
+            let limit = growth.max_elements;
             return Err(WalkError::TooManyElements { limit });
         }
         let tells_ranks = self.style().color_by == ColorBy::Index;

@@ -7,7 +7,7 @@ use crate::grow::{Element, FractalInfo, Run};
 use crate::style::{ColorBy, ColorProperty, Colour, Style};
 
 /// Maximum number of classes into which values are quantised.
-const MOST_CLASSES: u64 = 64;
+const MAX_CLASSES: u64 = 64;
 
 /// Portion of a run's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl Classes {
     /// Returns the number of classes, at most 64.
     #[must_use]
     pub(crate) fn count(&self) -> u64 {
-        u64::try_from(self.largest).map_or(MOST_CLASSES, |largest| (largest + 1).min(MOST_CLASSES))
+        u64::try_from(self.largest).map_or(MAX_CLASSES, |largest| (largest + 1).min(MAX_CLASSES))
     }
 
     pub(super) fn all(&self) -> Range<u64> {
@@ -166,13 +166,13 @@ impl Classes {
     /// Returns the class of a value.
     #[inline]
     pub(super) fn of_value(&self, value: u128) -> u64 {
-        let most = u128::from(MOST_CLASSES);
+        let most = u128::from(MAX_CLASSES);
         let class = if self.largest < most {
             value
         } else {
             value.saturating_mul(most) / (self.largest + 1)
         };
-        u64::try_from(class).unwrap_or(MOST_CLASSES - 1)
+        u64::try_from(class).unwrap_or(MAX_CLASSES - 1)
     }
 
     /// Returns the colour of a class; `None` if the palette is not used.

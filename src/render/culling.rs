@@ -15,7 +15,7 @@ use super::paint::relative_overhang;
 mod tests;
 
 /// Maximum number of steps for which lengths are tabulated.
-const MOST_POWERS: usize = 1 << 10;
+const MAX_POWERS: usize = 1 << 10;
 
 /// Ratio above which lengths count as equal, since they differ by rounding only.
 pub(super) const NEARLY: f64 = 1.0 - 1e-9;
@@ -195,7 +195,7 @@ fn longest(graph: &Graph, shortest: f64) -> Arc<[f64]> {
         return Arc::new([]);
     }
     let powers = std::iter::successors(Some(SLACK), |power| Some(power * ratio));
-    powers.take(MOST_POWERS).collect()
+    powers.take(MAX_POWERS).collect()
 }
 
 /// Returns the treatment of elements outside the window; `None` if they are to be replaced nevertheless.

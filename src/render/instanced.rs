@@ -31,7 +31,7 @@ use super::svg::begin_document;
 use drawing::Drawing;
 
 /// Maximum number of symbols, all of which are held in memory.
-const MOST_SYMBOLS: usize = 1 << 18;
+const MAX_SYMBOLS: usize = 1 << 18;
 
 /// Largest distance, in pixels, of the bounding box from the picture: single precision resolves a sixteenth
 /// of a pixel there.

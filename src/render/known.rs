@@ -17,10 +17,10 @@ use super::prepass::Prepass;
 const SPECK: f64 = 1e-6;
 
 /// Maximum number of steps for which the ages of seeded fractals are computed.
-const MOST_AGES: u32 = 256;
+const MAX_AGES: u32 = 256;
 
 /// Maximum number of steps of a forecast; beyond it the set is measured by a walk.
-const MOST_STEPS: u32 = 10_000;
+const MAX_STEPS: u32 = 10_000;
 
 impl<'g> Prepass<'g> {
     /// Makes the prepass of an approximant: from the graph if it determines everything, otherwise by a walk.
@@ -118,7 +118,7 @@ struct Numbers {
 }
 
 fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
-    if graph.counts_index() || growth.steps > MOST_STEPS {
+    if graph.counts_index() || growth.steps > MAX_STEPS {
         return None;
     }
     let mut forecast = graph.forecast()?;
@@ -129,7 +129,7 @@ fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
     }
     let level = forecast.level();
     let elements = level.elements.to_u64()?;
-    (elements <= growth.most_elements).then_some(Numbers {
+    (elements <= growth.max_elements).then_some(Numbers {
         elements,
         fractals: level.fractals.to_u64()?,
     })
@@ -152,7 +152,7 @@ impl Standing {
     /// Computes the kinds, with the births of their fractals if `tells_ages`; `None` if they depend on draws,
     /// or if there may be many ages.
     fn at(graph: &Graph, steps: u32, tells_ages: bool) -> Option<Self> {
-        if tells_ages && (steps > MOST_AGES || !graph.roots.elements.is_empty()) {
+        if tells_ages && (steps > MAX_AGES || !graph.roots.elements.is_empty()) {
             return None;
         }
         let mut stand = BTreeSet::new();

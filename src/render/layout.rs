@@ -20,11 +20,11 @@ use super::short_cuts::ShortCut;
 const FIRST_LOOK: f64 = 1.0 / 8.0;
 
 /// Maximum number of further estimates, each finer by that fraction, while nothing is visible.
-const MOST_LOOKS: u32 = 4;
+const MAX_LOOKS: u32 = 4;
 
 /// Maximum number of iterations. The detail determines the bounding box, which determines the scale and
 /// thereby the length of the detail.
-const MOST_ROUNDS: u32 = 8;
+const MAX_ROUNDS: u32 = 8;
 
 /// Result of the prepass.
 pub(super) struct Layout<'a> {
@@ -244,7 +244,7 @@ impl<'a> Surveyor<'a> {
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();
         let mut shortest = longest * FIRST_LOOK;
         let mut prepass = self.look_down_to(shortest)?;
-        for _ in 0..MOST_LOOKS {
+        for _ in 0..MAX_LOOKS {
             self.check(&prepass)?;
             if !prepass.bounds.is_empty() {
                 break;
@@ -260,7 +260,7 @@ impl<'a> Surveyor<'a> {
             if next == shortest {
                 break;
             }
-            if round == MOST_ROUNDS {
+            if round == MAX_ROUNDS {
                 prepass = self.completed(prepass)?;
                 if next < shortest / 2.0 && prepass.steps < self.limit {
                     return Err(NoDetail::Vanishes.into());

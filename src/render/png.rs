@@ -53,13 +53,13 @@ use super::paint::{Paint, Position, Stroke};
 use super::surface::Surface;
 
 /// Maximum number of pixels of a picture: two gibibytes.
-const MOST_PIXELS: u64 = 1 << 29;
+const MAX_PIXELS: u64 = 1 << 29;
 
 /// Error that a picture would take too much memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a PNG of {0} x {1} pixels takes {gigabytes:.1} GB of memory, and {most:.1} GB is the most; an SVG of this size takes none",
-    size[0], size[1], gigabytes = bytes(.size), most = MOST_PIXELS as f64 * 4e-9
+    size[0], size[1], gigabytes = bytes(.size), most = MAX_PIXELS as f64 * 4e-9
 )]
 pub struct TooManyPixels {
     /// Width and height of the picture, in pixels.
@@ -70,7 +70,7 @@ impl TooManyPixels {
     /// Returns an error if a picture would take too much memory.
     pub(crate) fn check(size: [u32; 2]) -> Result<(), Self> {
         let [width, height] = size.map(u64::from);
-        if width * height > MOST_PIXELS {
+        if width * height > MAX_PIXELS {
             return Err(Self { size });
         }
         Ok(())

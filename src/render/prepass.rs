@@ -23,7 +23,7 @@ use super::short_cuts::ShortCuts;
 const SPAN: u64 = 1 << 12;
 
 /// Approximate maximum number of points of a span, on which the size of its sketch depends.
-const MOST_POINTS: usize = 1 << 16;
+const MAX_POINTS: usize = 1 << 16;
 
 /// Returns the approximate number of elements of a span, which is also the maximum for a run.
 pub(super) fn span(graph: &Graph) -> u64 {
@@ -32,7 +32,7 @@ pub(super) fn span(graph: &Graph) -> u64 {
         .iter()
         .map(|base_element| base_element.pieces().len());
     let points = pieces.max().unwrap_or(1).max(1);
-    SPAN.min((MOST_POINTS / points) as u64).max(1)
+    SPAN.min((MAX_POINTS / points) as u64).max(1)
 }
 
 /// Source of ranks for a walk over `steps` steps.

@@ -1,7 +1,7 @@
 //! Resolution of metadata, which files of all kinds have.
 
 use crate::document::{MetadataDocument, Setting, WrittenNumber};
-use crate::metadata::{MOST_STEPS, Metadata};
+use crate::metadata::{MAX_STEPS, Metadata};
 
 use super::{Resolver, numbers, whole_number};
 
@@ -32,13 +32,13 @@ impl<K> Resolver<K> {
 
     pub(super) fn steps(&mut self, number: &WrittenNumber) -> Option<u32> {
         let value = self.constant(number)?;
-        let whole = whole_number(value, MOST_STEPS);
+        let whole = whole_number(value, MAX_STEPS);
         if whole.is_none() {
             let message = format!(
                 "a number of steps is a whole number from 0 to 1,000,000{}",
                 numbers::but(number, value)
             );
-            if value > 0.0 && value <= f64::from(MOST_STEPS) {
+            if value > 0.0 && value <= f64::from(MAX_STEPS) {
                 let hint = format!("steps: {}", value.trunc());
                 self.error_with_hint(&number.place, message, hint);
             } else {

@@ -6,10 +6,10 @@ use crate::geometry::DVec2;
 use super::generator::{ElementContext, Generator, ListedElement, Move};
 
 /// Limit of the number of parts into which the ranges of all drawn variables together are divided.
-const MOST_PARTS: usize = 1024;
+const MAX_PARTS: usize = 1024;
 
 /// Limit of the number of parts of one variable's range.
-const MOST_PARTS_OF_ONE: usize = 32;
+const MAX_PARTS_OF_ONE: usize = 32;
 
 /// Bounds that hold for an element over all draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,7 +67,7 @@ impl Generator {
         let mut programs: Vec<&Program> = own.chain(moves.flat_map(Move::programs)).collect();
         let mut parts = vec![1; self.variables.len()];
         let mut free = 0;
-        let mut left = MOST_PARTS;
+        let mut left = MAX_PARTS;
         for (number, variable) in self.variables.iter().enumerate().rev() {
             let slot = ElementContext::NAMES.len() + number;
             let depends = |program: &&Program| program.dependence(slot) != Dependence::None;
@@ -83,7 +83,7 @@ impl Generator {
             }
         }
         let fits = |parts: &usize| parts.checked_pow(free).is_some_and(|all| all <= left);
-        let each = (2..=MOST_PARTS_OF_ONE).rev().find(fits).unwrap_or(1);
+        let each = (2..=MAX_PARTS_OF_ONE).rev().find(fits).unwrap_or(1);
         for parts in parts.iter_mut().filter(|parts| **parts == 0) {
             *parts = each;
         }

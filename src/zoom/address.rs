@@ -37,11 +37,11 @@ pub enum AddressError {
     )]
     Ends,
     /// The address has too many positions.
-    #[error("an address has {MOST_POSITIONS} positions at most")]
+    #[error("an address has {MAX_POSITIONS} positions at most")]
     TooLong,
 }
 
-const MOST_POSITIONS: usize = 1_000_000;
+const MAX_POSITIONS: usize = 1_000_000;
 
 impl FromStr for Address {
     type Err = AddressError;
@@ -65,7 +65,7 @@ impl FromStr for Address {
             _ => positions(first.strip_suffix('.').unwrap_or(first))?,
         };
         let repeated = positions(repeated)?;
-        if first.len() + repeated.len() > MOST_POSITIONS {
+        if first.len() + repeated.len() > MAX_POSITIONS {
             return Err(AddressError::TooLong);
         }
         Ok(Self::Path { first, repeated })

@@ -14,7 +14,7 @@ use super::fixed::{Fixed, Vector};
 use super::{Address, GRAIN, SPARE, ZoomError, ZoomOptions, ZoomWindow};
 
 /// Limit of the number of steps within which the elements of an address must shrink to a point.
-const MOST_STEPS: u32 = 1_000_000;
+const MAX_STEPS: u32 = 1_000_000;
 
 /// Returns the centre of a window, in multiples of 2^-`bits`.
 pub(super) fn centre(
@@ -62,7 +62,7 @@ pub(super) fn centre(
         if product.log2 < enough {
             break;
         }
-        if level == MOST_STEPS {
+        if level == MAX_STEPS {
             return Err(ZoomError::NoPoint { address: address() });
         }
         super::descent::check(growth, level)?;

@@ -18,7 +18,7 @@ use super::ZoomError;
 use super::fixed::{Fixed, Vector};
 
 /// Limit of the number of cached maps.
-const MOST_KNOWN: usize = 1 << 12;
+const MAX_KNOWN: usize = 1 << 12;
 
 /// Element that is replaced.
 #[derive(Clone, Copy)]
@@ -148,7 +148,7 @@ impl<'a> Constants<'a> {
             }
         };
         if is_fixed {
-            if self.known.len() > MOST_KNOWN {
+            if self.known.len() > MAX_KNOWN {
                 self.known.clear();
             }
             let keys = wanted.iter().map(|instance| key(instance));

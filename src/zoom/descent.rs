@@ -15,10 +15,10 @@ use super::{GRAIN, SPARE, Zoom, ZoomError, ZoomOptions, ZoomWindow, merge, roots
 const LARGEST: f64 = (1 << 20) as f64;
 
 /// Limit of the number of instances that are kept in a step.
-const MOST_INSTANCES: usize = 20_000;
+const MAX_INSTANCES: usize = 20_000;
 
 /// Limit of the work: products of 64-bit words.
-const MOST_WORK: u64 = 400_000_000_000;
+const MAX_WORK: u64 = 400_000_000_000;
 
 /// Relative error of doubles that is allowed for when they decide that an instance is outside.
 const DOUBT: f64 = 1e-9;
@@ -111,9 +111,9 @@ impl<'a, 'c> Descent<'a, 'c> {
                 merge::merge(&mut self.lines);
             }
             let count: usize = self.lines.iter().map(|line| line.items.len()).sum();
-            if count > MOST_INSTANCES {
+            if count > MAX_INSTANCES {
                 return Err(ZoomError::TooMany {
-                    limit: MOST_INSTANCES,
+                    limit: MAX_INSTANCES,
                 });
             }
         }
@@ -346,7 +346,7 @@ impl<'a, 'c> Descent<'a, 'c> {
     fn spend(&mut self, map: &Fixed, children: usize) -> Result<(), ZoomError> {
         let words = (map.bits() / 64 + 8) as u64;
         self.work += words * words * 12 * children as u64;
-        if self.work > MOST_WORK {
+        if self.work > MAX_WORK {
             return Err(ZoomError::TooLong);
         }
         Ok(())

@@ -24,17 +24,17 @@ pub enum FactorError {
     #[error("a zoom is a number above 0, such as 250, 1e1000 or 3^5000")]
     Unreadable,
     /// The factor is too large or too small.
-    #[error("the zoom goes to 1e{MOST_DIGITS} at most, and to 1e-{LEAST_DIGITS} at least")]
+    #[error("the zoom goes to 1e{MAX_DIGITS} at most, and to 1e-{MIN_DIGITS} at least")]
     Beyond,
 }
 
 const BITS: usize = 192;
 
 /// Largest decimal exponent; larger factors take too long.
-const MOST_DIGITS: u32 = 10_000;
+const MAX_DIGITS: u32 = 10_000;
 
 /// Largest negative decimal exponent; with smaller factors a picture shows a point.
-const LEAST_DIGITS: u32 = 6;
+const MIN_DIGITS: u32 = 6;
 
 impl FromStr for Factor {
     type Err = FactorError;
@@ -99,7 +99,7 @@ impl Factor {
 }
 
 fn check(digits: f64) -> Result<(), FactorError> {
-    if digits > f64::from(MOST_DIGITS) || digits < -f64::from(LEAST_DIGITS) {
+    if digits > f64::from(MAX_DIGITS) || digits < -f64::from(MIN_DIGITS) {
         return Err(FactorError::Beyond);
     }
     Ok(())

@@ -11,7 +11,7 @@ use kfrac::catalogue::Catalogue;
 /// is busy.
 const SOON: Duration = Duration::from_secs(120);
 /// Limit of the length of the messages about one file.
-const MOST_SAID: usize = 100_000;
+const MAX_SAID: usize = 100_000;
 
 pub(super) struct Outcome {
     pub(super) status: Option<i32>,
@@ -30,9 +30,9 @@ pub(super) fn kfrac(folder: &Path, arguments: &[&str]) -> Outcome {
         .output()
         .unwrap();
     assert!(start.elapsed() < SOON, "{arguments:?} takes long");
-    assert!(output.stdout.len() < MOST_SAID);
+    assert!(output.stdout.len() < MAX_SAID);
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.len() < MOST_SAID, "{arguments:?} says too much");
+    assert!(said.len() < MAX_SAID, "{arguments:?} says too much");
     assert!(!said.contains("panicked"), "{said}");
     Outcome {
         status: output.status.code(),

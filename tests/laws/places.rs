@@ -96,7 +96,7 @@ fn model(text: &str) -> Model {
 
 fn near(text: &str, steps: u32) -> Graph {
     let model = model(text);
-    let graph = model.compile_normalised(steps, 0, Model::MOST_ELEMENTS);
+    let graph = model.compile_normalised(steps, 0, Model::MAX_ELEMENTS);
     graph.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -238,7 +238,7 @@ fn what_grows_beyond_the_range_of_numbers_is_refused() {
     // Every step is 10^10 times as large as the preceding one, and rotated by an eighth of a turn.
     let shape = |steps| {
         let graph = model
-            .compile_normalised(steps, 0, Model::MOST_ELEMENTS)
+            .compile_normalised(steps, 0, Model::MAX_ELEMENTS)
             .unwrap();
         draw(&graph, steps, render::Format::Png).unwrap()
     };
@@ -247,7 +247,7 @@ fn what_grows_beyond_the_range_of_numbers_is_refused() {
     assert_eq!(shape(26), [16, 64]);
     // There is no graph, and so no file of any format.
     for steps in [31, 33, 40, 200] {
-        let error = model.compile_normalised(steps, 0, Model::MOST_ELEMENTS);
+        let error = model.compile_normalised(steps, 0, Model::MAX_ELEMENTS);
         let refused = CompileError::OutOfRange(OutOfRange::Growth { step: steps });
         assert_eq!(error.unwrap_err(), refused);
     }

@@ -85,7 +85,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
             of_points(arguments, &name, points)
         }
         Kind::Rule => {
-            let most = u64::try_from(Source::MOST_BYTES).unwrap_or(u64::MAX) + 1;
+            let most = u64::try_from(Source::MAX_BYTES).unwrap_or(u64::MAX) + 1;
             let bytes = read(&mut whole, most)?;
             let source = if is_standard {
                 Source::read("<stdin>", bytes)?

@@ -313,11 +313,11 @@ impl<'a> ChaosGame<'a> {
     ) -> Result<String, Failure> {
         let growth = &self.arguments.growth;
         let points = self.arguments.chaos.points.unwrap_or(100_000);
-        if points > growth.most_elements() {
+        if points > growth.max_elements() {
             let error = anyhow!(
                 "{} are more rows than --max-elements {} allows",
                 counted(&points.into(), "point"),
-                growth.most_elements()
+                growth.max_elements()
             );
             return Err(error.into());
         }

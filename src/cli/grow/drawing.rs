@@ -135,7 +135,7 @@ impl<'a> Drawing<'a> {
             |graph, steps| {
                 let growth = &self.arguments.growth;
                 let mut growth = growth.drawn_as(&options, steps, progress);
-                growth.most_elements = most.unwrap_or(growth.most_elements);
+                growth.max_elements = most.unwrap_or(growth.max_elements);
                 match &self.shown {
                     Shown::Zoom(target) => {
                         let model = &self.loaded.model;

@@ -8,7 +8,7 @@ use crate::lsystem::{Action, Compass, LSystem};
 
 use super::NotCompiled;
 use super::far::Far;
-use super::kinds::{Kinds, MOST_CLOSED, MOST_KINDS};
+use super::kinds::{Kinds, MAX_CLOSED, MAX_KINDS};
 use super::long::Ways;
 use super::reader::Reader;
 use super::state::{Look, Pose, State};
@@ -56,7 +56,7 @@ impl Drawn {
 }
 
 /// Limit of the number of effects.
-const MOST_EFFECTS: usize = 1 << 18;
+const MAX_EFFECTS: usize = 1 << 18;
 
 /// Effects of all kinds of modules, computed from the bottom up.
 #[derive(Debug)]
@@ -71,12 +71,12 @@ pub(super) struct Effects {
 impl Effects {
     /// Computes the effects for all numbers of steps up to `steps`, of all kinds that occur within them.
     pub(super) fn of_system(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        Self::of_kinds(system, Kinds::of(system, steps, MOST_KINDS)?, steps)
+        Self::of_kinds(system, Kinds::of(system, steps, MAX_KINDS)?, steps)
     }
 
     /// Computes the effects for all numbers of steps up to `steps`, of all kinds that ever occur.
     pub(super) fn closed(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        let mut kinds = Kinds::of(system, u32::MAX, MOST_CLOSED)?;
+        let mut kinds = Kinds::of(system, u32::MAX, MAX_CLOSED)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
         Self::of_kinds(system, kinds, steps)
     }
@@ -84,7 +84,7 @@ impl Effects {
     fn of_kinds(system: &LSystem, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
         let fertile = { &kinds.all }.iter().filter(|kind| kind.is_fertile());
         let levels = fertile.map(|kind| steps.saturating_sub(kind.born) as usize);
-        if levels.fold(0, usize::saturating_add) > MOST_EFFECTS {
+        if levels.fold(0, usize::saturating_add) > MAX_EFFECTS {
             return Err(NotCompiled);
         }
         let mut effects = Self {

@@ -8,13 +8,13 @@ use crate::lsystem::{Action, LSystem};
 use super::NotCompiled;
 
 /// Limit of the number of kinds.
-pub(super) const MOST_KINDS: usize = 1 << 14;
+pub(super) const MAX_KINDS: usize = 1 << 14;
 
 /// Limit of the number of kinds where all that ever occur are required.
-pub(super) const MOST_CLOSED: usize = 1 << 8;
+pub(super) const MAX_CLOSED: usize = 1 << 8;
 
 /// Limit of the total length of the words.
-const MOST_MODULES: usize = 1 << 18;
+const MAX_MODULES: usize = 1 << 18;
 
 /// Module with its arguments.
 #[derive(Debug)]
@@ -98,7 +98,7 @@ impl Finder<'_> {
                 born,
             });
         }
-        if made >= self.most || self.modules > MOST_MODULES {
+        if made >= self.most || self.modules > MAX_MODULES {
             return Err(NotCompiled);
         }
         Ok(number)

@@ -18,10 +18,10 @@ use crate::graph::{Alternative, Chain, Graph, Instance, Object, Replacement, Suc
 use crate::rule::Extent;
 
 /// Limit of the number of objects.
-const MOST_OBJECTS: usize = 1 << 17;
+const MAX_OBJECTS: usize = 1 << 17;
 
 /// Limit of the number of modules that are read to find positions.
-const MOST_WORK: u64 = 1 << 22;
+const MAX_WORK: u64 = 1 << 22;
 
 /// Largest reach for which coordinates are the turtle's; beyond it, they are scaled to a reach of about
 /// 1.
@@ -130,7 +130,7 @@ impl Leveller<'_> {
         let effect = reader.effect()?;
         // The positions of the initiator's instances must not depend on draws.
         let is_rough = reader.parts.iter().any(|part| part.pose.is_rough);
-        if is_rough || !effect.is_exact && effect.work > MOST_WORK {
+        if is_rough || !effect.is_exact && effect.work > MAX_WORK {
             return Err(NotCompiled);
         }
         let unit = match effect.drawn {
@@ -227,7 +227,7 @@ impl Leveller<'_> {
         if number == made {
             self.keys[shelf].push(key);
         }
-        if made > MOST_OBJECTS {
+        if made > MAX_OBJECTS {
             return Err(NotCompiled);
         }
         Ok(first + number)

@@ -18,7 +18,7 @@ use super::far::Far;
 use super::state::{Pose, State};
 
 /// Limit of the number of bits that a double may lose.
-const MOST_LOST: i32 = 20;
+const MAX_LOST: i32 = 20;
 
 /// Number of bits of a big integer that must be correct.
 const RIGHT: i32 = 64;
@@ -87,7 +87,7 @@ impl Ways {
     pub(super) fn too_few(&self) -> Option<usize> {
         let [double, long] = self.lost;
         let enough = match &self.precision {
-            None => double <= MOST_LOST,
+            None => double <= MAX_LOST,
             Some(precision) => {
                 i64::try_from(precision.bits()).is_ok_and(|bits| i64::from(long + RIGHT) <= bits)
             }

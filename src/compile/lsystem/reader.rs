@@ -62,7 +62,7 @@ struct Open {
 }
 
 /// Limit of the number of vertices of polygons.
-const MOST_VERTICES: usize = 1 << 16;
+const MAX_VERTICES: usize = 1 << 16;
 
 /// Limit of the depth to which words inside polygons are expanded.
 const DEEPEST: u32 = 1000;
@@ -221,7 +221,7 @@ impl<'e> Reader<'e> {
             open.vertices.push(self.state.pose.place);
             self.vertices += 1;
         }
-        if self.vertices > MOST_VERTICES {
+        if self.vertices > MAX_VERTICES {
             return Err(NotCompiled);
         }
         Ok(())

@@ -19,7 +19,7 @@ use super::reader::{Of, Part, Reader};
 use super::state::{Look, Pose, State};
 
 /// Limit of the number of steps within which the state of all kinds must recur.
-const MOST_STEPS: u32 = 32;
+const MAX_STEPS: u32 = 32;
 
 /// Relative difference that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
@@ -92,7 +92,7 @@ struct Key {
 type Objects = BTreeMap<Key, usize>;
 
 /// Limit of the number of objects.
-const MOST_OBJECTS: usize = 1 << 12;
+const MAX_OBJECTS: usize = 1 << 12;
 
 /// State of the turtle after each replaced kind at one number of steps, with the displacement relative to the
 /// longest.
@@ -133,7 +133,7 @@ impl Graph {
     /// depend on nothing else.
     pub(super) fn of_edges(system: &LSystem) -> Result<Self, NotCompiled> {
         let edges = Edges {
-            effects: Effects::closed(system, MOST_STEPS)?,
+            effects: Effects::closed(system, MAX_STEPS)?,
         };
         let kinds = &edges.effects.kinds.all;
         if { kinds }.iter().any(|kind| kind.alternatives.len() > 1) {
@@ -209,7 +209,7 @@ impl Edges {
         }
         let start = self.shape(&kinds.axiom, 0, None)?;
         let mut stages: Vec<Stage> = Vec::new();
-        for left in 0..MOST_STEPS {
+        for left in 0..MAX_STEPS {
             // The shapes of this stage must equal those of the first.
             for (kind, shape) in shapes.iter().enumerate() {
                 let Some(shape) = shape else { continue };
@@ -405,7 +405,7 @@ impl Edges {
             if !found.insert(key) {
                 continue;
             }
-            if found.len() > MOST_OBJECTS {
+            if found.len() > MAX_OBJECTS {
                 return Err(NotCompiled);
             }
             let kind = &kinds.all[key.kind];

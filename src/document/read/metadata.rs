@@ -7,7 +7,7 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::style::{STYLE, VIEW};
 use crate::metadata::Description;
-use crate::metadata::MOST_STEPS;
+use crate::metadata::MAX_STEPS;
 
 use super::parameters::read_params;
 
@@ -25,7 +25,7 @@ const FORMAT: u32 = 1;
 
 /// Keys for the defaults of growing and drawing, and for published properties.
 pub(super) const LIKING: [Member; 5] = keys![
-    steps: Form::Whole(0, Some(MOST_STEPS)),
+    steps: Form::Whole(0, Some(MAX_STEPS)),
         "The number of steps, unless another is asked for.";
     dimension: Form::Number, "The published similarity dimension. It does not change the picture.";
     hausdorff_dimension: Form::Number,

@@ -8,7 +8,7 @@ use crate::document::shape::{Form, Member, Shape, Way, keys, way};
 use crate::document::{KindDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::PARTS;
 use crate::kind::Kind;
-use crate::metadata::MOST_STEPS;
+use crate::metadata::MAX_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
@@ -55,7 +55,7 @@ pub(super) const FORMS: [Member; 7] = keys![
 
 /// Keys that accompany `fractal`.
 pub(super) const OF_FRACTAL: [Member; 4] = keys![
-    steps: Form::Whole(0, Some(MOST_STEPS)),
+    steps: Form::Whole(0, Some(MAX_STEPS)),
         "The number of steps of the fractal; what its file says if left out.";
     seed: Form::Whole(0, None), "What the random draws of the fractal depend on; 0 if left out.";
     set: Form::Names(&Form::Either(&[Form::Number, Form::Point]), 0),

@@ -24,9 +24,9 @@ const MARGIN: f64 = 20.0;
 /// Space on either side of the line between columns, in pixels.
 const GUTTER: f64 = 26.0;
 /// Least width of a page without its margins, in pixels.
-const LEAST_WIDTH: f64 = 480.0;
+const MIN_WIDTH: f64 = 480.0;
 /// Least width of a column, in pixels.
-const LEAST_COLUMN: f64 = 96.0;
+const MIN_COLUMN: f64 = 96.0;
 
 /// Limit of the number of characters in a text; longer ones are truncated.
 const MAX_CHARACTERS: usize = 600;
@@ -75,7 +75,7 @@ pub(super) fn lay_out(
     notes: &[String],
 ) -> Block {
     let columns = beside(columns, font);
-    let width = columns.size.x.max(LEAST_WIDTH);
+    let width = columns.size.x.max(MIN_WIDTH);
     let paragraph = |text: &str, size: f64| {
         let lines = font.wrap(&shortened(text), size, width);
         Block::text(font, lines, size, false)
@@ -133,7 +133,7 @@ fn beside(columns: Vec<(&str, Block)>, font: &Font) -> Block {
             row.size.x = x + GUTTER;
         }
         let heading = Block::text(font, vec![heading.into()], HEADING, true);
-        let width = block.size.x.max(heading.size.x).max(LEAST_COLUMN);
+        let width = block.size.x.max(heading.size.x).max(MIN_COLUMN);
         let left = row.size.x;
         let down = top + ((height - block.size.y) / 2.0).round();
         row.put(heading.centred_in(width), DVec2::new(left, 0.0));

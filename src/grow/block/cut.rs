@@ -7,7 +7,7 @@ use crate::graph::{Graph, Instance};
 use crate::priority::Keyed;
 
 /// Maximum number of objects of a graph; for larger graphs no ranges are computed.
-const MOST_OBJECTS: usize = 1 << 12;
+const MAX_OBJECTS: usize = 1 << 12;
 
 /// Factor that allows for rounding: ratios of lengths that differ by less are taken to be equal.
 const ROUNDING: f64 = 1.0 - 1e-12;
@@ -38,7 +38,7 @@ impl Cuts {
     /// Computes, for every object, the ranges whose expansions have at most `most` elements. Objects whose
     /// instances are not fixed have no ranges; the list is empty unless all maps are similarities.
     pub(super) fn of<F: Frame>(graph: &Graph<F>, most: u64) -> Vec<Self> {
-        let knows = graph.objects().len() <= MOST_OBJECTS
+        let knows = graph.objects().len() <= MAX_OBJECTS
             && !graph.is_time_indexed()
             && !graph.counts_index()
             && !graph.resets().contains(&true)

@@ -15,10 +15,10 @@ use crate::grow::start::Start;
 use crate::grow::{Enter, Subtree};
 
 /// Maximum number of elements of a block, so that it stays in the first-level cache.
-pub(in crate::grow) const MOST_LEAVES: u64 = 1024;
+pub(in crate::grow) const MAX_LEAVES: u64 = 1024;
 
 /// Maximum number of elements of all blocks of a graph.
-const MOST_MEMORY: u64 = 1 << 17;
+const MAX_MEMORY: u64 = 1 << 17;
 
 /// Number of the next block.
 static NEXT: AtomicU64 = AtomicU64::new(0);
@@ -58,11 +58,11 @@ impl<F: Frame> Blocks<F> {
         let mut most = if graph.counts_index() {
             0
         } else {
-            MOST_LEAVES.min(longest)
+            MAX_LEAVES.min(longest)
         };
         let mut all = known(most);
         // A block is computed for either direction.
-        while most > 0 && 2 * all.sum() > MOST_MEMORY {
+        while most > 0 && 2 * all.sum() > MAX_MEMORY {
             most /= 2;
             all = known(most);
         }

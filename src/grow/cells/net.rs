@@ -4,13 +4,13 @@ use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Object};
 
 /// Maximum length of the addresses of points.
-const MOST_LEVELS: usize = 1 << 20;
+const MAX_LEVELS: usize = 1 << 20;
 
 /// Stretch of a map below which the image of a set is a point.
 const NEGLIGIBLE: f64 = 1e-18;
 
 /// Maximum number of maps that are composed in one edge.
-const MOST_MAPS: usize = 16;
+const MAX_MAPS: usize = 16;
 
 /// Way in which a set is part of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +149,7 @@ impl Builder<'_> {
             }
             let (mut map, mut at) = (DAffine2::IDENTITY, behaviour);
             let mut turn: u32 = 0;
-            for _ in 0..MOST_LEVELS {
+            for _ in 0..MAX_LEVELS {
                 if stretch(&map.matrix2) <= NEGLIGIBLE {
                     break;
                 }
@@ -205,7 +205,7 @@ impl Net {
             for node in &mut self.nodes[..behaviours] {
                 let images = std::mem::take(&mut node.images);
                 for mut image in images {
-                    if image.whole == part && image.maps + edge.maps <= MOST_MAPS {
+                    if image.whole == part && image.maps + edge.maps <= MAX_MAPS {
                         image = Edge {
                             map: edge.map * image.map,
                             whole: edge.whole,

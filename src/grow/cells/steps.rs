@@ -45,7 +45,7 @@ const WORTH_A_THREAD: usize = 1 << 13;
 const TIMES: u64 = 4;
 
 /// Maximum number of sizes of cells, each of which is half of the one before.
-const MOST_SIZES: usize = 40;
+const MAX_SIZES: usize = 40;
 
 /// Point with the linear part of the maps that were applied to it.
 #[derive(Clone, Copy)]
@@ -273,7 +273,7 @@ impl Steps<'_> {
         let mut shown = Shown::new(layers.iter().copied(), self.search.threads.get());
         self.begin(|set| {
             let sizes = std::iter::successors(Some(scales[set]), |scale| Some(scale / 2.0));
-            sizes.take(MOST_SIZES).map(Field::new).collect()
+            sizes.take(MAX_SIZES).map(Field::new).collect()
         });
         let linear = DMat2::IDENTITY;
         for (number, node) in self.set.net.nodes[..first_layer].iter().enumerate() {
@@ -374,7 +374,7 @@ impl Steps<'_> {
 fn size_of(ratio: f64) -> usize {
     let mut size = 0;
     let mut longest = SHORT;
-    while ratio >= longest && size + 1 < MOST_SIZES {
+    while ratio >= longest && size + 1 < MAX_SIZES {
         (size, longest) = (size + 1, longest * 2.0);
     }
     size

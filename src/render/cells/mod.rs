@@ -35,16 +35,16 @@ const FINENESS: [u8; 4] = [1, 2, 4, 8];
 const WORTH: u64 = 12_000_000;
 
 /// Maximum factor by which the number of cells grows when their sides are halved.
-const MOST_TIMES: u64 = 4;
+const MAX_TIMES: u64 = 4;
 
 /// Maximum number of images of points.
-const MOST_IMAGES: u64 = 400_000_000;
+const MAX_IMAGES: u64 = 400_000_000;
 
 /// Maximum number of images of points if colours depend on steps.
-const MOST_IMAGES_BY_STEPS: u64 = 250_000_000;
+const MAX_IMAGES_BY_STEPS: u64 = 250_000_000;
 
 /// Maximum number of images of points if only a part of the set is shown, which may have few elements.
-const MOST_IMAGES_ABOUT_A_WINDOW: u64 = 60_000_000;
+const MAX_IMAGES_ABOUT_A_WINDOW: u64 = 60_000_000;
 
 /// Limit set on its canvas, as cells.
 pub(super) struct Cells<'a> {
@@ -91,9 +91,9 @@ impl Finder<'_> {
         Search {
             scale,
             most_images: match self.options.view.window {
-                Some(_) => MOST_IMAGES_ABOUT_A_WINDOW,
-                None if self.options.style.color_by == ColorBy::Step => MOST_IMAGES_BY_STEPS,
-                None => MOST_IMAGES,
+                Some(_) => MAX_IMAGES_ABOUT_A_WINDOW,
+                None if self.options.style.color_by == ColorBy::Step => MAX_IMAGES_BY_STEPS,
+                None => MAX_IMAGES,
             },
             threads: self.options.threads,
             cancel: self.cancel,
@@ -117,7 +117,7 @@ fn becomes_flat(graph: &Graph) -> bool {
 
 /// Returns the maximum number of elements of a limit set that is drawn by elements; pixels could not show
 /// more.
-fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
+fn max_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
     let is_closed = |object: &Object| graph.base_elements()[object.base_element].is_closed();
     let mut drawn = graph.objects().iter().filter(|object| object.visible);
     // Lines are drawn in long runs, so that more of them are affordable.
@@ -134,7 +134,7 @@ fn most_elements(graph: &Graph, options: &Options, pixels: f64) -> f64 {
 /// numbers by object and logarithm of the length.
 fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
     const AN_OCTAVE: f64 = 64.0;
-    const MOST_WORK: usize = 4_000_000;
+    const MAX_WORK: usize = 4_000_000;
     let steps = |length: f64| (libm::log2(length) * AN_OCTAVE).round();
     let end = steps(shortest);
     // An outline of many pieces takes as long as several simple ones.
@@ -167,7 +167,7 @@ fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
                 stand += add(&mut level, instance.object, at, count);
             }
         }
-        if work > MOST_WORK {
+        if work > MAX_WORK {
             break;
         }
     }
@@ -201,7 +201,7 @@ impl<'a> Way<'a> {
         let goes_by_cells = becomes_flat(graph)
             || shows_all && {
                 let scale = plan.canvas(graph, options)?.map(|canvas| canvas.scale());
-                let most = most_elements(graph, options, detail.pixels);
+                let most = max_elements(graph, options, detail.pixels);
                 scale.is_some_and(|scale| {
                     exceeds(graph, detail.pixels / (scale * graph.unit()), most)
                 })
@@ -292,8 +292,8 @@ impl<'a> Cells<'a> {
                 break;
             };
             let before = found.as_ref().map_or(0, |(_, found)| found.images);
-            let growth = next.images.checked_div(before).unwrap_or(MOST_TIMES) + 1;
-            expected = next.images * growth.min(MOST_TIMES);
+            let growth = next.images.checked_div(before).unwrap_or(MAX_TIMES) + 1;
+            expected = next.images * growth.min(MAX_TIMES);
             found = Some((fineness, next));
         }
         let Some((fineness, Found { fields, steps, .. })) = found else {
@@ -324,8 +324,8 @@ impl<'a> Cells<'a> {
             }
         }
         let count = layers.iter().map(|(_, marks)| marks.len() as u64).sum();
-        if count > growth.most_elements {
-            let limit = growth.most_elements;
+        if count > growth.max_elements {
+            let limit = growth.max_elements;
             return Err(RenderError::Walk(WalkError::TooManyElements { limit }));
         }
         Ok(Some(Self {

@@ -12,7 +12,7 @@ use crate::render::paint::Pen;
 use crate::style::{Cap, ColorBy, ColorProperty, Colour, Join, Width};
 
 /// Maximum number of instances that are examined in the search for layers of one class.
-const MOST_PARTS: usize = 1 << 12;
+const MAX_PARTS: usize = 1 << 12;
 
 /// Colours, layers and pen of a picture.
 pub(super) struct Plan {
@@ -136,7 +136,7 @@ fn layers(graph: &Graph, classes: &Classes) -> Option<Vec<(u64, Layer)>> {
     let mut looked_at = 0;
     while let Some((map, object)) = open.pop() {
         looked_at += 1;
-        if looked_at > MOST_PARTS {
+        if looked_at > MAX_PARTS {
             return None;
         }
         let mut of = (0..).zip(&leading).filter(|(_, leading)| leading[object]);

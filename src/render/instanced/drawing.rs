@@ -20,7 +20,7 @@ use crate::style::{ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
-use super::{MOST_SYMBOLS, NotInstanced, text};
+use super::{MAX_SYMBOLS, NotInstanced, text};
 
 /// Part of a class that is painted at once.
 #[derive(Clone, Copy, PartialEq)]
@@ -97,7 +97,7 @@ impl<'a> Drawing<'a> {
         let all = classes
             .iter()
             .flat_map(|(_, aspects)| aspects.iter().copied());
-        let symbols = self.symbols.collect(initiator, all, MOST_SYMBOLS);
+        let symbols = self.symbols.collect(initiator, all, MAX_SYMBOLS);
         let symbols = symbols.ok_or(NotInstanced::TooManySymbols)?;
         let mut ends = Ends::new(self.graph);
         let mut text = String::new();

@@ -46,7 +46,7 @@ pub enum NotInstanced {
     #[error("the window is too small: browsers count in single precision")]
     TooClose,
     /// The number of symbols exceeds the limit.
-    #[error("it takes more than {} symbols", super::MOST_SYMBOLS)]
+    #[error("it takes more than {} symbols", super::MAX_SYMBOLS)]
     TooManySymbols,
 }
 

@@ -32,7 +32,7 @@ impl Pens {
 }
 
 /// Number of colours above which only neighbours in the list are compared.
-const MOST_COMPARED: usize = 256;
+const MAX_COMPARED: usize = 256;
 
 /// Colours that share a pen.
 #[derive(Clone)]
@@ -77,7 +77,7 @@ pub(super) fn shared(colours: &[(Colour, u64)], pens: Pens) -> Vec<(Colour, Vec<
         })
         .collect();
     while groups.len() > most {
-        let reach = if groups.len() > MOST_COMPARED {
+        let reach = if groups.len() > MAX_COMPARED {
             1
         } else {
             groups.len()

@@ -29,7 +29,7 @@ const NEAR: f64 = 0.25;
 const SCALES_AN_OCTAVE: f64 = 64.0;
 
 /// Maximum number of batches that are kept, over all blocks and scales.
-const MOST_KEPT: usize = 1 << 17;
+const MAX_KEPT: usize = 1 << 17;
 
 /// Combines the lines of the runs of one walk into segment batches.
 pub(in crate::render) struct BatchBuilder {
@@ -96,7 +96,7 @@ impl BatchBuilder {
         let batched = known.unwrap_or_else(|| {
             let batched = Arc::new(self.at(sticks, own_scale));
             let mut kept = kept();
-            if kept.bundles + batched.bundles.len() < MOST_KEPT {
+            if kept.bundles + batched.bundles.len() < MAX_KEPT {
                 kept.bundles += batched.bundles.len() + 1;
                 kept.blocks.insert(key, Arc::clone(&batched));
             }

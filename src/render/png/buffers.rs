@@ -8,10 +8,10 @@ use crate::parallel::{for_each, pick};
 use super::coverage::{CoverageBuffer, Drain};
 
 /// Maximum total number of pixels of the buffers other than the first.
-const MOST_PIXELS: u64 = 1 << 24;
+const MAX_PIXELS: u64 = 1 << 24;
 
 /// Maximum for a picture that is drawn in bands, so that it stays within 300 MB.
-const MOST_PIXELS_OF_BANDS: u64 = 1 << 22;
+const MAX_PIXELS_OF_BANDS: u64 = 1 << 22;
 
 /// Coverage buffers of one part of a picture, so that several threads cover it at once. The buffers are
 /// united when the part is coloured, so that the division of paths between them has no effect.
@@ -30,9 +30,9 @@ impl CoverageBuffers {
         let pixels = u64::from(picture[0]) * u64::from(rows.end - rows.start).max(1);
         let is_band = rows != (0..picture[1]);
         let most = if is_band {
-            MOST_PIXELS_OF_BANDS
+            MAX_PIXELS_OF_BANDS
         } else {
-            MOST_PIXELS
+            MAX_PIXELS
         };
         let others = usize::try_from(most / pixels).unwrap_or(usize::MAX);
         let count = threads.min(others.saturating_add(1));

@@ -19,7 +19,7 @@ const GRAIN: f64 = 1.0 / FINE;
 const LEVELS: usize = 16;
 
 /// Maximum number of tolerances, each half of the one before, with which a closed curve is simplified.
-const MOST_TRIES: u32 = 8;
+const MAX_TRIES: u32 = 8;
 
 /// Simplified outlines of base elements, by tolerance.
 pub(in crate::render) struct LevelOfDetail {
@@ -85,7 +85,7 @@ fn straightened(base_element: &BaseElement, tolerance: f64) -> Vec<DVec2> {
             let fine = flat(base_element, tolerance / 4.0);
             let area = base_element.signed_area();
             let finer = |halvings| 1.25 * tolerance / f64::from(1 << halvings);
-            let mut thin = (0..MOST_TRIES).map(|halvings| thinned(&fine, finer(halvings)));
+            let mut thin = (0..MAX_TRIES).map(|halvings| thinned(&fine, finer(halvings)));
             let swollen = thin.find_map(|thin| swollen(thin, area, tolerance));
             // A few long curves may need fewer chords.
             let corners = flat(base_element, 2.0 * tolerance);

@@ -8,14 +8,14 @@ use tiny_skia::{Pixmap, PixmapPaint, Transform};
 use crate::render::paint::Paint;
 use crate::style::Colour;
 
-use super::MOST_PIXELS;
+use super::MAX_PIXELS;
 use super::buffers::CoverageBuffers;
 use super::coverage::{CoverageBuffer, WHOLE};
 use super::split::ROWS;
 
 /// Maximum number of pixels of pictures with coverage buffers; larger ones would take more memory with them
 /// than the largest picture does without.
-const MOST_COVERED: u64 = MOST_PIXELS * 4 / (4 + CoverageBuffer::BYTES);
+const MAX_COVERED: u64 = MAX_PIXELS * 4 / (4 + CoverageBuffer::BYTES);
 
 /// Part of a picture, or all of it.
 pub(super) struct Part {
@@ -89,7 +89,7 @@ impl Part {
     /// Returns whether the part is small enough for coverage buffers.
     pub(super) fn may_cover(&self) -> bool {
         let pixels = u64::from(self.pixmap.width()) * u64::from(self.pixmap.height());
-        pixels <= MOST_COVERED
+        pixels <= MAX_COVERED
     }
 
     /// Returns the coverage buffers that exist.

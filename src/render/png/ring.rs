@@ -7,7 +7,7 @@ use crate::render::paint::Position;
 
 use super::Png;
 use super::chunk::Command;
-use super::coverage::{MOST_CORNERS, has_room};
+use super::coverage::{MAX_CORNERS, has_room};
 
 /// Number of vertices of a region above which it is covered before the path ends.
 const MANY_VERTICES: usize = 1 << 20;
@@ -35,7 +35,7 @@ impl Png<'_, '_> {
     #[inline]
     pub(super) fn ring_to(&mut self, to: impl ExactSizeIterator<Item = Position>) {
         if !self.ring.is_empty() {
-            if to.len() <= MOST_CORNERS - self.ring.len() {
+            if to.len() <= MAX_CORNERS - self.ring.len() {
                 self.ring.extend(to);
                 return;
             }

@@ -40,9 +40,9 @@ use super::raster::PlacedSprite;
 const LINEAR: f64 = 4096.0;
 
 /// Minimum number of elements of a run that is drawn as a sprite; an element with many pieces counts as several.
-const FEWEST_IN_RUN: u64 = 4;
+const MIN_IN_RUN: u64 = 4;
 /// Minimum number of elements of a picture with sprites, counted likewise.
-const FEWEST_IN_PICTURE: u64 = 1 << 20;
+const MIN_IN_PICTURE: u64 = 1 << 20;
 
 /// Maximum size of a sprite, in pixels.
 const LARGEST: f64 = 32.0;
@@ -52,7 +52,7 @@ const LARGEST: f64 = 32.0;
 const BROADENED: f64 = 0.75;
 
 /// Maximum memory of all sprites, in bytes.
-const MOST_MEMORY: usize = 1 << 26;
+const MAX_MEMORY: usize = 1 << 26;
 
 /// Number of tables with separate locks.
 const TABLES: u64 = 64;
@@ -140,7 +140,7 @@ impl<'a> Sprites<'a> {
         let drawn = graph.objects().iter().filter(|object| object.visible);
         let pieces = drawn.map(|object| scene.base_element(object).pieces().len());
         let worth = (pieces.max().unwrap_or(0) as u64 / 4).max(1);
-        let is_large = scene.elements.saturating_mul(worth) >= FEWEST_IN_PICTURE;
+        let is_large = scene.elements.saturating_mul(worth) >= MIN_IN_PICTURE;
         if !is_large || graph.has_appearances() {
             return None;
         }
@@ -234,7 +234,7 @@ impl Sprites<'_> {
 
     /// Reserves memory. Returns whether any was left.
     fn take(&self, bytes: usize) -> bool {
-        self.bytes.fetch_add(bytes, Ordering::Relaxed) < MOST_MEMORY
+        self.bytes.fetch_add(bytes, Ordering::Relaxed) < MAX_MEMORY
     }
 
     /// Draws a sprite with a linear map at a position in a pixel, inside a disc relative to that position.

@@ -6,7 +6,7 @@ use crate::render::paint_key::SPECK_WIDTHS;
 use crate::rule::{BaseElement, Piece};
 
 /// Maximum number of points of an outline that is examined.
-const MOST_POINTS: usize = 32;
+const MAX_POINTS: usize = 32;
 
 /// Number of points up to which directions between any two are examined; beyond it, only those of sides are.
 const FEW_POINTS: usize = 8;
@@ -14,7 +14,7 @@ const FEW_POINTS: usize = 8;
 /// Returns the width of the stroke that makes an outline a pixel wide, in [`SPECK_WIDTHS`]; `None` if it is
 /// as wide already or has too many points. `map` leads to the picture, in pixels.
 pub(super) fn width(base_element: &BaseElement, map: &DAffine2) -> Option<i32> {
-    let mut points = [DVec2::ZERO; MOST_POINTS];
+    let mut points = [DVec2::ZERO; MAX_POINTS];
     let mut count = 0;
     let mut add = |point: DVec2| {
         let next = points.get_mut(count)?;

@@ -14,7 +14,7 @@ pub(super) const SIDE: usize = TILE * SAMPLES;
 /// Number of bits of a key below the depth.
 pub(super) const CLASS_BITS: u32 = 10;
 /// Largest class.
-pub(super) const MOST_CLASS: u16 = (1 << CLASS_BITS) - 1;
+pub(super) const MAX_CLASS: u16 = (1 << CLASS_BITS) - 1;
 /// Number of steps of depth between the near and the far end.
 pub(super) const STEPS: f64 = ((1u32 << 22) - 2) as f64;
 /// Key of a sample that shows nothing.

@@ -11,7 +11,7 @@ const SLOTS: usize = 1 << 14;
 const FINE: f64 = 1024.0;
 
 /// Limit of the number of products of maps that are compared.
-const MOST_PRODUCTS: usize = 1 << 16;
+const MAX_PRODUCTS: usize = 1 << 16;
 
 /// Scale at which products of maps are compared.
 const LARGE: f64 = 1e6;
@@ -92,7 +92,7 @@ pub(super) fn overlap(parts: &[Part]) -> bool {
             .children
             .iter()
             .map(|child| parts[child.object].children.len());
-        if inner.sum::<usize>() > MOST_PRODUCTS {
+        if inner.sum::<usize>() > MAX_PRODUCTS {
             return true;
         }
         let products = part.children.iter().flat_map(|outer| {

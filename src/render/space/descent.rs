@@ -2,7 +2,7 @@
 
 use crate::geometry::DAffine3;
 
-use super::buffer::{Buffer, MOST_CLASS};
+use super::buffer::{Buffer, MAX_CLASS};
 use super::copies::Copies;
 use super::scene::{Child, ClassBy, End, Part};
 use super::solid::{Pencil, View};
@@ -91,11 +91,11 @@ impl Descent {
             if !part.is_replaced || node.is_small || node.level == roots.end.steps {
                 if let Some(solid) = &part.solid {
                     let class = match roots.class_by {
-                        ClassBy::Step => u16::try_from(node.level).unwrap_or(MOST_CLASS),
+                        ClassBy::Step => u16::try_from(node.level).unwrap_or(MAX_CLASS),
                         ClassBy::FirstMap => class(part.origin),
                         _ => node.class,
                     };
-                    let class = class.min(MOST_CLASS);
+                    let class = class.min(MAX_CLASS);
                     self.pencil
                         .draw(buffer, view, solid, &node.map, node.rectangle, class);
                     self.drawn += 1;
@@ -169,5 +169,5 @@ impl Descent {
 
 /// Returns the class of a map.
 fn class(map: Option<usize>) -> u16 {
-    map.map_or(0, |map| u16::try_from(map).unwrap_or(MOST_CLASS))
+    map.map_or(0, |map| u16::try_from(map).unwrap_or(MAX_CLASS))
 }

@@ -173,7 +173,7 @@ fn draw(
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
 ) -> Result<(Pixmap, Picture), RenderError> {
-    const MOST_STEPS: u32 = 1_000_000;
+    const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
     let placement = place::place(
         graph,
@@ -193,7 +193,7 @@ fn draw(
     let detail = options.detail.as_ref().map_or(1.0, |detail| detail.pixels);
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let end = End {
-        steps: steps.unwrap_or(MOST_STEPS),
+        steps: steps.unwrap_or(MAX_STEPS),
         detail: detail * SAMPLES as f64,
     };
     let class_by = ClassBy::of(style.color_by);

@@ -10,7 +10,7 @@ use super::camera::{Camera, Placement, Projection};
 use super::scene::extent_along;
 
 /// Number of steps of the search for the extent of a perspective picture.
-const MOST_ROUNDS: usize = 60;
+const MAX_ROUNDS: usize = 60;
 
 /// Places a set: the limit set, and approximant `steps` if it is given.
 pub(super) fn place(
@@ -121,7 +121,7 @@ fn window(
         };
         let (mut low, mut high) = (-most, most);
         let (mut at_low, mut at_high) = (value(low)?, value(high)?);
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             if high - low <= 1e-12 * most {
                 break;
             }

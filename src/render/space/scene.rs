@@ -10,7 +10,7 @@ use crate::style::ColorBy;
 const SLACK: f64 = 1e-9;
 
 /// Limit of the number of elements that are visited for the box of an approximant.
-const MOST_WALKED: u64 = 1_000_000;
+const MAX_WALKED: u64 = 1_000_000;
 
 /// A convex set that contains the subtree of an object.
 #[derive(Clone, Copy, Debug)]
@@ -257,7 +257,7 @@ where
     match steps {
         Some(steps) => seen.bounds(steps).or_else(|| {
             let growth = Growth {
-                most_elements: MOST_WALKED,
+                max_elements: MAX_WALKED,
                 ..Growth::steps(steps)
             };
             bounding_box(&seen, &growth).ok()

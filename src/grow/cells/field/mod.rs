@@ -21,7 +21,7 @@ const NONE: u32 = u32::MAX;
 const FARTHEST: i64 = 1 << 40;
 
 /// Maximum number of tiles in a directory.
-const MOST_ROOM: i64 = 1 << 27;
+const MAX_ROOM: i64 = 1 << 27;
 
 /// Square cells, some of which hold a point.
 ///
@@ -213,7 +213,7 @@ impl Field {
             };
             (low[axis], room[axis]) = (from, to - from);
         }
-        if room[0].saturating_mul(room[1]) > MOST_ROOM {
+        if room[0].saturating_mul(room[1]) > MAX_ROOM {
             return Err(TooFar);
         }
         let mut larger = Self {

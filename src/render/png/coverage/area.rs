@@ -4,10 +4,10 @@ use super::polygon::bounds;
 use super::{CoverageBuffer, FINE, Position, SAMPLES, cover, index};
 
 /// Maximum number of vertices of an outline whose area is covered.
-pub(crate) const MOST_CORNERS: usize = 1 << 12;
+pub(crate) const MAX_CORNERS: usize = 1 << 12;
 
 /// Maximum number of pixels of its bounding box.
-const MOST_PIXELS: i64 = 1 << 14;
+const MAX_PIXELS: i64 = 1 << 14;
 
 /// Winding numbers of an outline about the samples of a pixel, modulo 256; during summation, their
 /// differences from those of the pixel to the left.
@@ -32,7 +32,7 @@ const BESIDE: [f64; SAMPLES as usize] = {
 pub(crate) fn has_room(vertices: &[Position]) -> bool {
     let [least, most] = bounds(vertices);
     let side = |axis: usize| (most[axis].saturating_sub(least[axis]) / FINE).saturating_add(2);
-    (1..=MOST_CORNERS).contains(&vertices.len()) && side(0).saturating_mul(side(1)) <= MOST_PIXELS
+    (1..=MAX_CORNERS).contains(&vertices.len()) && side(0).saturating_mul(side(1)) <= MAX_PIXELS
 }
 
 impl CoverageBuffer {

@@ -6,7 +6,7 @@ use super::Position;
 const TOLERANCE: f64 = 1.0;
 
 /// Maximum number of lines.
-const MOST_LINES: f64 = 1e4;
+const MAX_LINES: f64 = 1e4;
 
 /// Cubic Bézier curve.
 type Curve = [[f64; 2]; 4];
@@ -62,7 +62,7 @@ fn least_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
     // Wang's bound of the distance between a curve and its chords (1984).
     let bend = bend(from, a, b).max(bend(a, b, to)).sqrt();
     let lines = (0.75 * bend / tolerance).sqrt().ceil();
-    lines.clamp(1.0, MOST_LINES)
+    lines.clamp(1.0, MAX_LINES)
 }
 
 /// Iterates over the ends of `count` lines. Their distances from the line between the curve's ends are those

@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-use super::polygon::{HalfPlane, MOST_PIXELS, MOST_VERTICES, SOME_VERTICES};
+use super::polygon::{HalfPlane, MAX_PIXELS, MAX_VERTICES, SOME_VERTICES};
 use super::polygon::{bounds, orientation, rounded, sides};
 use super::{CoverageBuffer, FINE, Position, RoundPen};
 
@@ -42,7 +42,7 @@ impl CoverageBuffer {
     }
 
     fn narrow_shape(&mut self, vertices: &[Position], longest: i64) -> bool {
-        if longest <= MOST_PIXELS * FINE && self.is_full_around(bounds(vertices)) {
+        if longest <= MAX_PIXELS * FINE && self.is_full_around(bounds(vertices)) {
             return true;
         }
         if longest <= LONGEST_DOT {
@@ -58,8 +58,8 @@ impl CoverageBuffer {
             return true;
         }
         let mut hull = [[0; 2]; SOME_VERTICES];
-        let is_convex = vertices.len() <= MOST_VERTICES
-            && orientation(&sides::<MOST_VERTICES>(vertices)[..vertices.len()]).is_some();
+        let is_convex = vertices.len() <= MAX_VERTICES
+            && orientation(&sides::<MAX_VERTICES>(vertices)[..vertices.len()]).is_some();
         let convex = if is_convex {
             Some(vertices)
         } else {
@@ -89,7 +89,7 @@ impl CoverageBuffer {
             return self.polygon(vertices);
         }
         let ends = farthest(vertices);
-        if width >= LINE && longest <= MOST_PIXELS * FINE {
+        if width >= LINE && longest <= MAX_PIXELS * FINE {
             self.moved(vertices, missing / 2.0, ends);
             return true;
         }
@@ -109,13 +109,13 @@ impl CoverageBuffer {
         let Some([columns, rows]) = self.pixels(around([least, most])) else {
             return;
         };
-        let sides = sides::<MOST_VERTICES>(vertices);
+        let sides = sides::<MAX_VERTICES>(vertices);
         let sides = &sides[..vertices.len()];
         let Some(orientation) = orientation(sides) else {
             return;
         };
         let centre = [columns[0], rows[0]].map(|pixel| pixel * FINE + FINE / 2);
-        let mut edges = [HalfPlane::default(); MOST_VERTICES + 6];
+        let mut edges = [HalfPlane::default(); MAX_VERTICES + 6];
         let mut count = 0;
         let mut add = |point: Position, vector: [i64; 2]| {
             edges[count] = HalfPlane::of(point, vector, centre).moved(by);
@@ -150,7 +150,7 @@ fn around([least, most]: [Position; 2]) -> [Position; 2] {
 /// examined.
 #[inline]
 fn is_broad(vertices: &[Position], longest: i64) -> bool {
-    if longest > NARROWEST && vertices.len() > MOST_VERTICES {
+    if longest > NARROWEST && vertices.len() > MAX_VERTICES {
         return true;
     }
     let Some(&from) = vertices.first() else {

@@ -21,7 +21,7 @@ use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
-pub(crate) use area::{MOST_CORNERS, has_room};
+pub(crate) use area::{MAX_CORNERS, has_room};
 pub(crate) use curve::{bounding, bounding_within, flattened, flattened_within};
 pub(crate) use drain::Drain;
 use hair::Hairs;

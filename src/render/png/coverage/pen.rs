@@ -36,7 +36,7 @@ const PARTS: [i64; 128] = {
 /// recedes by at most 0.02 pixels, and a line covers 1 % less.
 const SPACING: f64 = 0.25;
 /// Maximum distance between successive prints, in pixels.
-const MOST_SPACING: f64 = 0.4;
+const MAX_SPACING: f64 = 0.4;
 
 /// Round pen. Its lines cover the area of a moving disc, as strokes with round joins and caps do. A line is
 /// drawn as a row of prints of the disc, each from a table.
@@ -66,7 +66,7 @@ impl RoundPen {
     #[expect(clippy::cast_possible_truncation, reason = "pens are small")]
     pub(crate) fn new(width: f64) -> Self {
         let radius = width / 2.0;
-        let spacing = (SPACING * width).min(MOST_SPACING) * FINE as f64;
+        let spacing = (SPACING * width).min(MAX_SPACING) * FINE as f64;
         let one = (STEPS << PLACES) as f64;
         Self {
             reach: (radius * one) as i64 - (1 << (PLACES - 1)),

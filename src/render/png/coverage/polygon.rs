@@ -8,7 +8,7 @@ use super::has_room;
 use super::{CoverageBuffer, FINE, MARGIN, Position, cover, index, mask};
 
 /// Maximum number of vertices of such a polygon.
-pub(super) const MOST_VERTICES: usize = 32;
+pub(super) const MAX_VERTICES: usize = 32;
 
 /// Number of vertices that most polygons do not exceed.
 const FEW_VERTICES: usize = 4;
@@ -16,7 +16,7 @@ const FEW_VERTICES: usize = 4;
 pub(super) const SOME_VERTICES: usize = 12;
 
 /// Maximum width and height of such a polygon, in pixels.
-pub(super) const MOST_PIXELS: i64 = 8;
+pub(super) const MAX_PIXELS: i64 = 8;
 
 /// Width, in hundredths of a pixel, up to which every sample of a polygon is decided by itself. Half planes
 /// are off by some hundredths of a pixel, which adds up where many meet. Longer triangles and quadrilaterals
@@ -146,7 +146,7 @@ pub(super) fn bounds(vertices: &[Position]) -> [Position; 2] {
 /// Returns whether a bounding box is that of a small polygon.
 #[inline]
 fn is_small([least, most]: &[Position; 2]) -> bool {
-    (0..2).all(|axis| most[axis].saturating_sub(least[axis]) <= MOST_PIXELS * FINE)
+    (0..2).all(|axis| most[axis].saturating_sub(least[axis]) <= MAX_PIXELS * FINE)
 }
 
 /// Returns the sides of a polygon, first the side to its first vertex.
@@ -181,7 +181,7 @@ impl CoverageBuffer {
         } else if count <= SOME_VERTICES {
             self.polygon_of::<SOME_VERTICES>(vertices)
         } else {
-            self.polygon_of::<MOST_VERTICES>(vertices)
+            self.polygon_of::<MAX_VERTICES>(vertices)
         }
     }
 
@@ -251,7 +251,7 @@ impl CoverageBuffer {
     #[inline]
     fn right_angled(&mut self, [least, most]: [Position; 2], columns: [i64; 2], rows: [i64; 2]) {
         const MOST: usize = 10;
-        const { assert!(MOST_PIXELS < MOST as i64 && DISTANCES == 64.0) };
+        const { assert!(MAX_PIXELS < MOST as i64 && DISTANCES == 64.0) };
         let (below, left) = HALF_PLANES
             .as_slice()
             .split_at((DIRECTIONS + 1) * 2 * FARTHEST);

@@ -12,7 +12,7 @@ use crate::render::png::coverage::SpriteSheet;
 use crate::render::png::raster::PlacedSprite;
 use crate::render::scene::Scene;
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Reach, Sprites, outline, whole};
+use super::{Key, LARGEST, LINEAR, MIN_IN_RUN, Of, Reach, Sprites, outline, whole};
 
 /// Steps per pixel, along each axis, of the grid on which colonies are put; half as many with strokes.
 const PLACES: f64 = 64.0;
@@ -24,7 +24,7 @@ const USES_OF_WHOLE: u64 = 5;
 const SEEDED_A_USE: u64 = 12;
 
 /// Maximum number of elements of a sprite of a whole colony.
-const MOST_ELEMENTS: u64 = 1 << 10;
+const MAX_ELEMENTS: u64 = 1 << 10;
 
 /// Colonies that are drawn as sprites in a pass.
 pub(super) struct Colonies<'a> {
@@ -148,14 +148,12 @@ impl Means {
         let shows = if own { Shows::Own } else { Shows::Nothing };
         let [elements, seeded] = census.map(|part| part.elements);
         let least = scene.uses * USES_OF_WHOLE.max(seeded / SEEDED_A_USE);
-        let is_worth = uses >= least && elements + seeded >= FEWEST_IN_RUN;
+        let is_worth = uses >= least && elements + seeded >= MIN_IN_RUN;
         match whole {
             Some(_) if !own && !later => means(Taken::Unseen, shows),
-            Some(walked) if !later && elements >= FEWEST_IN_RUN => {
-                means(Taken::Whole(walked), shows)
-            }
+            Some(walked) if !later && elements >= MIN_IN_RUN => means(Taken::Whole(walked), shows),
             Some(walked) if is_worth => means(Taken::Whole(walked), Shows::Any),
-            _ if elements >= FEWEST_IN_RUN => means(Taken::Own { elements }, shows),
+            _ if elements >= MIN_IN_RUN => means(Taken::Own { elements }, shows),
             _ => Self::NOTHING,
         }
     }
@@ -292,7 +290,7 @@ fn count_members(
         *elements += 1;
         *births = [births[0].min(element.born), births[1].max(element.born)];
         let all: u64 = census.iter().map(|part| part.elements).sum();
-        if all > MOST_ELEMENTS {
+        if all > MAX_ELEMENTS {
             return Err(TooMany);
         }
         Ok(())

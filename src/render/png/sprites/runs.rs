@@ -8,7 +8,7 @@ use crate::render::png::coverage::{SpritePaint, SpriteSheet};
 use crate::render::png::raster::PlacedSprite;
 use crate::render::scene::Scene;
 
-use super::{FEWEST_IN_RUN, Key, LARGEST, LINEAR, Of, Sprites, outline, whole};
+use super::{Key, LARGEST, LINEAR, MIN_IN_RUN, Of, Sprites, outline, whole};
 
 /// Numbers of steps per pixel, along either axis, and maximum numbers of elements of a run: the first of
 /// these for which there are enough runs is used. For strokes there are half as many steps, in the last two
@@ -28,7 +28,7 @@ const UNEVEN_GRIDS: &[(f64, u64)] = &[(128.0, 64), (128.0, 16), (64.0, 16)];
 const FEW_ELEMENTS: u64 = 8;
 
 /// Maximum number of orientations.
-const MOST_SIDES: usize = 1 << 8;
+const MAX_SIDES: usize = 1 << 8;
 
 /// Runs that are drawn as sprites.
 pub(super) struct Runs {
@@ -80,7 +80,7 @@ impl Sprites<'_> {
         let map = scene.canvas.map(run.map());
         let radius = self.reach.radii[run.object()];
         let reach = self.reach.pixels(scene, radius, run.frame().stretch());
-        if run.count() * worth < FEWEST_IN_RUN || 2.0 * reach > LARGEST {
+        if run.count() * worth < MIN_IN_RUN || 2.0 * reach > LARGEST {
             return None;
         }
         let key = Key {
@@ -136,7 +136,7 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
             } else if known.insert(key) {
                 sides.push((instance.object, linear, direction));
             }
-            if sides.len().max(runs.len()) > MOST_SIDES {
+            if sides.len().max(runs.len()) > MAX_SIDES {
                 return None;
             }
         }

@@ -58,7 +58,7 @@ fn shows_no_threads(
     let model = document.resolve(&[]).unwrap().0;
     let graph = model.compile(steps).unwrap();
     let growth = Growth {
-        most_elements: 100_000,
+        max_elements: 100_000,
         ..Growth::steps(steps)
     };
     let mut drawing = Options {
