@@ -79,7 +79,9 @@
 //! ```
 //!
 //! Graphs, walks, forecasts, bounds and draws are generic over the [`Frame`](geometry::Frame) of an element; the
-//! frame of the plane, with lines and curves as outlines, is the default. All models of today are of the plane.
+//! frame of the plane, with lines and curves as outlines, is the default. Iterated function systems lie in the
+//! plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into depth buffers;
+//! models of other kinds lie in the plane.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
 //! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s and [`Metadata`]. No room imports one

@@ -18,5 +18,7 @@ kfrac grow sea-fan --seed 3 --size 360 -o sea-fan.png
 kfrac grow fern --size 480 -o fern.png
 kfrac grow cut-sheets --seed 7 --size 480 -o cut-sheets.svg
 kfrac grow archipelago --size 480 -o archipelago.png
+kfrac grow menger --from 35,25 --perspective 35 --size 420 -o menger.png
+kfrac grow icosahedron-flake --shade both --size 420 -o icosahedron-flake.png
 kfrac sheet pythagoras --steps 0..7 --size 150 --columns 4 -o pythagoras-sheet.svg
 kfrac show monkeys-tree -o monkeys-tree-rule.svg
