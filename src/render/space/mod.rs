@@ -30,7 +30,7 @@ use crate::geometry::Frame3;
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::parallel::with_team;
-use crate::style::Colour;
+use crate::style::{ColorBy, Colour, Named};
 
 use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
 use self::camera::Placement;
@@ -52,6 +52,12 @@ pub enum SpaceError {
     /// There is no room for the picture, or nothing to draw.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
+    /// Colours in space do not distinguish this property.
+    #[error(
+        "colours by {} are for the plane: in space they are by first-map, last-map or step, or none",
+        .0.name()
+    )]
+    ColorBy(ColorBy),
     /// The graph does not determine the extent of the set.
     #[error("the extent of the set is not known: no bound is found by which its maps contract")]
     NoBounds,
@@ -196,7 +202,7 @@ fn draw(
         steps: steps.unwrap_or(MAX_STEPS),
         detail: detail * SAMPLES as f64,
     };
-    let class_by = ClassBy::of(style.color_by);
+    let class_by = ClassBy::of(style.color_by)?;
     let classes = match class_by {
         ClassBy::Nothing => 1,
         ClassBy::FirstMap | ClassBy::LastMap => graph.origins(),

@@ -6,6 +6,8 @@ use crate::graph::{Chain, Graph, Instance, Replacement};
 use crate::grow::Growth;
 use crate::style::ColorBy;
 
+use super::SpaceError;
+
 /// Tolerance of boxes that contain images of boxes.
 const SLACK: f64 = 1e-9;
 
@@ -91,12 +93,13 @@ pub(super) enum ClassBy {
 }
 
 impl ClassBy {
-    pub(super) fn of(by: ColorBy) -> Self {
+    pub(super) fn of(by: ColorBy) -> Result<Self, SpaceError> {
         match by {
-            ColorBy::FirstMap | ColorBy::Generator => Self::FirstMap,
-            ColorBy::LastMap => Self::LastMap,
-            ColorBy::Step => Self::Step,
-            _ => Self::Nothing,
+            ColorBy::None => Ok(Self::Nothing),
+            ColorBy::FirstMap | ColorBy::Generator => Ok(Self::FirstMap),
+            ColorBy::LastMap => Ok(Self::LastMap),
+            ColorBy::Step => Ok(Self::Step),
+            other => Err(SpaceError::ColorBy(other)),
         }
     }
 }

@@ -240,7 +240,7 @@ fn a_perspective_picture_is_fitted_exactly() {
 }
 
 #[test]
-fn unknown_extents_and_wrong_cameras_are_errors() {
+fn wrong_cameras_and_colours_of_the_plane_are_errors() {
     let graph = sponge();
     let options = Options::default();
     let up = Camera::default().from([0.0, 90.0]).up(Some(DVec3::Y));
@@ -253,8 +253,15 @@ fn unknown_extents_and_wrong_cameras_are_errors() {
             "{error}"
         );
     }
-    let cancelled = Arc::new(AtomicBool::new(true));
     let space = SpaceOptions::default();
+    let mut by_index = Options::default();
+    by_index.style.color_by = ColorBy::Index;
+    let error = draw(&graph, None, &by_index, &space, None).unwrap_err();
+    assert!(matches!(
+        error,
+        RenderError::Space(SpaceError::ColorBy(ColorBy::Index))
+    ));
+    let cancelled = Arc::new(AtomicBool::new(true));
     let error = draw(&graph, None, &options, &space, Some(&cancelled)).unwrap_err();
     assert!(matches!(error, RenderError::Walk(WalkError::Cancelled)));
 }
