@@ -90,12 +90,24 @@ fn limits_and_flags_end_growing_with_an_error() {
     let cancelled = named("koch")
         .steps(10)
         .cancel(Arc::new(AtomicBool::new(true)));
-    let error = cancelled.pixels(100).expect_err("it is cancelled");
-    assert!(matches!(
-        error,
-        Error::Render(RenderError::Walk(WalkError::Cancelled))
-    ));
-    assert!(error.source().is_none());
+    let errors = [
+        cancelled.pixels(100).err(),
+        cancelled.svg().err(),
+        cancelled.elements().err(),
+        cancelled.bounds().err(),
+        cancelled.dimension().err(),
+    ];
+    for error in errors {
+        let error = error.expect("it is cancelled");
+        assert!(error.is_cancelled() && error.source().is_none());
+    }
+    assert!(
+        !named("koch")
+            .steps(12)
+            .max_elements(10)
+            .svg()
+            .is_err_and(|it| it.is_cancelled())
+    );
 }
 
 #[test]
