@@ -32,6 +32,7 @@
 //! | elements one by one, tables | [`Fractal::elements`], [`Fractal::write`] |
 //! | raw pixels, frames of a film, cancelling | [`Fractal::pixels`], [`Fractal::view`], [`Fractal::cancel`] |
 //! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::bounds`], [`Fractal::dimension`] |
+//! | sets in space: camera and shading, elements, extent | [`Fractal::space`], [`Fractal::elements_in_space`], [`Fractal::bounds_in_space`] |
 //! | mistakes in a file, with their places | [`Error::diagnostics`] |
 //! | the format of files, and their keys | [`document`] |
 //! | names in the library | [`catalogue`] |

@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let Arguments { rule, growth, .. } = arguments;
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     if let Some(graph) = loaded.model.compile_in_space(false) {
-        let steps = space::steps(arguments.steps, &loaded, &graph);
+        let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         space::check(&loaded, &graph, steps, growth.max_elements())?;
         return arguments.count(&loaded, &graph, steps);
     }

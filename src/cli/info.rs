@@ -23,7 +23,7 @@ use super::growth::{bounds, rough_bounds};
 use super::rule::{Loaded, RuleArguments};
 use super::structure::StructureInfo;
 use super::system::SystemInfo;
-use super::{Failure, help, output, space::steps as steps_in_space, steps};
+use super::{Failure, help, output, steps};
 
 /// Describes a rule: parameters, sizes of its steps, bounds, dimension
 ///
@@ -206,7 +206,7 @@ fn number(value: f64) -> serde_json::Value {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
     if let Some(graph) = loaded.model.compile_in_space(false) {
-        let steps = steps_in_space(arguments.steps, &loaded, &graph);
+        let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;
         let info = space::info(&loaded, &graph, steps);
         return output::print_as(arguments.json, &info, || {

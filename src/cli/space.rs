@@ -1,4 +1,4 @@
-//! Steps of fractals in space, and their limits.
+//! Limits of steps of fractals in space.
 
 use anyhow::anyhow;
 
@@ -8,18 +8,6 @@ use crate::graph::Graph;
 use super::Failure;
 use super::readable::{counted, grouped};
 use super::rule::Loaded;
-
-/// Returns the number of steps that was given, or that the file proposes, or else the deepest step, up to 12, of at
-/// most 20,000 elements.
-pub(super) fn steps(asked: Option<u32>, loaded: &Loaded, graph: &Graph<Frame3>) -> u32 {
-    const DEEPEST: u32 = 12;
-    const MAX_ELEMENTS: u64 = 20_000;
-    let proposed = asked.or(loaded.model.metadata().steps);
-    proposed.unwrap_or_else(|| match graph.check_size(DEEPEST, MAX_ELEMENTS) {
-        Ok(_) => DEEPEST,
-        Err(error) => error.deepest.unwrap_or(0),
-    })
-}
 
 /// Returns an error if a step has too many elements.
 pub(super) fn check(

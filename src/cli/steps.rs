@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use crate::fractal::{Goal, proposed_steps};
+use crate::fractal::{Goal, proposed_steps, steps_of_graph};
+use crate::geometry::Frame3;
+use crate::graph::Graph;
 
 use super::rule::Loaded;
 use super::{Failure, number};
@@ -74,4 +76,9 @@ pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure
         None => proposed_steps(&loaded.model, |steps| loaded.graph(steps))
             .map_err(|error| loaded.failure(&error)),
     }
+}
+
+/// Returns the number of steps of a set in space that was given, or else the proposed one.
+pub(super) fn choose_in_space(asked: Option<u32>, loaded: &Loaded, graph: &Graph<Frame3>) -> u32 {
+    asked.unwrap_or_else(|| steps_of_graph(&loaded.model, graph))
 }

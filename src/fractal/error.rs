@@ -24,6 +24,12 @@ pub enum Error {
     /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The set lies in space, and the result is of the plane.
+    #[error("it lies in space: {0}")]
+    InSpace(&'static str),
+    /// The set lies in the plane, and the result is of space.
+    #[error("it lies in the plane: {0}")]
+    InPlane(&'static str),
     /// No dimension is decided or measured.
     #[error("it has no dimension: {0}")]
     NoDimension(String),

@@ -1,5 +1,6 @@
 //! End of growth: a number of steps, or a size in pixels below which nothing is seen.
 
+use crate::geometry::Frame;
 use crate::graph::{CompileError, Graph};
 use crate::grow::WalkError;
 use crate::model::Model;
@@ -132,28 +133,39 @@ pub fn proposed_steps(
     model: &Model,
     compile: impl Fn(u32) -> Result<Graph, CompileError>,
 ) -> Result<u32, CompileError> {
-    const DEEPEST: u32 = 12;
-    const MAX_ELEMENTS: u64 = 20_000;
     if let Some(steps) = model.metadata().steps {
         return Ok(steps);
     }
     if let Some(deepest) = model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
         return Ok(deepest);
     }
-    let graph = compile(DEEPEST)?;
+    Ok(steps_of_graph(model, &compile(DEEPEST)?))
+}
+
+/// Largest number of steps that is proposed, unless a file does.
+const DEEPEST: u32 = 12;
+
+/// Largest number of elements of a step that is proposed.
+const MAX_ELEMENTS: u64 = 20_000;
+
+/// Returns the number of steps that [`proposed_steps`] proposes for a model whose graph is known.
+pub(crate) fn steps_of_graph<F: Frame>(model: &Model, graph: &Graph<F>) -> u32 {
+    if let Some(steps) = model.metadata().steps {
+        return steps;
+    }
     if graph.forecast().is_none() {
-        return Ok(DEEPEST / 2);
+        return DEEPEST / 2;
     }
     if let Some(depth) = model.as_kind().ends()
         && depth <= Goal::MAX_STEPS
         && graph.check_size(depth, MAX_ELEMENTS).is_ok()
     {
-        return Ok(depth);
+        return depth;
     }
-    Ok(match graph.check_size(DEEPEST, MAX_ELEMENTS) {
+    match graph.check_size(DEEPEST, MAX_ELEMENTS) {
         Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
-    })
+    }
 }
 
 /// Returns whether a model is drawn to a pixel where neither steps nor a detail are given: a system, or a

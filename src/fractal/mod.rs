@@ -7,6 +7,7 @@ mod error;
 mod goal;
 mod options;
 mod results;
+mod space;
 #[cfg(test)]
 mod tests;
 
@@ -18,13 +19,17 @@ use std::sync::{Arc, OnceLock};
 use crate::catalogue::{Catalogue, Shelf, read_file};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::{Document, Setting};
+use crate::geometry::Frame3;
 use crate::graph::Graph;
 use crate::model::Model;
 use crate::parallel::all_cores;
+use crate::render::space::SpaceOptions;
 use crate::render::{PngEncoding, Size};
 use crate::style::{Style, View};
 
 pub use error::Error;
+#[cfg(feature = "cli")]
+pub(crate) use goal::steps_of_graph;
 pub use goal::{Goal, proposed_steps};
 pub use results::Dimension;
 
@@ -52,10 +57,13 @@ pub struct Fractal {
     size: Size,
     style: Option<Style>,
     view: Option<View>,
+    space: SpaceOptions,
     png_encoding: PngEncoding,
     cancel: Option<Arc<AtomicBool>>,
     /// The graph of the model in the file's coordinates, once it has been compiled.
     graph: OnceLock<Graph>,
+    /// The graph of a model in space, once it has been compiled.
+    graph_in_space: OnceLock<Graph<Frame3>>,
 }
 
 impl From<Model> for Fractal {
@@ -73,9 +81,11 @@ impl From<Model> for Fractal {
             size: Size::Long(1024),
             style: None,
             view: None,
+            space: SpaceOptions::default(),
             png_encoding: PngEncoding::default(),
             cancel: None,
             graph: OnceLock::new(),
+            graph_in_space: OnceLock::new(),
         }
     }
 }

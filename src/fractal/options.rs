@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Document, MetadataDocument, Setting};
+use crate::render::space::SpaceOptions;
 use crate::render::{PngEncoding, Size};
 use crate::style::{Style, View};
 
@@ -135,6 +136,25 @@ impl Fractal {
         self
     }
 
+    /// Sets the camera, the shading and the light of pictures of a set in space. They have no effect in the plane.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// use kfrac::render::space::{Camera, Shade, SpaceOptions};
+    ///
+    /// let camera = Camera::default().from([60.0, 10.0]).perspective(Some(35.0));
+    /// let space = SpaceOptions::default().camera(camera).shade(Shade::Relief);
+    /// let sponge = kfrac::Fractal::named("menger")?.steps(4).space(space);
+    /// assert_eq!(sponge.pixels((64, 48))?.size(), [64, 48]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn space(mut self, space: SpaceOptions) -> Self {
+        self.space = space;
+        self
+    }
+
     /// Sets the encoding of PNGs: faster, or as grey levels.
     ///
     /// ```
@@ -177,6 +197,7 @@ impl Fractal {
 
     fn anew(mut self) -> Self {
         self.graph = OnceLock::new();
+        self.graph_in_space = OnceLock::new();
         self
     }
 }

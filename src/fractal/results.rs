@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::export;
-use crate::extent::bounding_box;
-use crate::geometry::Bounds;
+use crate::extent::{Bounded, bounding_box};
+use crate::geometry::{Bounds, Frame};
 use crate::graph::{CompileError, Forecast, Graph};
 use crate::grow::{Element, Elements, Growth, WalkError};
 use crate::measure::exact::dimensions_of_graph;
@@ -15,6 +15,7 @@ use crate::measure::{BoxCounting, Grid, LimitSet};
 use crate::model::Model;
 use crate::output_file::{OutputFile, WriteError};
 use crate::parallel::is_cancelled;
+use crate::render::space::{pixels_in_space, write_space};
 use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
 use crate::style::{ColorBy, Named};
 
@@ -37,8 +38,9 @@ impl Fractal {
     ///
     /// # Errors
     ///
-    /// If it cannot be drawn: it has too many elements, or none.
+    /// If it cannot be drawn: it has too many elements, or none, or lies in space.
     pub fn svg(&self) -> Result<String, Error> {
+        self.check_plane("`png` and `pixels` draw it")?;
         let options = self.options(Format::Svg, self.size)?;
         let mut bytes = Vec::new();
         self.draw(&options, &mut bytes)?;
@@ -82,6 +84,16 @@ impl Fractal {
     /// If it cannot be drawn: it has too many elements, or none, or the picture is too large for memory.
     pub fn pixels(&self, size: impl Into<Size>) -> Result<Pixels, Error> {
         let options = self.options(Format::Png, size.into())?;
+        if let Some(graph) = self.graph_to_draw_in_space(&options)? {
+            let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
+            return Ok(pixels_in_space(
+                graph,
+                steps,
+                &options,
+                &self.space,
+                cancel,
+            )?);
+        }
         let pixels = self.draw_by(&options, |graph, growth, options| {
             render::pixels(graph, growth, options)
         })?;
@@ -89,7 +101,8 @@ impl Fractal {
     }
 
     /// Writes a file: a picture (`svg`, `png`, `pdf`, `dxf`) or a table of elements (`csv`, `json`, `jsonl`,
-    /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete.
+    /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete. A set in
+    /// space is written as `png`.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -110,6 +123,9 @@ impl Fractal {
         let path = path.as_ref();
         let extension = path.extension().and_then(|it| it.to_str()).unwrap_or("");
         let extension = extension.to_ascii_lowercase();
+        if extension != "png" {
+            self.check_plane("it is written as .png")?;
+        }
         if let Some(format) = Format::from_name(&extension) {
             let options = self.options(format, self.size)?;
             return written(path, |out| self.draw(&options, out).map(|_| ()));
@@ -146,12 +162,13 @@ impl Fractal {
     ///
     /// # Errors
     ///
-    /// If the model cannot be compiled. Items are errors where there are more elements than allowed, or points
+    /// If the model cannot be compiled, or lies in space. Items are errors where there are more elements than allowed, or points
     /// that are not finite.
     pub fn elements(
         &self,
     ) -> Result<impl Iterator<Item = Result<Element, Error>> + use<'_>, Error> {
         self.check_cancelled()?;
+        self.check_plane("`elements_in_space` returns its elements")?;
         let growth = self.growth(self.steps_grown()?);
         let elements = Elements::of(self.graph()?, &growth);
         Ok(elements.map(|item| item.map(|(_, element)| element).map_err(Error::from)))
@@ -171,29 +188,20 @@ impl Fractal {
     ///
     /// # Errors
     ///
-    /// If the model cannot be compiled.
+    /// If the model cannot be compiled, or lies in space.
     pub fn forecast(&self) -> Result<Option<Forecast<'_>>, Error> {
-        let steps = self.steps_grown()?;
-        let Some(mut forecast) = self.graph()?.forecast() else {
-            return Ok(None);
-        };
-        let is_known = (0..steps).all(|_| forecast.advance());
-        Ok(is_known.then_some(forecast))
+        self.check_plane("`forecast_in_space` returns its sizes")?;
+        Ok(forecast(self.graph()?, self.steps_grown()?))
     }
 
     /// Returns the box of the approximant in the file's units: from the graph, or else by growing it.
     ///
     /// # Errors
     ///
-    /// If the model cannot be compiled, or has to be grown and has more elements than allowed.
+    /// If the model cannot be compiled, lies in space, or has to be grown and has more elements than allowed.
     pub fn bounds(&self) -> Result<Bounds, Error> {
-        self.check_cancelled()?;
-        let steps = self.steps_grown()?;
-        let graph = self.graph()?;
-        match graph.bounds(steps) {
-            Some(bounds) => Ok(bounds),
-            None => Ok(bounding_box(graph, &self.growth(steps))?),
-        }
+        self.check_plane("`bounds_in_space` returns its box")?;
+        self.bounds_of(self.graph()?, self.steps_grown()?)
     }
 
     /// Returns the dimension of the limit set, which does not depend on the number of steps: exact where that is decided,
@@ -214,6 +222,7 @@ impl Fractal {
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
         self.check_cancelled()?;
+        self.check_plane("dimensions are known in the plane")?;
         let model = self.model.of_limit();
         let graph = model.compile_normalised(STEPS, self.seed, self.max_elements);
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
@@ -301,14 +310,27 @@ impl Fractal {
         Ok(self.graph.get_or_init(|| graph))
     }
 
-    fn check_cancelled(&self) -> Result<(), Error> {
+    /// Returns the box of approximant `steps` of a graph in the file's coordinates.
+    pub(super) fn bounds_of<F: Bounded>(
+        &self,
+        graph: &Graph<F>,
+        steps: u32,
+    ) -> Result<Bounds<F::Point>, Error> {
+        self.check_cancelled()?;
+        match graph.bounds(steps) {
+            Some(bounds) => Ok(bounds),
+            None => Ok(bounding_box(graph, &self.growth(steps))?),
+        }
+    }
+
+    pub(super) fn check_cancelled(&self) -> Result<(), Error> {
         if is_cancelled(self.cancel.as_deref()) {
             return Err(WalkError::Cancelled.into());
         }
         Ok(())
     }
 
-    fn growth(&self, steps: u32) -> Growth<'_> {
+    pub(super) fn growth(&self, steps: u32) -> Growth<'_> {
         Growth {
             seed: self.seed,
             max_elements: self.max_elements,
@@ -327,7 +349,10 @@ impl Fractal {
             view: self.view.unwrap_or(heading.view),
             threads: self.threads,
             png: self.png_encoding,
-            detail: self.goal()?.detail(),
+            detail: match self.model.is_in_space() {
+                true => self.detail_in_space(),
+                false => self.goal()?.detail(),
+            },
             labels: Labels {
                 title: description.title.clone().unwrap_or_default(),
                 description: description.about.clone().unwrap_or_default(),
@@ -338,6 +363,17 @@ impl Fractal {
     }
 
     fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {
+        if let Some(graph) = self.graph_to_draw_in_space(options)? {
+            let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
+            return Ok(write_space(
+                graph,
+                steps,
+                options,
+                &self.space,
+                cancel,
+                &mut out,
+            )?);
+        }
         self.draw_by(options, |graph, growth, options| {
             render::write(graph, growth, options, &mut out)
         })
@@ -365,6 +401,13 @@ impl Fractal {
             error => error.into(),
         })
     }
+}
+
+/// Returns the forecast of approximant `steps`.
+pub(super) fn forecast<F: Frame>(graph: &Graph<F>, steps: u32) -> Option<Forecast<'_, F>> {
+    let mut forecast = graph.forecast()?;
+    let is_known = (0..steps).all(|_| forecast.advance());
+    is_known.then_some(forecast)
 }
 
 /// Writes a file by `write`. If that fails, an existing file stays as it is.

@@ -7,7 +7,9 @@ use std::sync::atomic::AtomicBool;
 
 use crate::catalogue::{Catalogue, Shelf};
 use crate::grow::WalkError;
+use crate::render::space::{Camera, SpaceOptions};
 use crate::render::{self, Options, RenderError};
+use crate::style::View;
 
 use super::{Error, Fractal};
 
@@ -141,4 +143,58 @@ fn parameters_are_checked() {
     assert!(error.to_string().contains("it has none"), "{error}");
     let model = named("pythagoras").model().clone();
     assert!(Fractal::from(model).set("angle", 30.0).is_err());
+}
+
+#[test]
+fn a_set_in_space_is_drawn_and_measured_by_its_own_methods() -> Result<(), Error> {
+    let folder = tempfile::tempdir().expect("there is room");
+    let path = folder.path().join("menger.png");
+    let space = SpaceOptions::default().camera(Camera::default().from([0.0, 0.0]));
+    let sponge = named("menger").steps(3).size(64);
+    let front = sponge.clone().space(space);
+    front.write(&path)?;
+    let written = std::fs::read(&path).expect("it is there");
+    assert_eq!(written, front.png(64)?);
+    assert_ne!(written, sponge.png(64)?);
+    let forecast = sponge.forecast_in_space()?.expect("it is known");
+    assert_eq!(forecast.elements().to_u64(), Some(8000));
+    assert_eq!(sponge.elements_in_space()?.count(), 8000);
+    assert_eq!(sponge.bounds_in_space()?.size().to_array(), [1.0; 3]);
+    // Without a number of steps and without one in the file, the limit is drawn.
+    assert!(named("pylon").detail(2.0).png(64).is_ok());
+
+    let window = View {
+        window: Some([0.0, 0.0, 1.0, 1.0]),
+        ..View::default()
+    };
+    let errors = [
+        sponge.svg().err(),
+        sponge.elements().err(),
+        sponge.forecast().err(),
+        sponge.bounds().err(),
+        sponge.write(folder.path().join("menger.svg")).err(),
+        sponge.clone().view(window).pixels(64).err(),
+    ];
+    for error in errors {
+        let error = error.expect("it lies in space");
+        assert!(error.to_string().starts_with("it lies in space: "));
+    }
+    let koch = named("koch");
+    let errors = [
+        koch.elements_in_space().err(),
+        koch.forecast_in_space().err(),
+        koch.bounds_in_space().err(),
+    ];
+    for error in errors {
+        let error = error.expect("it lies in the plane");
+        assert!(error.to_string().starts_with("it lies in the plane: "));
+    }
+    let cancelled = sponge.cancel(Arc::new(AtomicBool::new(true)));
+    let errors = [
+        cancelled.pixels(64).err(),
+        cancelled.elements_in_space().err(),
+        cancelled.bounds_in_space().err(),
+    ];
+    assert!(errors.into_iter().flatten().all(|it| it.is_cancelled()));
+    Ok(())
 }

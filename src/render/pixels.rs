@@ -2,6 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use tiny_skia::Pixmap;
+
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
@@ -21,6 +23,13 @@ pub struct Pixels {
 }
 
 impl Pixels {
+    pub(super) fn of(pixmap: Pixmap) -> Self {
+        Self {
+            size: [pixmap.width(), pixmap.height()],
+            bytes: pixmap.take(),
+        }
+    }
+
     /// Returns width and height.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
@@ -85,9 +94,6 @@ fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pixels, Rende
         let mut png = Png::begin(size, drawing.background(), team)?;
         drawing.draw(&mut png, team)?;
         let (pixmap, _) = png.into_pixels();
-        Ok(Pixels {
-            size,
-            bytes: pixmap.take(),
-        })
+        Ok(Pixels::of(pixmap))
     })
 }

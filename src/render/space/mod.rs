@@ -40,7 +40,7 @@ use self::scene::{Child, ClassBy, End};
 use self::shade::Inks;
 use self::solid::{Depths, View};
 use super::png::{TooManyPixels, write_pixels};
-use super::{NoRoom, Options, Picture, RenderError};
+use super::{NoRoom, Options, Picture, Pixels, RenderError};
 
 /// Error of drawing in space.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -105,6 +105,23 @@ pub fn write_space(
     write_pixels(&pixmap, &options.labels, options.png, &mut bytes)?;
     out.write_all(&bytes)?;
     Ok(picture)
+}
+
+/// Draws a set in space as [`write_space`] does, as pixels in memory. [`Options::format`], [`Options::labels`] and
+/// [`Options::png`] have no effect.
+///
+/// # Errors
+///
+/// As for [`write_space`].
+pub fn pixels_in_space(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+    cancel: Option<&AtomicBool>,
+) -> Result<Pixels, RenderError> {
+    let (pixmap, _) = draw(graph, steps, options, space, cancel)?;
+    Ok(Pixels::of(pixmap))
 }
 
 /// Piece of work: a tile of the picture.

@@ -1,0 +1,131 @@
+//! Results of a fractal in space.
+
+use crate::geometry::{Bounds, DVec3, Frame3};
+use crate::graph::{Forecast, Graph};
+use crate::grow::{Element, Elements};
+use crate::render::{Detail, Options};
+
+use super::goal::steps_of_graph;
+use super::results::forecast;
+use super::{Error, Fractal};
+
+impl Fractal {
+    /// Returns the box of the approximant of a set in space, in the file's units. x points to the right, y up and z
+    /// towards the viewer.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let sponge = kfrac::Fractal::named("menger")?.steps(4);
+    /// assert!(sponge.model().is_in_space());
+    /// assert_eq!(sponge.bounds_in_space()?.max().to_array(), [1.0, 1.0, 1.0]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it lies in the plane, or its maps do not contract and it has more elements than allowed.
+    pub fn bounds_in_space(&self) -> Result<Bounds<DVec3>, Error> {
+        let graph = self.graph_in_space("`bounds` returns its box")?;
+        self.bounds_of(graph, self.steps_in_space(graph))
+    }
+
+    /// Returns the sizes of the approximant of a set in space, as [`forecast`](Self::forecast) does in the plane.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let sponge = kfrac::Fractal::named("menger")?.steps(30);
+    /// let cubes = sponge.forecast_in_space()?.expect("menger is regular").elements();
+    /// assert_eq!(cubes.digits(), 40);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it lies in the plane.
+    pub fn forecast_in_space(&self) -> Result<Option<Forecast<'_, Frame3>>, Error> {
+        let graph = self.graph_in_space("`forecast` returns its sizes")?;
+        Ok(forecast(graph, self.steps_in_space(graph)))
+    }
+
+    /// Returns the elements of the approximant of a set in space, as [`elements`](Self::elements) does in the plane.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let sponge = kfrac::Fractal::named("menger")?.steps(2);
+    /// let mut volume = 0.0;
+    /// for element in sponge.elements_in_space()? {
+    ///     volume += element?.frame.map().matrix3.determinant();
+    /// }
+    /// assert!((volume - (20.0_f64 / 27.0).powi(2)).abs() < 1e-12);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it lies in the plane. Items are errors where there are more elements than allowed.
+    pub fn elements_in_space(
+        &self,
+    ) -> Result<impl Iterator<Item = Result<Element<Frame3>, Error>> + use<'_>, Error> {
+        self.check_cancelled()?;
+        let graph = self.graph_in_space("`elements` returns its elements")?;
+        let elements = Elements::of(graph, &self.growth(self.steps_in_space(graph)));
+        Ok(elements.map(|item| item.map(|(_, element)| element).map_err(Error::from)))
+    }
+
+    /// Refuses a set in space; `instead` states what it has.
+    pub(super) fn check_plane(&self, instead: &'static str) -> Result<(), Error> {
+        match self.model.is_in_space() {
+            true => Err(Error::InSpace(instead)),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns the graph of a set in space; `instead` states what a set of the plane has.
+    fn graph_in_space(&self, instead: &'static str) -> Result<&Graph<Frame3>, Error> {
+        if let Some(graph) = self.graph_in_space.get() {
+            return Ok(graph);
+        }
+        let graph = self.model.compile_in_space(false);
+        let graph = graph.ok_or(Error::InPlane(instead))?;
+        Ok(self.graph_in_space.get_or_init(|| graph))
+    }
+
+    /// Returns the graph of a set in space for a picture, and `None` for a set of the plane.
+    pub(super) fn graph_to_draw_in_space(
+        &self,
+        options: &Options,
+    ) -> Result<Option<&Graph<Frame3>>, Error> {
+        if !self.model.is_in_space() {
+            return Ok(None);
+        }
+        self.check_cancelled()?;
+        if options.view.window.is_some() {
+            return Err(Error::InSpace(
+                "its camera has a point to look at, and no window",
+            ));
+        }
+        self.graph_in_space("it has windows").map(Some)
+    }
+
+    /// Returns the number of steps of elements and numbers, which have no pixels.
+    fn steps_in_space(&self, graph: &Graph<Frame3>) -> u32 {
+        self.steps
+            .unwrap_or_else(|| steps_of_graph(&self.model, graph))
+    }
+
+    /// Returns the number of steps of a picture; `None` for the limit set.
+    pub(super) fn steps_drawn_in_space(&self) -> Option<u32> {
+        let proposed = self.model.metadata().steps;
+        self.steps.or(proposed.filter(|_| self.detail.is_none()))
+    }
+
+    pub(super) fn detail_in_space(&self) -> Option<Detail> {
+        self.detail.map(|pixels| Detail {
+            pixels,
+            decides_steps: self.steps_drawn_in_space().is_none(),
+        })
+    }
+}
