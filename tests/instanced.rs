@@ -4,6 +4,7 @@ mod command_line;
 mod maps;
 mod picture;
 mod refusals;
+mod scene;
 
 use std::collections::BTreeSet;
 use std::num::NonZero;

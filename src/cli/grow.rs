@@ -124,6 +124,8 @@ Examples:
       Draws an iterated function system by random iteration, into barnsley-fern.png
   kfrac grow menger --from 35,20 --perspective 40 -o menger.png
       Draws a set in space, to the pixel
+  kfrac grow menger --steps 60 -o menger.usda
+      Writes 20^60 cubes as a small scene of nested instances for other programs
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -151,6 +153,12 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 Some(format) => game.list(format, progress, out, path),
                 None => game.draw(progress, out, path),
             })?
+        }
+        Plan::Scene => {
+            return Err(Failure::Usage(format!(
+                "a .usda holds instances in space, and {} lies in the plane: --svg instanced nests them in a .svg",
+                loaded.name
+            )));
         }
     };
     arguments.report(path, &summary, bytes, start);

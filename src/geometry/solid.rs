@@ -221,26 +221,50 @@ impl Solid {
     pub fn corners(&self) -> &[DVec3] {
         &self.corners
     }
+
+    /// Returns the faces: the corners of each, counter-clockwise from outside. A solid in a plane has one face, and
+    /// one on a line none.
+    #[must_use]
+    pub fn polygons(&self) -> Vec<Vec<DVec3>> {
+        let hull = Self::hull(&self.corners);
+        let size = hull.place.matrix3.x_axis.x;
+        let near = |corner: &DVec3| (*corner - hull.place.translation) / size;
+        match hull.corners.len() {
+            0..3 => Vec::new(),
+            _ if hull.place.matrix3.determinant() == 0.0 => vec![hull.corners.to_vec()],
+            _ => {
+                let corners: Vec<DVec3> = self.corners.iter().map(near).collect();
+                let around = |it: &HalfSpace| {
+                    let face = face(&corners, it.normal, it.distance).into_iter();
+                    face.map(|corner| self.corners[corner]).collect()
+                };
+                hull.faces.iter().map(around).collect()
+            }
+        }
+    }
+}
+
+/// Returns the corners of a face of the convex hull of points: their indices, counter-clockwise from outside.
+fn face(points: &[DVec3], normal: DVec3, distance: f64) -> Vec<usize> {
+    let (right, up) = normal.any_orthonormal_pair();
+    let flat = |index: &usize| DVec2::new(points[*index].dot(right), points[*index].dot(up));
+    let on =
+        (0..points.len()).filter(|&index| (normal.dot(points[index]) - distance).abs() <= ROUNDING);
+    let on: Vec<usize> = on.collect();
+    let around = convex_hull(on.iter().map(flat).collect(), 0.0);
+    let index = |corner: &DVec2| on.iter().copied().find(|index| flat(index) == *corner);
+    around.iter().filter_map(index).collect()
 }
 
 /// Returns the area of a face of the convex hull of points.
 fn face_area(points: &[DVec3], normal: DVec3, distance: f64) -> f64 {
-    let (right, up) = normal.any_orthonormal_pair();
-    let on = points
-        .iter()
-        .filter(|point| (normal.dot(**point) - distance).abs() <= ROUNDING);
-    let around = convex_hull(
-        on.map(|point| DVec2::new(point.dot(right), point.dot(up)))
-            .collect(),
-        0.0,
-    );
+    let around = face(points, normal, distance);
     let turned = around.iter().skip(1).chain(around.first());
-    around
+    let twice = around
         .iter()
         .zip(turned)
-        .map(|(from, to)| from.perp_dot(*to) / 2.0)
-        .sum::<f64>()
-        .abs()
+        .map(|(&from, &to)| points[from].cross(points[to]).dot(normal));
+    twice.sum::<f64>().abs() / 2.0
 }
 
 /// Returns orthonormal axes along which points extend from the most to the least, and the number of those
@@ -323,6 +347,37 @@ mod tests {
         assert_eq!((hull.faces().len(), hull.corners().len()), (6, 8));
         assert!((hull.signed_area() - 6.0).abs() < 1e-9);
         assert!((hull.support(DVec3::ONE) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn faces_turn_outwards_and_enclose_the_volume() {
+        // Six times the volume, by the divergence theorem over triangles of the faces.
+        let volume = |solid: &Solid| -> f64 {
+            let faces = solid.polygons();
+            let triangles = faces.iter().flat_map(|face| {
+                let others = face[1..].windows(2);
+                others.map(|pair| face[0].dot(pair[0].cross(pair[1])))
+            });
+            triangles.sum::<f64>() / 6.0
+        };
+        let cuboid = Solid::cuboid(&Bounds::new(DVec3::ONE, DVec3::new(3.0, 4.0, 2.0)));
+        let faces = cuboid.polygons();
+        assert_eq!(faces.iter().map(Vec::len).collect::<Vec<_>>(), [4; 6]);
+        assert!((volume(&cuboid) - 6.0).abs() < 1e-9);
+        let corners = [DVec3::X, DVec3::Y, DVec3::Z];
+        let octahedron = Solid::hull(&corners.map(|it| [it, -it]).concat());
+        assert_eq!(octahedron.polygons().len(), 8);
+        assert!((volume(&octahedron) - 4.0 / 3.0).abs() < 1e-9);
+        let flat = Solid::cuboid(&Bounds::new(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)));
+        assert_eq!(
+            flat.polygons().iter().map(Vec::len).collect::<Vec<_>>(),
+            [4]
+        );
+        assert!(
+            Solid::hull(&[DVec3::ZERO, DVec3::ONE])
+                .polygons()
+                .is_empty()
+        );
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use crate::geometry::Frame;
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Element, FractalInfo, Run};
 use crate::style::{ColorBy, ColorProperty, Colour, Style};
@@ -45,7 +46,7 @@ impl Classes {
     }
 
     /// Returns the classes of approximant `steps` of a graph, as far as they are known without a prepass.
-    pub(super) fn before_survey(by: ColorBy, graph: &Graph, steps: u32) -> Self {
+    pub(super) fn before_survey<F: Frame>(by: ColorBy, graph: &Graph<F>, steps: u32) -> Self {
         let before = u128::from(draws_unmade(by, graph, steps));
         let largest = match by.property() {
             ColorProperty::Step | ColorProperty::Age => u128::from(steps),
@@ -78,13 +79,13 @@ impl Classes {
     }
 
     /// Returns the class of all elements of an object, if the object determines it.
-    pub(super) fn of_object(&self, object: &Object) -> Option<u64> {
+    pub(super) fn of_object<F: Frame>(&self, object: &Object<F>) -> Option<u64> {
         self.value_of_object(object)
             .map(|value| self.of_value(value))
     }
 
     /// Returns the value of all elements of an object, if the object determines it.
-    pub(super) fn value_of_object(&self, object: &Object) -> Option<u128> {
+    pub(super) fn value_of_object<F: Frame>(&self, object: &Object<F>) -> Option<u128> {
         let maker = maker(self.by, object)?;
         Some(maker.map_or(0, |number| number as u128 + self.before))
     }
@@ -204,7 +205,7 @@ impl Classes {
 }
 
 /// Returns the number of the generator or map that made an object, if the colour depends on it.
-fn maker(by: ColorBy, object: &Object) -> Option<Option<usize>> {
+fn maker<F: Frame>(by: ColorBy, object: &Object<F>) -> Option<Option<usize>> {
     match by {
         ColorBy::Generator | ColorBy::FirstMap => Some(object.origin),
         ColorBy::LastMap => Some(object.last_map),
@@ -214,8 +215,8 @@ fn maker(by: ColorBy, object: &Object) -> Option<Option<usize>> {
 
 /// Returns whether approximant `steps` of a graph draws an element that no generator or map has made: an
 /// infertile part of the initiator, or a condensation set.
-fn draws_unmade(by: ColorBy, graph: &Graph, steps: u32) -> bool {
-    let is_unmade = |object: &Object| object.visible && maker(by, object) == Some(None);
+fn draws_unmade<F: Frame>(by: ColorBy, graph: &Graph<F>, steps: u32) -> bool {
+    let is_unmade = |object: &Object<F>| object.visible && maker(by, object) == Some(None);
     let start = || graph.initiator(steps).instances.iter();
     let mut kept = graph
         .objects()

@@ -12,8 +12,10 @@ mod ends;
 mod refusal;
 mod symbols;
 mod text;
+mod usda;
 
 pub use refusal::NotInstanced;
+pub use usda::write_usda;
 
 use std::io::Write;
 

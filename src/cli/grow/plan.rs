@@ -23,6 +23,8 @@ pub(super) enum Plan {
     },
     /// Points of random iteration: a PNG of their numbers, or a table of them.
     Chaos(Option<export::TableFormat>),
+    /// Scene of nested instances in space, in Universal Scene Description.
+    Scene,
 }
 
 /// Part of a set that a picture of elements shows.
@@ -35,11 +37,12 @@ pub(super) enum Shown {
     Zoom(ZoomTarget),
 }
 
-/// Output format of `grow`: a picture or a table.
+/// Output format of `grow`: a picture, a table or a scene.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Picture(render::Format),
     Table(export::TableFormat),
+    Usda,
 }
 
 impl Named for Format {
@@ -52,6 +55,7 @@ impl Named for Format {
         ("json", Self::Table(export::TableFormat::JsonLines)),
         ("jsonl", Self::Table(export::TableFormat::JsonLines)),
         ("ndjson", Self::Table(export::TableFormat::JsonLines)),
+        ("usda", Self::Usda),
     ];
 }
 
@@ -100,7 +104,7 @@ impl Plan {
         };
         let drawn = match format {
             Format::Picture(format) => Some(format),
-            Format::Table(_) => None,
+            Format::Table(_) | Format::Usda => None,
         };
         let is_table = drawn.is_none();
         if is_chaos
@@ -123,7 +127,7 @@ impl Plan {
         )?;
         refuse(
             plot.is_asked() && is_table,
-            "--plot applies to pictures, not to tables",
+            "--plot applies to pictures, not to tables and scenes",
         )?;
         refuse(
             plot.has_pens() && !plot.is_asked() && drawn != Some(render::Format::Dxf),
@@ -135,9 +139,13 @@ impl Plan {
              support both",
         )?;
         if is_chaos {
+            refuse(
+                format == Format::Usda,
+                "--method chaos draws points, and a .usda holds instances: write a .png, or a .csv of the points",
+            )?;
             return Ok(Self::Chaos(match format {
                 Format::Table(format) => Some(format),
-                Format::Picture(_) => None,
+                Format::Picture(_) | Format::Usda => None,
             }));
         }
         let is_nested = svg.is_instanced();
@@ -171,6 +179,7 @@ impl Plan {
             arguments.steps.is_some() || has_detail || arguments.growth.says_most_elements();
         Ok(match format {
             Format::Table(format) => Self::Table(format),
+            Format::Usda => Self::Scene,
             Format::Picture(format) => Self::Picture {
                 format,
                 is_light: format == render::Format::Svg && !gives_depth && !is_nested,
@@ -189,6 +198,7 @@ impl Plan {
             Self::Table(format) | Self::Chaos(Some(format)) => Format::Table(*format).name(),
             Self::Picture { format, .. } => format.name(),
             Self::Chaos(None) => render::Format::Png.name(),
+            Self::Scene => Format::Usda.name(),
         }
     }
 }

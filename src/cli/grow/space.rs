@@ -6,8 +6,8 @@ use anyhow::anyhow;
 
 use crate::geometry::DVec3;
 use crate::render::space::{Camera, Light, Shade, SpaceOptions, write_space};
-use crate::render::{self, Detail, Unit};
-use crate::style::Named;
+use crate::render::{self, Detail, Unit, write_usda};
+use crate::style::{ColorBy, Named};
 
 use super::super::labels::labels;
 use super::super::picture::named;
@@ -97,15 +97,16 @@ pub(super) fn draw(
     arguments: &Arguments,
     loaded: &Loaded,
 ) -> Result<(PathBuf, String, u64), Failure> {
-    check(arguments, loaded)?;
-    let default = arguments.rule.file("", "png");
+    let format = check(arguments, loaded)?;
+    let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let heading = loaded.model.metadata();
     let style = arguments.picture.style(heading);
     let steps = arguments
         .steps
         .or(heading.steps.filter(|_| arguments.detail.is_none()));
-    let graph = loaded.model.compile_in_space(false);
+    let records_last = format == Format::Usda && style.color_by == ColorBy::LastMap;
+    let graph = loaded.model.compile_in_space(records_last);
     let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
     let options = render::Options {
         format: render::Format::Png,
@@ -126,6 +127,22 @@ pub(super) fn draw(
         ..render::Options::default()
     };
     let quiet = arguments.growth.quiet;
+    if format == Format::Usda {
+        let Some(steps) = steps else {
+            let message = "nested instances have a number of steps: give --steps, of any size";
+            return Err(Failure::Usage(message.into()));
+        };
+        let (scene, bytes) = output::write(path, quiet, |mut out, _| {
+            write_usda(&graph, steps, &options, None, &mut out)
+                .map_err(|error| output::explain(error, path))
+        })?;
+        let prims = readable::counted(&scene.symbols.into(), "object");
+        let summary = format!(
+            "step {steps} of {}, {prims} in nested instances",
+            loaded.name
+        );
+        return Ok((path.clone(), summary, bytes));
+    }
     let space = arguments.space.to_options();
     let (picture, bytes) = output::write(path, quiet, |mut out, _| {
         write_space(&graph, steps, &options, &space, None, &mut out)
@@ -173,22 +190,21 @@ fn told(arguments: &Arguments) -> Vec<(&'static str, String)> {
     options
 }
 
-/// Refuses options and formats that sets in space do not have.
-fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
+/// Returns the format of the file, and refuses options and formats that sets in space do not have.
+fn check(arguments: &Arguments, loaded: &Loaded) -> Result<Format, Failure> {
     let path = arguments
         .output
         .as_deref()
         .filter(|path| *path != Path::new("-"));
+    let png = Format::Picture(render::Format::Png);
     let asked = match (arguments.format, path) {
-        (None, None) => None,
-        (asked, path) => Some(format::choose(asked, path)?),
+        (None, None) => png,
+        (asked, path) => format::choose(asked, path)?,
     };
     let name = &loaded.name;
-    if let Some(asked) = asked
-        && asked != Format::Picture(render::Format::Png)
-    {
+    if asked != png && asked != Format::Usda {
         let message = format!(
-            "{name} lies in space, and is drawn as .png, not as .{}",
+            "{name} lies in space, and is written as .png or .usda, not as .{}",
             asked.name()
         );
         return Err(Failure::Usage(message));
@@ -208,7 +224,8 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
             return Err(Failure::Usage(message));
         }
     }
-    arguments.picture.refuse_hits()
+    arguments.picture.refuse_hits()?;
+    Ok(asked)
 }
 
 /// Parses azimuth and elevation, or the name of a view.

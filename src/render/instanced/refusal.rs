@@ -1,5 +1,6 @@
 //! Conditions under which nested instances cannot represent a picture.
 
+use crate::geometry::{Frame, Outline};
 use crate::graph::{Graph, Replacement};
 use crate::rule::Placement;
 use crate::style::{Cap, ColorBy, Join, Named, Style, Width};
@@ -51,7 +52,11 @@ pub enum NotInstanced {
 }
 
 /// Checks that symbols can represent a picture.
-pub(super) fn check(graph: &Graph, style: &Style, steps: u32) -> Result<(), NotInstanced> {
+pub(super) fn check<F: Frame>(
+    graph: &Graph<F>,
+    style: &Style,
+    steps: u32,
+) -> Result<(), NotInstanced> {
     if graph.draws() {
         return Err(NotInstanced::Draws);
     }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::geometry::Direction;
+use crate::geometry::{Direction, Frame, Frame2, Outline};
 use crate::graph::{Chain, Graph, Instance, Replacement, Successor};
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
@@ -69,7 +69,7 @@ pub(super) struct Symbol {
 }
 
 /// Returns whether lines link joined elements, because base elements do not end at their end points.
-pub(super) fn link(graph: &Graph) -> bool {
+pub(super) fn link<F: Frame>(graph: &Graph<F>) -> bool {
     let mut visible = graph.objects().iter().filter(|object| object.visible);
     visible.any(|object| {
         let base_element = &graph.base_elements()[object.base_element];
@@ -78,8 +78,8 @@ pub(super) fn link(graph: &Graph) -> bool {
 }
 
 /// Source of the symbols of a graph.
-pub(super) struct Symbols<'g> {
-    graph: &'g Graph,
+pub(super) struct Symbols<'g, F: Frame = Frame2> {
+    graph: &'g Graph<F>,
     by: ColorBy,
     classes: Classes,
     /// For every object, the first object with an equal subtree.
@@ -88,8 +88,8 @@ pub(super) struct Symbols<'g> {
     pub(super) links: bool,
 }
 
-impl<'g> Symbols<'g> {
-    pub(super) fn new(graph: &'g Graph, by: ColorBy, classes: Classes) -> Self {
+impl<'g, F: Frame> Symbols<'g, F> {
+    pub(super) fn new(graph: &'g Graph<F>, by: ColorBy, classes: Classes) -> Self {
         let mut first = BTreeMap::new();
         let objects = graph.objects().iter().enumerate();
         let alike = objects
@@ -155,7 +155,12 @@ impl<'g> Symbols<'g> {
 
     /// Returns the symbol of an instance in a symbol with the aspect `of`; `seeded` is whether the instance
     /// starts a new fractal.
-    pub(super) fn child(&self, instance: &Instance, of: &Aspect, seeded: bool) -> Option<Symbol> {
+    pub(super) fn child(
+        &self,
+        instance: &Instance<F>,
+        of: &Aspect,
+        seeded: bool,
+    ) -> Option<Symbol> {
         let part = match of.part {
             Part::Born(steps) => Part::Born(steps.checked_sub(1)?),
             Part::Heading(heading) => Part::Heading(heading * instance.frame.direction()),
@@ -167,7 +172,7 @@ impl<'g> Symbols<'g> {
         self.dressed(instance, of, part)
     }
 
-    fn dressed(&self, instance: &Instance, of: &Aspect, part: Part) -> Option<Symbol> {
+    fn dressed(&self, instance: &Instance<F>, of: &Aspect, part: Part) -> Option<Symbol> {
         let Dress(appearance) = of.dress;
         let dress = Dress(if self.graph.has_appearances() {
             let appearance = appearance.over(self.graph.appearance(instance.object));
@@ -183,7 +188,7 @@ impl<'g> Symbols<'g> {
     }
 
     /// Returns the successor that replaces a symbol's object.
-    pub(super) fn successor(&self, symbol: &Symbol) -> Option<&'g Successor> {
+    pub(super) fn successor(&self, symbol: &Symbol) -> Option<&'g Successor<F>> {
         match &self.graph.objects()[symbol.object].replacement {
             Replacement::Fixed(successor) if symbol.aspect.steps > 0 => Some(successor),
             _ => None,
@@ -194,7 +199,7 @@ impl<'g> Symbols<'g> {
     /// consists; `None` if there are more than `most`.
     pub(super) fn collect(
         &self,
-        chain: &Chain,
+        chain: &Chain<F>,
         aspects: impl Iterator<Item = Aspect>,
         most: usize,
     ) -> Option<Vec<Symbol>> {

@@ -19,6 +19,7 @@ mod shade;
 mod solid;
 
 pub use camera::{Camera, CameraError};
+pub(super) use shade::ink;
 pub use shade::{Light, Shade};
 
 use std::io::Write;

@@ -81,6 +81,11 @@ impl Shade {
 /// Colour of what has no other: a warm yellow, as in the paper.
 const INK: Colour = Colour::of_rgba([255, 214, 120, 255]);
 
+/// Returns the colour of elements that have no other.
+pub(in crate::render) fn ink(style: &Style) -> Colour {
+    style.fill.or(style.stroke).unwrap_or(INK)
+}
+
 /// The colours of classes.
 pub(super) struct Inks {
     inks: Vec<[f64; 4]>,
@@ -90,9 +95,8 @@ pub(super) struct Inks {
 impl Inks {
     /// Returns the colours of a style. `most` is the number of classes.
     pub(super) fn of(style: &Style, by: ClassBy, most: usize, shade: Shade) -> Self {
-        let ink = style.fill.or(style.stroke).unwrap_or(INK);
         let colours: Vec<Colour> = match by {
-            ClassBy::Nothing => vec![ink],
+            ClassBy::Nothing => vec![ink(style)],
             _ => (0..most.max(1))
                 .map(|class| class_colour(&style.palette, class, most))
                 .collect(),
