@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{Bounds, Direction, Point};
+use super::{Affine, Bounds, Direction, Point};
 
 /// Message for an element whose frame is not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
@@ -15,6 +15,8 @@ pub const BEYOND: &str = "an element lies beyond the range of numbers";
 pub trait Frame: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The points that frames map.
     type Point: Point;
+    /// The maps from the unit frame.
+    type Map: Affine<Point = Self::Point>;
     /// The shape that is drawn for an element, in the unit frame.
     type Outline: Outline<Self>;
     /// Points that are mapped together.
@@ -26,6 +28,10 @@ pub trait Frame: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the frame of an element whose frame relative to this one is `inner`.
     #[must_use]
     fn compose(&self, inner: &Self) -> Self;
+
+    /// Returns the map from the unit frame.
+    #[must_use]
+    fn map(&self) -> &Self::Map;
 
     /// Returns the product of the directions along the element's path.
     #[must_use]
@@ -85,6 +91,12 @@ pub trait Outline<F: Frame<Outline = Self>>: Clone + Debug + Send + Sync + 'stat
     /// Returns `true` if the shape never joins those of neighbouring elements.
     #[must_use]
     fn is_closed(&self) -> bool;
+
+    /// Returns the dimension of the shape: 2 for a closed one, which is filled, and 1 for a line.
+    #[must_use]
+    fn dimension(&self) -> f64 {
+        if self.is_closed() { 2.0 } else { 1.0 }
+    }
 
     /// Returns `true` if the shape is the line between the ends of the unit frame.
     #[must_use]

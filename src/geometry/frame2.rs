@@ -189,6 +189,7 @@ impl Frame2 {
 
 impl Frame for Frame2 {
     type Point = DVec2;
+    type Map = DAffine2;
     type Outline = BaseElement;
     type Corners = Corners2;
 
@@ -206,6 +207,11 @@ impl Frame for Frame2 {
         stretch(&self) -> f64;
         area(&self) -> f64;
         is_in_range(&self) -> bool;
+    }
+
+    #[inline]
+    fn map(&self) -> &DAffine2 {
+        &self.map
     }
 
     #[inline]

@@ -39,6 +39,7 @@ impl Frame3 {
 
 impl Frame for Frame3 {
     type Point = DVec3;
+    type Map = DAffine3;
     type Outline = Solid;
     type Corners = Vec<DVec3>;
 
@@ -50,6 +51,11 @@ impl Frame for Frame3 {
             map: self.map * inner.map,
             direction: self.direction * inner.direction,
         }
+    }
+
+    #[inline]
+    fn map(&self) -> &DAffine3 {
+        &self.map
     }
 
     #[inline]

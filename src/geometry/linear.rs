@@ -3,14 +3,18 @@
 use std::fmt::Debug;
 use std::ops::Mul;
 
-use glam::{DMat2, DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec2, DVec3};
 
+use super::Point;
 use super::frame2::stretch;
 
 /// A linear map: [`DMat2`] of the plane, [`DMat3`] of space.
 pub trait Linear:
     Copy + Debug + PartialEq + Send + Sync + Mul<Output = Self> + Mul<f64, Output = Self> + 'static
 {
+    /// The vectors that the map turns and lengthens.
+    type Point: Point;
+
     /// The identity.
     const IDENTITY: Self;
 
@@ -25,9 +29,15 @@ pub trait Linear:
     /// Returns the spectral radius: the largest modulus of an eigenvalue.
     #[must_use]
     fn spectral_radius(&self) -> f64;
+
+    /// Returns the singular values in falling order, completed by zeros.
+    #[must_use]
+    fn singular_values(&self) -> [f64; 3];
 }
 
 impl Linear for DMat2 {
+    type Point = DVec2;
+
     const IDENTITY: Self = Self::IDENTITY;
 
     fn determinant(&self) -> f64 {
@@ -36,6 +46,11 @@ impl Linear for DMat2 {
 
     fn stretch(&self) -> f64 {
         stretch(self)
+    }
+
+    fn singular_values(&self) -> [f64; 3] {
+        let larger = stretch(self);
+        [larger, self.determinant().abs() / larger, 0.0]
     }
 
     fn spectral_radius(&self) -> f64 {
@@ -57,6 +72,8 @@ fn largest_root(middle: f64, half: f64, product: f64) -> f64 {
 }
 
 impl Linear for DMat3 {
+    type Point = DVec3;
+
     const IDENTITY: Self = Self::IDENTITY;
 
     fn determinant(&self) -> f64 {
@@ -65,6 +82,30 @@ impl Linear for DMat3 {
 
     fn stretch(&self) -> f64 {
         stretch3(self)
+    }
+
+    /// Computes the values by one-sided Jacobi rotations: columns are rotated in pairs until they are orthogonal
+    /// (Hestenes 1958).
+    fn singular_values(&self) -> [f64; 3] {
+        let mut columns = [self.x_axis, self.y_axis, self.z_axis];
+        for _ in 0..12 {
+            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+                let (a, b) = (columns[p], columns[q]);
+                let product = a.dot(b);
+                if product == 0.0 {
+                    continue;
+                }
+                let theta = (b.length_squared() - a.length_squared()) / (2.0 * product);
+                let tangent = 1.0_f64.copysign(theta) / (theta.abs() + libm::hypot(theta, 1.0));
+                let cosine = 1.0 / libm::hypot(tangent, 1.0);
+                let sine = tangent * cosine;
+                columns[p] = cosine * a - sine * b;
+                columns[q] = sine * a + cosine * b;
+            }
+        }
+        let mut values = columns.map(|column| column.length());
+        values.sort_by(|a, b| b.total_cmp(a));
+        values
     }
 
     fn spectral_radius(&self) -> f64 {
@@ -193,8 +234,6 @@ pub fn rotation(axis: DVec3, cosine: f64, sine: f64) -> DMat3 {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
 
     #[test]

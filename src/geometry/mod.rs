@@ -8,6 +8,7 @@
 #[macro_use]
 mod forward;
 
+mod affine;
 mod base_element;
 mod bounds;
 mod clip;
@@ -22,6 +23,7 @@ mod linear;
 mod point;
 mod solid;
 
+pub use affine::Affine;
 pub use base_element::{BaseElement, Piece, arc};
 pub use bounds::Bounds;
 pub use corners::Corners2;

@@ -296,6 +296,16 @@ impl Outline<Frame3> for Solid {
         true
     }
 
+    /// Returns the number of axes along which the solid extends.
+    fn dimension(&self) -> f64 {
+        let linear = self.place.matrix3;
+        let axes = [linear.x_axis, linear.y_axis, linear.z_axis];
+        axes.into_iter()
+            .filter(|axis| *axis != DVec3::ZERO)
+            .map(|_| 1.0)
+            .sum()
+    }
+
     fn is_line(&self) -> bool {
         false
     }

@@ -1,38 +1,24 @@
 //! Affine maps of systems, in the plane and in space.
 
 use std::fmt::Debug;
-use std::ops::Mul;
 use std::sync::Arc;
 
 use super::norm::in_best_coordinates;
 use super::{Shape, Shrinking};
-use crate::expression::{Affine, Program};
+use crate::expression::{self, Program};
 use crate::geometry::{
-    BaseElement, Bounds, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Frame, Frame2, Frame3,
-    Linear, Piece, Solid, convex_hull,
+    Affine, BaseElement, Bounds, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Frame, Frame2,
+    Frame3, Piece, Solid, convex_hull,
 };
 
 /// Affine map of a system: [`DAffine2`] of the plane, [`DAffine3`] of space.
-pub trait AffineMap: Copy + Debug + PartialEq + Send + Sync + Mul<Output = Self> + 'static {
+pub trait AffineMap: Affine {
     /// Frames of the graph of a system.
-    type Frame: Frame + From<Self>;
-    /// The linear part of a map.
-    type Linear: Linear;
+    type Frame: Frame<Point = Self::Point, Map = Self> + From<Self>;
     /// Condensation sets and initial sets.
     type Set: Clone + Debug + PartialEq + Send + Sync;
     /// A map with the expressions of its file.
     type Written: Clone + Debug + PartialEq + Send + Sync;
-
-    /// The identity.
-    const IDENTITY: Self;
-
-    /// Returns the linear part.
-    #[must_use]
-    fn linear(&self) -> Self::Linear;
-
-    /// Returns whether all numbers are finite.
-    #[must_use]
-    fn is_finite(&self) -> bool;
 
     /// Returns the fixed point; `None` if there is none, or more than one.
     #[must_use]
@@ -77,19 +63,8 @@ pub type OutlineOf<M> = <<M as AffineMap>::Frame as Frame>::Outline;
 
 impl AffineMap for DAffine2 {
     type Frame = Frame2;
-    type Linear = DMat2;
     type Set = Shape;
-    type Written = Affine<Program>;
-
-    const IDENTITY: Self = Self::IDENTITY;
-
-    fn linear(&self) -> DMat2 {
-        self.matrix2
-    }
-
-    fn is_finite(&self) -> bool {
-        self.is_finite()
-    }
+    type Written = expression::Affine<Program>;
 
     fn fixed_point(&self) -> Option<DVec2> {
         let moving = DMat2::IDENTITY - self.matrix2;
@@ -169,19 +144,8 @@ pub(crate) fn outline(shape: &Shape) -> BaseElement {
 
 impl AffineMap for DAffine3 {
     type Frame = Frame3;
-    type Linear = DMat3;
     type Set = Arc<[Solid]>;
-    type Written = Affine<Program, 3>;
-
-    const IDENTITY: Self = Self::IDENTITY;
-
-    fn linear(&self) -> DMat3 {
-        self.matrix3
-    }
-
-    fn is_finite(&self) -> bool {
-        self.is_finite()
-    }
+    type Written = expression::Affine<Program, 3>;
 
     fn fixed_point(&self) -> Option<DVec3> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis - self.matrix3 * axis);

@@ -1,34 +1,36 @@
 //! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
 use crate::digraph::{components, count};
-use crate::geometry::{DAffine2, DMat2, stretch};
+use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::{Graph, Instance};
-use crate::ifs::Ifs;
+use crate::ifs::{AffineMap, Ifs};
 use crate::rule::Placement;
+
+use crate::saturating::real;
 
 use super::perron::{Entry, beside_one, crossing, perron};
 
 /// A copy of one set inside another: the set `from` holds the image of the set `to` under the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Copy {
+pub(super) struct Copy<M = DAffine2> {
     pub(super) from: usize,
     pub(super) to: usize,
-    pub(super) map: DAffine2,
+    pub(super) map: M,
 }
 
 /// Sets that are made of copies of each other, and the whole, which is made of copies of them (`start`).
 #[derive(Clone, Debug)]
-pub(super) struct Copies {
+pub(super) struct Copies<M = DAffine2> {
     pub(super) size: usize,
-    pub(super) copies: Vec<Copy>,
-    pub(super) start: Vec<(usize, DAffine2)>,
+    pub(super) copies: Vec<Copy<M>>,
+    pub(super) start: Vec<(usize, M)>,
 }
 
 /// Copies with their shares of the mass of the set that holds them, and the masses of the copies of the
 /// whole.
 #[derive(Clone, Debug)]
-pub(super) struct Shared {
-    pub(super) copies: Copies,
+pub(super) struct Shared<M = DAffine2> {
+    pub(super) copies: Copies<M>,
     pub(super) shares: Vec<f64>,
     pub(super) masses: Vec<f64>,
 }
@@ -51,10 +53,10 @@ struct Component {
     dimension: Option<f64>,
 }
 
-impl Copies {
+impl<M: Affine> Copies<M> {
     /// Returns the copies that the limit set of a graph's fertile elements is made of; `None` if they are not
     /// made of fixed maps.
-    pub(super) fn of(graph: &Graph) -> Option<Self> {
+    pub(super) fn of<F: Frame<Map = M>>(graph: &Graph<F>) -> Option<Self> {
         let copies = fixed_copies(graph)?;
         let copies = copies
             .into_iter()
@@ -96,11 +98,11 @@ impl Copies {
     /// against the number in it.
     ///
     /// Returns `None` where maps do not contract, or where no set holds copies of itself.
-    pub(super) fn natural(self) -> Option<Shared> {
+    pub(super) fn natural(self) -> Option<Shared<M>> {
         let values: Vec<SingularValues> = self
             .copies
             .iter()
-            .map(|copy| SingularValues::of(&copy.map.matrix2))
+            .map(|copy| SingularValues::of(&copy.map.linear()))
             .collect();
         let mut components = self.components();
         for component in &mut components {
@@ -172,8 +174,8 @@ impl Copies {
     /// Returns the masses of the copies that the whole is made of.
     fn masses(&self, dimension: f64, levels: &[usize], heights: &[f64]) -> Option<Vec<f64>> {
         let level = self.start.iter().map(|(set, _)| levels[*set]).max()?;
-        let mass = |(set, map): &(usize, DAffine2)| {
-            let size = SingularValues::of(&map.matrix2).cost(dimension);
+        let mass = |(set, map): &(usize, M)| {
+            let size = SingularValues::of(&map.linear()).cost(dimension);
             if level > 0 && levels[*set] == level {
                 size * heights[*set]
             } else {
@@ -270,30 +272,37 @@ impl Copies {
     }
 }
 
-/// Logarithms of the singular values of a map, the larger one first.
+/// Logarithms of the singular values of a map, in falling order.
 #[derive(Clone, Copy, Debug)]
-struct SingularValues([f64; 2]);
+struct SingularValues {
+    logs: [f64; 3],
+    dimension: usize,
+}
 
 impl SingularValues {
-    fn of(matrix: &DMat2) -> Self {
-        let larger = stretch(matrix);
-        let area = matrix.determinant().abs();
-        Self([libm::log(larger), libm::log(area / larger)])
+    fn of<L: Linear>(matrix: &L) -> Self {
+        Self {
+            logs: matrix.singular_values().map(libm::log),
+            dimension: L::Point::DIMENSION,
+        }
     }
 
     /// Returns the singular value function φ^s (Falconer 1988): r^s for a similarity.
     fn cost(&self, s: f64) -> f64 {
-        let [larger, smaller] = self.0;
+        let logs = &self.logs[..self.dimension];
+        let dimension = real(self.dimension);
         // 0 times the logarithm of 0 is taken as 0.
         let times = |share: f64, log: f64| if share > 0.0 { share * log } else { 0.0 };
-        if s >= 2.0 {
-            return libm::exp(s / 2.0 * (larger + smaller));
+        if s >= dimension {
+            return libm::exp(s / dimension * logs.iter().sum::<f64>());
         }
-        libm::exp(times(s.min(1.0), larger) + times(s - 1.0, smaller))
+        let parts = logs.iter().enumerate();
+        let parts = parts.map(|(before, log)| times((s - real(before)).min(1.0), *log));
+        libm::exp(parts.sum::<f64>())
     }
 }
 
-impl Shared {
+impl<M: Affine> Shared<M> {
     /// Returns the measure that the weights of a system define: that of random iteration without condensation
     /// sets (Demko, Hodges & Naylor 1985; of recurrent systems: Barnsley, Elton & Hardin 1989).
     ///
@@ -301,13 +310,16 @@ impl Shared {
     /// predecessors. The share of i in the set of j is π_i p_ij / π_j, where p_ij is the probability of a
     /// step from i to j and π is the stationary distribution. Returns `None` where that depends on the start
     /// of the walk.
-    pub(super) fn of_weights(ifs: &Ifs) -> Option<Self> {
+    pub(super) fn of_weights(ifs: &Ifs<M>) -> Option<Self>
+    where
+        M: AffineMap,
+    {
         let maps = ifs.maps();
         let Some(edges) = ifs.edges() else {
             let all: f64 = ifs.weights().iter().sum();
             let copies = maps.iter().zip(ifs.weights());
             let copies = copies.map(|(map, weight)| ((0, 0, map.affine), weight / all));
-            let whole = vec![(0, DAffine2::IDENTITY)];
+            let whole = vec![(0, M::IDENTITY)];
             return Some(Self::joined(1, copies, whole, vec![1.0]));
         };
         let edges: Vec<(usize, usize, f64)> = edges
@@ -344,7 +356,7 @@ impl Shared {
             ((to, from, map), often[from] * probability / often[to])
         });
         let all: f64 = often.iter().sum();
-        let start = (0..stay.len()).map(|set| (set, DAffine2::IDENTITY));
+        let start = (0..stay.len()).map(|set| (set, M::IDENTITY));
         let masses = often.iter().map(|often| often / all);
         Some(Self::joined(
             stay.len(),
@@ -357,11 +369,11 @@ impl Shared {
     /// Joins equal copies, whose shares are added.
     fn joined(
         size: usize,
-        copies: impl Iterator<Item = ((usize, usize, DAffine2), f64)>,
-        start: Vec<(usize, DAffine2)>,
+        copies: impl Iterator<Item = ((usize, usize, M), f64)>,
+        start: Vec<(usize, M)>,
         masses: Vec<f64>,
     ) -> Self {
-        let (mut kept, mut shares): (Vec<Copy>, Vec<f64>) = (Vec::new(), Vec::new());
+        let (mut kept, mut shares): (Vec<Copy<M>>, Vec<f64>) = (Vec::new(), Vec::new());
         for ((from, to, map), share) in copies {
             let copy = Copy { from, to, map };
             match kept.iter().position(|known| *known == copy) {
@@ -387,11 +399,11 @@ impl Shared {
 /// Returns the copies that the fertile elements of a graph are made of, by the numbers of behaviours: the set
 /// that holds a copy, the set that is copied, and the map. Returns `None` if the graph is not a list of fixed
 /// maps, or has resets.
-pub(super) fn fixed_copies(graph: &Graph) -> Option<Vec<(usize, usize, DAffine2)>> {
+pub(super) fn fixed_copies<F: Frame>(graph: &Graph<F>) -> Option<Vec<(usize, usize, F::Map)>> {
     if !graph.is_regular() || !graph.is_plain() || graph.depth().is_some() {
         return None;
     }
-    let fertile = |instance: &Instance| {
+    let fertile = |instance: &Instance<F>| {
         let object = &graph.objects()[instance.object];
         !object.is_kept()
     };

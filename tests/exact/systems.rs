@@ -2,10 +2,13 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
-use kfrac::measure::exact::{Equation, GraphDirectedSystem, Overlap, dimensions};
+use kfrac::measure::exact::{
+    Dimensions, Equation, GraphDirectedSystem, Overlap, dimensions, dimensions_of_graph,
+    distinct_pieces,
+};
 use serde::Deserialize;
 
-use super::{line, near, of, similarity};
+use super::{common, line, near, of, similarity};
 
 /// A system of the reference, computed independently of kfrac.
 #[derive(Deserialize)]
@@ -102,6 +105,63 @@ fn the_reference_systems_have_their_dimensions() {
             assert!(near(found.value.unwrap(), known), "{id} {found:?}");
         }
     }
+}
+
+/// Fractals of Jones & Campa in which cells coincide.
+#[test]
+fn cells_that_coincide_are_counted_once() {
+    let entries: Vec<Entry> = serde_json::from_str(include_str!("systems.json")).unwrap();
+    let counts = |id: &str| {
+        let entry = entries.iter().find(|entry| entry.id == id).unwrap();
+        distinct_pieces(&entry.system(), 3).unwrap()
+    };
+    assert_eq!(counts("jones_campa_cake"), [1, 32, 592, 10_304]);
+    assert_eq!(counts("jones_solid_tetrahedron"), [1, 10, 80, 600]);
+    assert_eq!(counts("jones_icosahedron"), [1, 12, 144, 1728]);
+}
+
+/// A system of the reference, written as a document, has the same dimensions as its list of maps.
+#[test]
+fn documents_in_space_have_the_dimensions_of_their_maps() {
+    let entries: Vec<Entry> = serde_json::from_str(include_str!("systems.json")).unwrap();
+    let entries = entries
+        .iter()
+        .filter(|entry| entry.maps[0].shift.len() == 3);
+    let mut seen = 0;
+    for entry in entries {
+        seen += 1;
+        let sets = entry.maps.iter().map(|map| map.from).max().unwrap() + 1;
+        // In a recurrent system the map of a set is the one that all of its copies have.
+        let maps = (0..sets).flat_map(|set| {
+            let own = entry.maps.iter().filter(move |map| map.from == set);
+            own.take(if sets == 1 { usize::MAX } else { 1 })
+        });
+        let mut text = "kind: ifs\nspace: 3\nmaps:\n".to_owned();
+        for Map { linear, shift, .. } in maps {
+            let rows: Vec<&[f64]> = linear.chunks(3).collect();
+            text += &format!("  - {{matrix: {rows:?}, shift: {shift:?}}}\n");
+        }
+        if sets > 1 {
+            text += "edges:\n";
+            for to in 0..sets {
+                let after = entry.maps.iter().filter(|map| map.to == to);
+                let after: Vec<usize> = after.map(|map| map.from + 1).collect();
+                text += &format!("  {}: {after:?}\n", to + 1);
+            }
+        }
+        let (model, _) = common::document_of(&text).resolve(&[]).unwrap();
+        let graph = model.compile_in_space(false).unwrap();
+        let found = dimensions_of_graph(&graph).dimensions.unwrap();
+        let own = dimensions(&entry.system()).unwrap();
+        let id = &entry.id;
+        let value = |of: &Dimensions| of.similarity.as_ref().map_or(0.0, |it| it.value);
+        assert!(near(value(&found), value(&own)), "{id}");
+        assert_eq!(found.hausdorff.overlap, own.hausdorff.overlap, "{id}");
+        let values = [&found, &own].map(|of| of.hausdorff.value.unwrap_or_default());
+        assert!(near(values[0], values[1]), "{id} {values:?}");
+        assert_eq!(found.boundary.is_some(), own.boundary.is_some(), "{id}");
+    }
+    assert_eq!(seen, 12);
 }
 
 /// Returns the map of an upright square with a ratio, at a position.

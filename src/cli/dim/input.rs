@@ -12,7 +12,7 @@ use crate::extent::NoLimit;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::import::{Channel, Raster, TableError, read_points};
-use crate::measure::exact::{Spectrum, dimensions_of_graph};
+use crate::measure::exact::{GraphDimensions, Spectrum, dimensions_of_graph};
 use crate::measure::{
     Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, Masses, Points, grown,
 };
@@ -28,11 +28,19 @@ use super::{Arguments, Measured};
 const STEPS: [u32; 4] = [64, 20, 12, 6];
 
 /// Returns the graph of a rule and the number of steps for which it is compiled.
-pub(super) fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
+fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
     let at = |steps: u32| Ok((loaded.compile_limit(steps)?, steps));
     let [most, fewer @ ..] = STEPS;
     let fewer = fewer.into_iter();
     fewer.fold(at(most), |tried, steps| tried.or_else(|_| at(steps)))
+}
+
+/// Returns the exact dimensions of a rule's limit.
+pub(super) fn exact(loaded: &Loaded) -> Result<GraphDimensions, Failure> {
+    Ok(match loaded.model.compile_in_space(false) {
+        Some(graph) => dimensions_of_graph(&graph),
+        None => dimensions_of_graph(&compiled(loaded)?.0),
+    })
 }
 
 /// Largest size of a picture file in bytes.
@@ -133,15 +141,20 @@ impl Kind {
 }
 
 fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> {
-    let (graph, steps) = compiled(loaded)?;
     let title = loaded.model.metadata().description.title.clone();
     let mut measured = Measured {
         name: loaded.name.clone(),
         title: title.unwrap_or_else(|| loaded.name.clone()),
         set: "the limit set of the fertile elements".into(),
-        exact: Some(dimensions_of_graph(&graph)),
+        exact: Some(exact(loaded)?),
         ..Measured::default()
     };
+    if loaded.model.is_in_space() {
+        let reason = "nothing is measured: boxes are counted in the plane only";
+        measured.warnings.push(reason.into());
+        return Ok(measured);
+    }
+    let (graph, steps) = compiled(loaded)?;
     let set = match LimitSet::of(&graph) {
         Ok(set) => set,
         Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless) => {

@@ -6,12 +6,12 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::figure::dimension;
-use crate::measure::exact::{Dimensions, GraphDimensions, dimensions_of_graph};
+use crate::measure::exact::{Dimensions, GraphDimensions};
 use crate::render::{self, Labels};
 
 use super::super::rule::Member;
 use super::super::{Failure, output};
-use super::input::compiled;
+use super::input::exact;
 
 /// Members of a family with their exact results.
 pub(super) struct Series {
@@ -29,10 +29,9 @@ impl Series {
             return Err(Failure::Usage(message.into()));
         };
         let title = first.model.metadata().description.title.clone();
-        let samples = family.iter().map(|(settings, loaded)| {
-            let (graph, _) = compiled(loaded)?;
-            Ok((settings[0].value, dimensions_of_graph(&graph)))
-        });
+        let samples = family
+            .iter()
+            .map(|(settings, loaded)| Ok((settings[0].value, exact(loaded)?)));
         Ok(Self {
             name: first.name.clone(),
             title: title.unwrap_or_else(|| first.name.clone()),

@@ -3,6 +3,7 @@
 use crate::count::Count;
 use crate::geometry::Frame3;
 use crate::graph::{Graph, Level};
+use crate::measure::exact::{Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
 use crate::model::Model;
 
@@ -24,6 +25,7 @@ pub(super) fn info<'a>(loaded: &'a Loaded, graph: &Graph<Frame3>, steps: u32) ->
     };
     let heading = loaded.model.metadata();
     let similarity = similarity_dimension(graph);
+    let exact = dimensions_of_graph_within(graph, Effort::Quick).dimensions;
     Info {
         name: &loaded.name,
         kind: loaded.model.kind().name(),
@@ -51,8 +53,8 @@ pub(super) fn info<'a>(loaded: &'a Loaded, graph: &Graph<Frame3>, steps: u32) ->
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,
-            hausdorff: hausdorff(None),
-            exact: None,
+            hausdorff: hausdorff(exact.as_ref()),
+            exact: exact.map(|known| known.hausdorff),
         },
         system: match &loaded.model {
             Model::IfsInSpace(system) => Some(SystemInfo::in_space(system)),

@@ -4,11 +4,12 @@
 //! it by balls. The s at which the sum of φ^s over all products of n maps is 1 is never below the box and
 //! Hausdorff dimensions, for any n, since φ^s(AB) ≤ φ^s(A) φ^s(B).
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::Effort;
 use super::spectral::dense_radius;
 use super::system::GraphDirectedSystem;
+use crate::geometry::Linear;
 use crate::saturating::real;
 
 /// Affinity dimension, which bounds the dimension of the set from above.
@@ -158,27 +159,13 @@ fn cost(logarithms: &[f64], s: f64) -> f64 {
     libm::exp(sum)
 }
 
-/// Returns singular values in falling order, by one-sided Jacobi rotations: columns are rotated in pairs
-/// until they are orthogonal (Hestenes 1958). In the plane the third column already is, and is left out.
+/// Returns singular values in falling order. In the plane the third column is orthogonal to the others, and is
+/// left out.
 fn singular_values(matrix: DMat3, space: usize) -> [f64; 3] {
-    let mut columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    for _ in 0..12 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let (a, b) = (columns[p], columns[q]);
-            let product = a.dot(b);
-            if product == 0.0 {
-                continue;
-            }
-            let theta = (b.length_squared() - a.length_squared()) / (2.0 * product);
-            let tangent = 1.0_f64.copysign(theta) / (theta.abs() + libm::hypot(theta, 1.0));
-            let cosine = 1.0 / libm::hypot(tangent, 1.0);
-            let sine = tangent * cosine;
-            columns[p] = cosine * a - sine * b;
-            columns[q] = sine * a + cosine * b;
-        }
+    let DMat3 { x_axis, y_axis, .. } = matrix;
+    if space < 3 {
+        DMat3::from_cols(x_axis, y_axis, DVec3::ZERO).singular_values()
+    } else {
+        matrix.singular_values()
     }
-    let mut values = columns.map(|column| column.length());
-    values[space..].fill(0.0);
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
 }

@@ -1,8 +1,10 @@
 //! Exact dimensions of the limit of a graph.
 
-use crate::extent::NoLimit;
+use crate::extent::{Bounded, NoLimit};
+use crate::geometry::{Outline, Point};
 use crate::graph::Graph;
 use crate::measure::similarity_dimension;
+use crate::saturating::real;
 
 use super::closed_form::{plain, settled};
 use super::random::expected_dimension;
@@ -36,13 +38,13 @@ impl GraphDimensions {
 
 /// Computes the exact dimensions of a graph's limit, as far as they are known.
 #[must_use]
-pub fn dimensions_of_graph(graph: &Graph) -> GraphDimensions {
+pub fn dimensions_of_graph<F: Bounded>(graph: &Graph<F>) -> GraphDimensions {
     dimensions_of_graph_within(graph, Effort::Full)
 }
 
 /// Computes the dimensions of a graph's limit, as [`dimensions_of_graph`] does, within an effort.
 #[must_use]
-pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensions {
+pub fn dimensions_of_graph_within<F: Bounded>(graph: &Graph<F>, effort: Effort) -> GraphDimensions {
     if graph.draws() {
         return at_random(graph);
     }
@@ -59,7 +61,7 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensi
     if own == Some(0.0) {
         let points = "the limit set of the fertile elements is made of single points";
         notes.push(match infertile {
-            Some(2.0) => points.into(),
+            Some(dimension) if dimension > 1.0 => points.into(),
             _ => format!("{points}, and the line that is drawn has finite length"),
         });
     }
@@ -83,7 +85,7 @@ pub fn dimensions_of_graph_within(graph: &Graph, effort: Effort) -> GraphDimensi
     }
 }
 
-fn at_random(graph: &Graph) -> GraphDimensions {
+fn at_random<F: Bounded>(graph: &Graph<F>) -> GraphDimensions {
     match expected_dimension(graph) {
         Err(reason) => GraphDimensions::of(None, format!("the ratios are drawn: {reason}")),
         Ok(value) => {
@@ -96,7 +98,7 @@ fn at_random(graph: &Graph) -> GraphDimensions {
                     closed_form: plain(value),
                 }),
                 affinity: None,
-                hausdorff: Hausdorff::unknown(value.min(2.0), method.into()),
+                hausdorff: Hausdorff::unknown(value.min(real(F::Point::DIMENSION)), method.into()),
                 boundary: None,
                 regular: false,
             };
@@ -105,15 +107,11 @@ fn at_random(graph: &Graph) -> GraphDimensions {
     }
 }
 
-/// Returns the dimension of the visible infertile elements, if there are any: 2 for closed outlines, which
-/// are filled, 1 for lines.
-fn infertile(graph: &Graph) -> Option<f64> {
+/// Returns the largest dimension of the visible infertile elements, if there are any.
+fn infertile<F: Bounded>(graph: &Graph<F>) -> Option<f64> {
     let objects = graph.objects().iter();
     let drawn = objects.filter(|object| object.visible && object.is_kept());
     drawn
-        .map(|object| {
-            let is_closed = graph.base_elements()[object.base_element].is_closed();
-            if is_closed { 2.0 } else { 1.0 }
-        })
+        .map(|object| graph.base_elements()[object.base_element].dimension())
         .reduce(f64::max)
 }

@@ -48,7 +48,11 @@ pub(super) use pieces::distinct;
 use crate::saturating::real;
 
 use affinity::affinity;
+use hull::Flat;
+use neighbours::{End, Neighbours};
 use part::{PartDimension, part_dimension};
+use sizes::Generations;
+use types::Types;
 
 /// Overlap of the copies that a set is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,6 +207,23 @@ pub fn dimensions_within(system: &GraphDirectedSystem, effort: Effort) -> Option
         boundary: deciding.boundary.clone(),
         regular,
     })
+}
+
+/// Counts the distinct pieces of a set in generations 0, 1, … up to `last`: pieces that coincide count once (Ngai
+/// & Wang 2001). A piece of the size ρ^k belongs to the generations up to k, where ρ is the largest number of
+/// which all ratios are powers.
+///
+/// Returns `None` where pieces are not of finitely many types, where not all sets hold copies of each other, and
+/// beyond the range of 64 bits.
+#[must_use]
+pub fn distinct_pieces(system: &GraphDirectedSystem, last: usize) -> Option<Vec<u64>> {
+    let (_, components) = system.components();
+    let is_one = components.len() == 1 && !system.copies.is_empty();
+    let system = Some(system).filter(|system| is_one && system.shrinks())?;
+    let generations = Generations::of(&Flat::of(system))?;
+    let neighbours = Neighbours::of(&generations, Effort::Full);
+    let neighbours = Some(neighbours).filter(|found| found.end == End::Complete)?;
+    Types::of(&generations, &neighbours, Effort::Full)?.counts(last)
 }
 
 /// Returns `true` if the natural measure is known to be regular.

@@ -1,9 +1,7 @@
 //! Sets whose pieces coincide, rewritten as sets of distinct pieces for their natural measure.
 
-use glam::DAffine3;
-
 use crate::digraph::{components, count};
-use crate::geometry::{DAffine2, DMat2};
+use crate::geometry::{Affine, DAffine3};
 use crate::measure::copies::{Copies, Copy};
 
 use super::Effort;
@@ -18,7 +16,7 @@ use super::types::Types;
 ///
 /// Sets are unchanged where pieces are of too many types, or where a set holds copies of others that do not
 /// hold copies of it.
-pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
+pub(in crate::measure) fn distinct<M: Affine>(copies: Copies<M>) -> Copies<M> {
     let mut targets = vec![Vec::new(); copies.size];
     for copy in &copies.copies {
         targets[copy.from].push(copy.to);
@@ -31,7 +29,7 @@ pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
     };
     for part in 0..count {
         let all = copies.copies.iter();
-        let own: Vec<Copy> = all
+        let own: Vec<Copy<M>> = all
             .filter(|copy| component[copy.from] == part)
             .copied()
             .collect();
@@ -54,12 +52,16 @@ pub(in crate::measure) fn distinct(copies: Copies) -> Copies {
 
 /// Returns the number of sets including the new ones, and the copies of types that the sets are made of;
 /// `None` where no pieces coincide, or where they are of too many types.
-fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Copy>)> {
+fn pieces<M: Affine>(
+    sets: &[usize],
+    copies: &[Copy<M>],
+    size: usize,
+) -> Option<(usize, Vec<Copy<M>>)> {
     // The sets are in increasing order.
     let number = |set: usize| sets.binary_search(&set).unwrap_or(0);
     let inside = copies.iter();
     let inside = inside.map(|copy| (number(copy.from), number(copy.to), copy.map));
-    let system = GraphDirectedSystem::plane(inside).filter(GraphDirectedSystem::shrinks)?;
+    let system = GraphDirectedSystem::of_maps(inside).filter(GraphDirectedSystem::shrinks)?;
     let flat = Flat::of(&system);
     let generations = Generations::of(&flat)?;
     let neighbours = Neighbours::of(&generations, Effort::Full);
@@ -84,18 +86,9 @@ fn pieces(sets: &[usize], copies: &[Copy], size: usize) -> Option<(usize, Vec<Co
             pieces.push(Copy {
                 from: of_type(kind),
                 to: of_type(to),
-                map: flattened(&map),
+                map: M::of_space(&map),
             });
         }
     }
     Some((size + types.kept.len() - sets.len(), pieces))
-}
-
-/// Returns the restriction of a map of space to the plane.
-fn flattened(map: &DAffine3) -> DAffine2 {
-    let linear = map.matrix3;
-    DAffine2 {
-        matrix2: DMat2::from_cols(linear.x_axis.truncate(), linear.y_axis.truncate()),
-        translation: map.translation.truncate(),
-    }
 }

@@ -4,6 +4,7 @@
 use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
 use crate::extent::NoLimit;
+use crate::geometry::Frame;
 use crate::graph::{Alternative, Graph, Replacement};
 use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
 
@@ -25,7 +26,7 @@ struct Ratio {
 
 /// Returns the dimension of a random rule, for almost all seeds if copies do not overlap, or the reason why
 /// it is not known.
-pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, String> {
+pub(super) fn expected_dimension<F: Frame>(graph: &Graph<F>) -> Result<f64, String> {
     let mut ratios = Vec::new();
     for object in graph.behaviours() {
         match &object.replacement {
@@ -74,7 +75,13 @@ pub(super) fn expected_dimension(graph: &Graph) -> Result<f64, String> {
 }
 
 /// Adds the ratio of a fertile element, from a behaviour to an object.
-fn push(ratios: &mut Vec<Ratio>, graph: &Graph, place: [usize; 2], ratio: f64, weight: f64) {
+fn push<F: Frame>(
+    ratios: &mut Vec<Ratio>,
+    graph: &Graph<F>,
+    place: [usize; 2],
+    ratio: f64,
+    weight: f64,
+) {
     let [from, object] = place;
     let object = &graph.objects()[object];
     if !object.is_kept() {
@@ -109,9 +116,9 @@ fn weighted<'a>(
 }
 
 /// Adds the ratios of a generator for the nodes of a quadrature over its draws.
-fn push_draws(
+fn push_draws<F: Frame>(
     ratios: &mut Vec<Ratio>,
-    graph: &Graph,
+    graph: &Graph<F>,
     rule: &Rule,
     from: usize,
     (alternative, weight): (&Alternative, f64),

@@ -1,6 +1,6 @@
 //! The generalised dimensions D_q of a measure, where they are known exactly.
 
-use crate::ifs::Ifs;
+use crate::ifs::{AffineMap, Ifs};
 use crate::measure::copies::Shared;
 use crate::measure::perron::{Entry, beside_one, crossing, perron};
 
@@ -65,10 +65,10 @@ impl Spectrum {
     /// Returns `None` where this is not decided, or where [the measure is not
     /// unique](crate::ifs::Walk::stationary).
     #[must_use]
-    pub fn of_weights(ifs: &Ifs) -> Option<Self> {
+    pub fn of_weights<M: AffineMap>(ifs: &Ifs<M>) -> Option<Self> {
         let Shared { copies, shares, .. } = Shared::of_weights(ifs)?;
         let maps = copies.copies.iter();
-        let system = GraphDirectedSystem::plane(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
+        let system = GraphDirectedSystem::of_maps(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
         let Dimensions { hausdorff, .. } = dimensions(&system)?;
         let is_open = matches!(hausdorff.overlap, Overlap::None | Overlap::Touching);
         if !is_open || hausdorff.value.is_none() {

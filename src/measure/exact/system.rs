@@ -1,7 +1,7 @@
 //! Systems of sets that are made of smaller copies of each other, from which dimensions are computed.
 
 use crate::digraph::{Edge, parts};
-use crate::geometry::{DAffine2, DMat2};
+use crate::geometry::{Affine, DAffine2, Frame, Point};
 use crate::graph::Graph;
 use crate::measure::copies::fixed_copies;
 use glam::{DAffine3, DMat3, DVec3};
@@ -44,25 +44,30 @@ impl GraphDirectedSystem {
     /// Returns `None` if a number is not finite.
     #[must_use]
     pub fn plane(copies: impl IntoIterator<Item = (usize, usize, DAffine2)>) -> Option<Self> {
-        let copies = copies.into_iter();
-        Self::new(2, copies.map(|(from, to, map)| (from, to, embedded(map))))
+        Self::of_maps(copies)
     }
 
     /// Creates sets in space from their copies, as [`plane`](Self::plane) does.
     #[must_use]
     pub fn space(copies: impl IntoIterator<Item = (usize, usize, DAffine3)>) -> Option<Self> {
-        Self::new(3, copies.into_iter())
+        Self::of_maps(copies)
     }
 
-    fn new(space: usize, copies: impl Iterator<Item = (usize, usize, DAffine3)>) -> Option<Self> {
-        let copies: Vec<Copy> = copies
-            .map(|(from, to, map)| Copy { from, to, map })
-            .collect();
+    /// Creates sets from their copies, as [`plane`](Self::plane) does.
+    pub(super) fn of_maps<M: Affine>(
+        copies: impl IntoIterator<Item = (usize, usize, M)>,
+    ) -> Option<Self> {
+        let copies = copies.into_iter().map(|(from, to, map)| Copy {
+            from,
+            to,
+            map: map.in_space(),
+        });
+        let copies: Vec<Copy> = copies.collect();
         let numbers = copies.iter().flat_map(|copy| [copy.from, copy.to]);
         let size = numbers.max().map_or(0, |most| most + 1);
         let finite = copies.iter().all(|copy| copy.map.is_finite());
         finite.then_some(Self {
-            space,
+            space: M::Point::DIMENSION,
             size,
             copies,
         })
@@ -72,8 +77,8 @@ impl GraphDirectedSystem {
     ///
     /// Returns `None` if the graph is not a list of fixed maps, or has resets.
     #[must_use]
-    pub fn of(graph: &Graph) -> Option<Self> {
-        Self::plane(fixed_copies(graph)?)
+    pub fn of<F: Frame>(graph: &Graph<F>) -> Option<Self> {
+        Self::of_maps(fixed_copies(graph)?)
     }
 
     /// Returns the number of every set's strongly connected component, and the components, each with its sets
@@ -167,14 +172,4 @@ impl GraphDirectedSystem {
 /// Returns the ratio of a similarity.
 pub(super) fn ratio(linear: DMat3) -> f64 {
     libm::cbrt(linear.determinant().abs())
-}
-
-/// Extends a map of the plane to space; the third direction is scaled as by a similarity.
-fn embedded(map: DAffine2) -> DAffine3 {
-    let DMat2 { x_axis, y_axis } = map.matrix2;
-    let across = map.matrix2.determinant().abs().sqrt();
-    DAffine3 {
-        matrix3: DMat3::from_cols(x_axis.extend(0.0), y_axis.extend(0.0), DVec3::Z * across),
-        translation: map.translation.extend(0.0),
-    }
 }

@@ -66,6 +66,29 @@ impl Types {
             kept,
         })
     }
+
+    /// Returns the numbers of distinct pieces of the first set in generations 0, 1, …; `None` beyond the range
+    /// of 64 bits.
+    pub(super) fn counts(&self, generations: usize) -> Option<Vec<u64>> {
+        let mut pieces = vec![0u64; self.kept.len()];
+        pieces[0] = 1;
+        let mut counts = vec![1];
+        for _ in 0..generations {
+            let mut next = vec![0u64; pieces.len()];
+            for (count, (_, steps)) in pieces.iter().zip(&self.kept) {
+                for &(_, to) in steps {
+                    next[to] = next[to].checked_add(*count)?;
+                }
+            }
+            pieces = next;
+            counts.push(
+                pieces
+                    .iter()
+                    .try_fold(0u64, |sum, count| sum.checked_add(*count))?,
+            );
+        }
+        Some(counts)
+    }
 }
 
 /// Types by number.
