@@ -142,7 +142,7 @@ impl Evidence<'_> {
             orange(255),
             1.8,
         )?;
-        let says = [
+        let lines = [
             format!("D = {:.4} ± {error:.4} (2 standard errors)", estimate.value),
             format!(
                 "r² = {:.6}, {:.1} decades",
@@ -150,7 +150,7 @@ impl Evidence<'_> {
                 estimate.decades()
             ),
         ];
-        for (text, baseline) in says.iter().zip([24.0, 44.0]) {
+        for (text, baseline) in lines.iter().zip([24.0, 44.0]) {
             let width = pad.font.width(text, WORDS);
             let at = DVec2::new(RIGHT - 12.0 - width, COUNTS[0] + baseline);
             pad.text(text, WORDS, at, Anchor::Start)?;

@@ -34,7 +34,7 @@ pub use error::{CompileError, OutOfRange};
 pub(crate) use error::{EXTENTS, FARTHEST};
 pub use forecast::{Forecast, Level, Population};
 pub use object::{Alternative, Chain, Instance, Object, Replacement, Seed, Successor};
-pub(crate) use roots::{Root, Roots, Sown};
+pub(crate) use roots::{Root, Roots, SeededFractal};
 pub(crate) use source::{Buffers, Source};
 
 use std::sync::Arc;
@@ -145,8 +145,8 @@ impl<F: Frame> Graph<F> {
 
     /// Iterates over all chains from which growth starts: initiators, and fractals seeded before.
     pub(crate) fn starts(&self) -> impl Iterator<Item = &Chain<F>> {
-        let sown = self.roots.sown.iter().map(|sown| &sown.chain);
-        self.initiators.iter().chain(sown)
+        let seeded = self.roots.seeded.iter().map(|seeded| &seeded.chain);
+        self.initiators.iter().chain(seeded)
     }
 
     /// Returns whether the graph is time-indexed: whether its objects know the number of steps that

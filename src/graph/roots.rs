@@ -11,11 +11,11 @@ use super::Chain;
 /// Ancestry of the elements and fractals from which a graph starts in the middle of growth.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Roots<F: Frame = Frame2> {
-    /// Ancestry of the elements of the initiator and of the [sown](Self::sown) chains, by position.
+    /// Ancestry of the elements of the initiator and of the [seeded](Self::seeded) chains, by position.
     pub(crate) elements: Vec<Root>,
     /// Fractals seeded before, in the order of their parent fractals, each after its parent; the seeds of
     /// one fractal are in the order of their birth steps, then of the elements that seeded them.
-    pub(crate) sown: Vec<Sown<F>>,
+    pub(crate) seeded: Vec<SeededFractal<F>>,
 }
 
 /// Ancestry of an element.
@@ -32,7 +32,7 @@ pub(crate) struct Root {
 
 /// Fractal that was seeded before.
 #[derive(Clone, Debug)]
-pub(crate) struct Sown<F: Frame = Frame2> {
+pub(crate) struct SeededFractal<F: Frame = Frame2> {
     /// Fractal that seeded it: 0 for the initiator, otherwise its number in the list, from 1.
     pub(crate) by: usize,
     /// Position of the first root whose descendants come after the element that seeded it.
@@ -45,9 +45,9 @@ pub(crate) struct Sown<F: Frame = Frame2> {
 
 impl<F: Frame> Roots<F> {
     /// Returns the range of fractals that a fractal has seeded before.
-    pub(crate) fn sown_by(&self, fractal: usize) -> Range<usize> {
-        let from = self.sown.partition_point(|sown| sown.by < fractal);
-        let to = self.sown.partition_point(|sown| sown.by <= fractal);
+    pub(crate) fn seeded_by(&self, fractal: usize) -> Range<usize> {
+        let from = self.seeded.partition_point(|seeded| seeded.by < fractal);
+        let to = self.seeded.partition_point(|seeded| seeded.by <= fractal);
         from..to
     }
 }

@@ -63,11 +63,11 @@ impl Census {
     /// Counts the elements of `steps` steps, where elements shorter than `shortest` are not replaced. `None`
     /// if the graph does not determine the descendants of elements, or if there are too many kinds.
     pub(crate) fn of<F: Frame>(graph: &Graph<F>, steps: u32, shortest: f64) -> Option<Self> {
-        let tells = graph.is_plain()
+        let is_known = graph.is_plain()
             && !graph.counts_index()
             && graph.roots.elements.is_empty()
             && (shortest <= 0.0 || graph.is_similar() && !graph.resets().contains(&true));
-        if !tells {
+        if !is_known {
             return None;
         }
         let mut census = Self {

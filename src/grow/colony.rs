@@ -108,7 +108,7 @@ impl<'g, F: Frame> Colony<'g, F> {
             },
             standing: self.standing,
             born: self.born,
-            sown: 0..0,
+            seeded: 0..0,
         };
         walk_over(self.graph, self.steps, start, is_whole, visitor)
     }
@@ -189,7 +189,7 @@ impl ColonyKinds {
     /// Computes the kinds for approximant `steps`, in which elements shorter than `shortest` are not
     /// replaced. The result is empty if successors are not fixed, or if there are too many kinds.
     pub(crate) fn of(graph: &Graph, steps: u32, shortest: f64) -> Self {
-        let tells = graph.seeds
+        let is_known = graph.seeds
             && graph.is_plain()
             && graph.is_similar()
             && !graph.counts_index()
@@ -198,7 +198,7 @@ impl ColonyKinds {
             && !graph.has_appearances()
             && graph.roots.elements.is_empty()
             && !graph.resets().contains(&true);
-        if !tells {
+        if !is_known {
             return Self::default();
         }
         let leads = graph.leads_to_seeds();
@@ -236,7 +236,7 @@ impl ColonyKinds {
                 for (number, seed) in successor.seeds.iter().enumerate() {
                     add(&mut next, from, &seed.chain);
                     let frame = Frame2::new(DAffine2::from_mat2(linear), direction);
-                    let sown = ColonyKind {
+                    let seeded = ColonyKind {
                         seed: [object, number],
                         frame,
                         born: step + 1,
@@ -245,7 +245,7 @@ impl ColonyKinds {
                         turns: 0,
                         symmetries: Vec::new(),
                     };
-                    let kind = kinds.kind(sown, &seed.chain);
+                    let kind = kinds.kind(seeded, &seed.chain);
                     turns.resize_with(kinds.all.len(), BTreeMap::new);
                     let turned = turned(frame.map(), &kinds.all[kind].symmetries);
                     *turns[kind].entry(turn(&turned.matrix2)).or_default() += count;

@@ -452,7 +452,7 @@ impl<'g, F: Frame> Descent<'g, F> {
             chain,
             standing: seed_placement(graph, &standing, seed.placement),
             born: found.level + 1,
-            sown: 0..0,
+            seeded: 0..0,
         };
         match &graph.objects()[found.object].replacement {
             Replacement::Kept => Ok(Vec::new()),

@@ -37,13 +37,13 @@ impl<'g, F: Frame> Parent<'g, F> {
 
     /// Queues fractals that were seeded earlier by elements of the approximant before those of a root.
     fn take_sown(&mut self, graph: &'g Graph<F>, root: u32) {
-        while let Some(number) = self.start.sown.clone().next() {
-            let sown = &graph.roots.sown[number];
-            if sown.born > self.step + 1 || sown.before > root {
+        while let Some(number) = self.start.seeded.clone().next() {
+            let seeded = &graph.roots.seeded[number];
+            if seeded.born > self.step + 1 || seeded.before > root {
                 break;
             }
-            self.start.sown.start += 1;
-            self.queue.push(Start::sown(graph, number));
+            self.start.seeded.start += 1;
+            self.queue.push(Start::seeded(graph, number));
         }
     }
 

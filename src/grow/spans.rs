@@ -102,7 +102,7 @@ pub(crate) enum Ranks<'r> {
     /// Visited elements are counted.
     Unknown,
     /// [`Seam::before`] of all spans, from an earlier walk with an equal division.
-    Told(&'r [u128]),
+    BySpan(&'r [u128]),
     /// A census, whose counts include elements that are not visited.
     Counted(&'r Census),
 }
@@ -140,7 +140,7 @@ where
     let sizes = Sizes::most(graph, size).down_to(graph, cuts.unwrap_or(0.0), size);
     let census = match division.ranks {
         Ranks::Counted(census) => Some(census),
-        Ranks::Unknown | Ranks::Told(_) => None,
+        Ranks::Unknown | Ranks::BySpan(_) => None,
     };
     let mut spans = Spans {
         graph,
@@ -149,8 +149,8 @@ where
         blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run(), cuts))),
         asked,
         span: Span::default(),
-        told: match division.ranks {
-            Ranks::Told(ranks) => ranks,
+        ranks: match division.ranks {
+            Ranks::BySpan(ranks) => ranks,
             Ranks::Unknown | Ranks::Counted(_) => &[],
         },
         census,
@@ -326,7 +326,7 @@ struct Spans<'t, 'w, 'v, F: Frame, V: Visitor<F>, N, T> {
     asked: V,
     span: Span<'w, F>,
     /// [`Seam::before`] of the remaining spans, if known from an earlier walk.
-    told: &'w [u128],
+    ranks: &'w [u128],
     /// Census for ranks that include elements that are not visited.
     census: Option<&'w Census>,
     /// Whether a fractal has begun and not ended.
@@ -357,9 +357,9 @@ where
         });
         std::mem::swap(&mut job.span, &mut self.span);
         self.span.follow(&job.span);
-        if let Some((&before, later)) = self.told.split_first() {
+        if let Some((&before, later)) = self.ranks.split_first() {
             job.span.from.before = before;
-            self.told = later;
+            self.ranks = later;
         }
         let order = &mut self.order;
         let handed = self.line.hand_on(job, &mut |job| order.take(job));

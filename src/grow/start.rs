@@ -85,8 +85,8 @@ pub(super) struct Start<'g, F: Frame = Frame2> {
     pub(super) standing: Standing<F>,
     /// Step in which the fractal is born.
     pub(super) born: u32,
-    /// Fractals that it seeded before the growth of this graph: range in [`Roots::sown`](crate::graph::Roots).
-    pub(super) sown: Range<usize>,
+    /// Fractals that it seeded before the growth of this graph: range in [`Roots::seeded`](crate::graph::Roots).
+    pub(super) seeded: Range<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -108,19 +108,19 @@ impl<'g, F: Frame> Start<'g, F> {
             chain: StartChain::Initiator(graph.initiator(steps)),
             standing: Standing::whole(seed),
             born: 0,
-            sown: graph.roots.sown_by(0),
+            seeded: graph.roots.seeded_by(0),
         }
     }
 
     /// Returns the start of a fractal that was seeded before.
-    pub(super) fn sown(graph: &'g Graph<F>, number: usize) -> Self {
-        let sown = &graph.roots.sown[number];
+    pub(super) fn seeded(graph: &'g Graph<F>, number: usize) -> Self {
+        let seeded = &graph.roots.seeded[number];
         Self {
-            chain: StartChain::Initiator(&sown.chain),
+            chain: StartChain::Initiator(&seeded.chain),
             // Each root has its own path, so the seed is unused.
             standing: Standing::whole(0),
-            born: sown.born,
-            sown: graph.roots.sown_by(number + 1),
+            born: seeded.born,
+            seeded: graph.roots.seeded_by(number + 1),
         }
     }
 
@@ -131,8 +131,8 @@ impl<'g, F: Frame> Start<'g, F> {
             return None;
         };
         let roots = chain.instances.iter().filter_map(|it| birth(graph, it));
-        let sown = graph.roots.sown[self.sown.clone()].iter();
-        let all = roots.chain(sown.map(|sown| sown.born - 1));
+        let seeded = graph.roots.seeded[self.seeded.clone()].iter();
+        let all = roots.chain(seeded.map(|seeded| seeded.born - 1));
         all.filter(|&next| next > step).min()
     }
 

@@ -15,7 +15,7 @@ pub(super) struct Tally<'v> {
     growth: Growth<'v>,
     walked: Walked,
     /// Number of elements already reported as progress.
-    told: u64,
+    reported: u64,
     visited: u64,
     next_look: u64,
 }
@@ -25,7 +25,7 @@ impl<'v> Tally<'v> {
         Self {
             growth: *growth,
             walked: Walked::default(),
-            told: 0,
+            reported: 0,
             visited: 0,
             next_look: PATIENCE,
         }
@@ -73,8 +73,8 @@ impl<'v> Tally<'v> {
 
     fn tell_progress(&mut self) {
         if let Some(progress) = self.growth.progress {
-            progress.count(self.walked.elements - self.told);
-            self.told = self.walked.elements;
+            progress.count(self.walked.elements - self.reported);
+            self.reported = self.walked.elements;
         }
     }
 

@@ -151,7 +151,7 @@ impl<'a> Bands<'a> {
             }
         }
         let colours = colours.sorted();
-        let mut out = Told { out, error: None };
+        let mut out = KeptError { out, error: None };
         let Options { labels, png, .. } = self.options;
         let encoded = encode_pieces(self.size, &colours, labels, *png, &mut out, |encode| {
             self.each().try_for_each(|rows| give(rows, encode))
@@ -178,12 +178,12 @@ impl<'a> Bands<'a> {
 }
 
 /// Writer that keeps the error of a failed write, of which the encoder sees the kind only.
-struct Told<W> {
+struct KeptError<W> {
     out: W,
     error: Option<io::Error>,
 }
 
-impl<W: Write> Write for Told<W> {
+impl<W: Write> Write for KeptError<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.out.write(bytes).map_err(|error| {
             let kind = error.kind();

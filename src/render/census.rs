@@ -118,17 +118,17 @@ mod tests {
                     let culling = Culling::to_length(&graph, shortest);
                     let mut prepass = Prepass::new(&graph, &style, 6).of_what_is_in(culling);
                     prepass.is_bounded = true;
-                    let Some(told) = prepass.counted(&growth).unwrap() else {
+                    let Some(known) = prepass.counted(&growth).unwrap() else {
                         continue;
                     };
                     counted += 1;
                     let walked = prepass.walked(&growth, NonZero::<usize>::MIN).unwrap();
                     let what = format!("{} at {steps} by {color_by:?}", entry.name);
-                    assert_eq!(told.elements, walked.elements, "{what}");
-                    assert_eq!(told.fractals, walked.fractals, "{what}");
-                    assert_eq!(told.steps, walked.steps, "{what}");
-                    assert_eq!(told.strokes, walked.strokes, "{what}");
-                    assert_eq!(told.classes(), walked.classes(), "{what}");
+                    assert_eq!(known.elements, walked.elements, "{what}");
+                    assert_eq!(known.fractals, walked.fractals, "{what}");
+                    assert_eq!(known.steps, walked.steps, "{what}");
+                    assert_eq!(known.strokes, walked.strokes, "{what}");
+                    assert_eq!(known.classes(), walked.classes(), "{what}");
                 }
             }
         }

@@ -234,7 +234,7 @@ mod tests {
     fn what_the_graph_tells_is_what_a_walk_finds() {
         let catalogue = Catalogue::embedded();
         let entries = catalogue.entries();
-        let [mut told, mut aged] = [0; 2];
+        let [mut compared, mut aged] = [0; 2];
         for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
             let source = catalogue.open(entry).unwrap();
             let document = Document::read(&source, &catalogue).unwrap();
@@ -252,7 +252,7 @@ mod tests {
                         let Some(known) = Prepass::known(&graph, &growth, &style, 3) else {
                             continue;
                         };
-                        told += 1;
+                        compared += 1;
                         aged += u32::from(graph.seeds && *color_by == ColorBy::Age);
                         let mut walked = Prepass::new(&graph, &style, 3);
                         walk(&graph, &growth, &mut walked).unwrap();
@@ -274,7 +274,7 @@ mod tests {
                 }
             }
         }
-        assert!(told > 1000 && aged > 10, "{told}, {aged} of ages");
+        assert!(compared > 1000 && aged > 10, "{compared}, {aged} of ages");
     }
     /// The cases are elements that are drawn in some steps only, and a set that has shrunk to a speck.
     #[test]
@@ -292,11 +292,11 @@ mod tests {
                 let graph = Graph::compile(&rule, steps).unwrap();
                 let growth = Growth::steps(steps);
                 let style = Style::default();
-                let told =
+                let known =
                     Prepass::of(&graph, &growth, &style, steps, NonZero::<usize>::MIN).unwrap();
                 let mut walked = Prepass::new(&graph, &style, steps);
                 walk(&graph, &growth, &mut walked).unwrap();
-                let off = told.bounds.size() - walked.bounds.size();
+                let off = known.bounds.size() - walked.bounds.size();
                 let size = walked.bounds.size().max_element();
                 assert!(off.abs().max_element() <= 1e-9 * size, "{text} at {steps}");
             }

@@ -47,7 +47,7 @@ pub(super) struct Ranks {
 enum Known {
     /// For every span of a walk with an equal division, the number of preceding elements of the fractal that
     /// it continues.
-    Told(Arc<[u128]>),
+    BySpan(Arc<[u128]>),
     /// Census, which is independent of the elements that are visited.
     Counted(Arc<Census>),
 }
@@ -63,7 +63,7 @@ impl Ranks {
     /// Returns the ranks as the walk expects them.
     pub(super) fn for_walk(&self) -> grow::Ranks<'_> {
         match &self.how {
-            Known::Told(before) => grow::Ranks::Told(before),
+            Known::BySpan(before) => grow::Ranks::BySpan(before),
             Known::Counted(census) => grow::Ranks::Counted(census),
         }
     }
@@ -355,7 +355,7 @@ impl<'g> Prepass<'g> {
             before.push(prepass.largest_index);
             prepass.ranks = Some(Ranks {
                 steps: growth.steps,
-                how: Known::Told(before.into()),
+                how: Known::BySpan(before.into()),
             });
         }
         Ok(prepass)

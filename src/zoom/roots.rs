@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::graph::{Chain, Graph, Instance, Replacement, Roots, Sown};
+use crate::graph::{Chain, Graph, Instance, Replacement, Roots, SeededFractal};
 use crate::rule::BaseElement;
 
 use super::items::{Drawn, Found, Item, Line};
@@ -65,7 +65,7 @@ pub(super) fn zoom(
                 .into_iter()
                 .map(|(seed, before)| (seed, place, before)),
         );
-        chains.push(Sown {
+        chains.push(SeededFractal {
             by,
             before,
             born,
@@ -75,7 +75,7 @@ pub(super) fn zoom(
     let mut graph = rooted.graph;
     graph.base_elements = rooted.base_elements.into();
     graph.initiators = vec![chains.remove(0).chain];
-    rooted.roots.sown = chains;
+    rooted.roots.seeded = chains;
     graph.roots = rooted.roots.into();
     Ok(Zoom {
         graph,

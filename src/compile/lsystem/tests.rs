@@ -280,11 +280,11 @@ fn assert_told(graph: &Graph, steps: u32) {
         seed: 1,
         ..Growth::steps(steps)
     };
-    let told = [graph.bounds(steps), bounding_box(graph, &growth).ok()];
-    assert!(told[0].is_some() || graph.draws());
-    for told in told.into_iter().flatten() {
-        let off = (told.min() - all.min()).length() + (told.max() - all.max()).length();
-        assert!(off <= 1e-9 * all.size().length(), "{told:?} {all:?}");
+    let both = [graph.bounds(steps), bounding_box(graph, &growth).ok()];
+    assert!(both[0].is_some() || graph.draws());
+    for bounds in both.into_iter().flatten() {
+        let off = (bounds.min() - all.min()).length() + (bounds.max() - all.max()).length();
+        assert!(off <= 1e-9 * all.size().length(), "{bounds:?} {all:?}");
     }
 }
 

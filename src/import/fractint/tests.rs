@@ -186,7 +186,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
         ),
         Fractint::Ifs,
     );
-    let told: Vec<_> = imported
+    let read: Vec<_> = imported
         .iter()
         .map(|entry| {
             (
@@ -235,7 +235,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
             ],
         ),
     ];
-    assert_eq!(told, expected);
+    assert_eq!(read, expected);
 }
 
 /// Returns the only entry of an L-system file as YAML, from `angle` on.
@@ -397,7 +397,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
                 good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }\n\
                 quote { angle 4 axiom F'F }\ntwo { angle 4 axiom FD }\nback { angle 5 axiom F|!F }";
     let (imported, _) = read(&Source::new("test.l", text), Fractint::LSystems);
-    let told = imported.iter().map(|entry| {
+    let read = imported.iter().map(|entry| {
         (
             &entry.name[..],
             entry.document.is_some(),
@@ -441,7 +441,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
         ("two", true, vec![]),
         ("back", true, vec![]),
     ];
-    assert_eq!(told.collect::<Vec<_>>(), expected);
+    assert_eq!(read.collect::<Vec<_>>(), expected);
     // Errors are reported at the character, not at the entry.
     let places = imported[4].found.iter().map(|found| {
         let place = found.place().expect("every mistake has its place");

@@ -77,12 +77,12 @@ pub(super) fn check<F: Frame>(
     if seeds().any(|seed| seed.placement == Placement::SeedsAsInitiator) {
         return Err(NotInstanced::Resets);
     }
-    let tells = match style.color_by {
+    let distinguishes = match style.color_by {
         ColorBy::Index => true,
         ColorBy::Fractal => graph.seeds,
         _ => false,
     };
-    if tells {
+    if distinguishes {
         let by = style.color_by.name();
         return Err(NotInstanced::Colours { by });
     }

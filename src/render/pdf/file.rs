@@ -91,7 +91,7 @@ impl<W: Write> File<W> {
             ("Creator", concat!("kfrac ", env!("CARGO_PKG_VERSION"))),
             ("Provenance", &labels.provenance),
         ];
-        let said = info.into_iter().filter(|(_, text)| !text.is_empty());
+        let given = info.into_iter().filter(|(_, text)| !text.is_empty());
         let objects = [
             (CATALOG, format!("/Type/Catalog/Pages {PAGES} 0 R")),
             (PAGES, format!("/Type/Pages/Kids[{PAGE} 0 R]/Count 1")),
@@ -104,7 +104,8 @@ impl<W: Write> File<W> {
             ),
             (
                 INFO,
-                said.map(|(key, text)| format!("/{key}{}", string(text)))
+                given
+                    .map(|(key, text)| format!("/{key}{}", string(text)))
                     .collect(),
             ),
         ];

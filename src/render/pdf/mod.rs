@@ -146,12 +146,12 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         for (colour, of_strokes) in [(paint.fill, false), (stroke, true)] {
             let State { fill, stroke, .. } = &mut self.state;
-            let said = if of_strokes { stroke } else { fill };
-            let before = *said;
+            let last = if of_strokes { stroke } else { fill };
+            let before = *last;
             let Some(colour) = colour.filter(|&colour| before != Some(colour)) else {
                 continue;
             };
-            *said = Some(colour);
+            *last = Some(colour);
             let [red, green, blue, value] = colour.rgba();
             // The initial state is opaque.
             if before.map_or(255, |before| before.rgba()[3]) != value {

@@ -326,7 +326,7 @@ mod tests {
                 40.0 + radius * libm::cos(turn),
                 30.0 + radius * libm::sin(turn),
             ];
-            #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
+            #[expect(clippy::cast_possible_truncation, reason = "pixels are given in f32")]
             let [x, y] = place.map(|place| place as f32);
             if number == 0 {
                 path.move_to(x, y);

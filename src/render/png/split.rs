@@ -72,7 +72,7 @@ struct Lines {
 
 impl Lines {
     /// Converts a row of the picture to a row of the band.
-    #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
+    #[expect(clippy::cast_possible_truncation, reason = "pixels are given in f32")]
     fn moved(&self, y: f32) -> f32 {
         (f64::from(y) - self.top) as f32
     }
@@ -104,7 +104,7 @@ impl Lines {
         }
         for row in rows {
             let x = ax + (row - ay) / (by - ay) * (bx - ax);
-            #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
+            #[expect(clippy::cast_possible_truncation, reason = "pixels are given in f32")]
             self.path.line_to(x as f32, (row - self.top) as f32);
         }
         self.path.line_to(to.x, self.moved(to.y));
@@ -121,7 +121,7 @@ impl Lines {
             } else {
                 at(number / count)
             };
-            #[expect(clippy::cast_possible_truncation, reason = "pixels are told in f32")]
+            #[expect(clippy::cast_possible_truncation, reason = "pixels are given in f32")]
             self.to(Point::from_xy(x as f32, y as f32));
             number += 1.0;
         }
