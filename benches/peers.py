@@ -59,6 +59,7 @@ ALONE = [
     ("info koch --steps 2000 --json", ["info", "koch", "--steps", "2000", "--json"], 20),
     ("info snow-crystal --steps 2000 --json", ["info", "snow-crystal", "--steps", "2000", "--json"], 20),
     ("list", ["list"], 10),
+    ("Menger step 60 to USDA", ["grow", "menger", "--steps", "60", "--format", "usda", "-o", "-", "--quiet"], 20),
 ]
 
 
