@@ -11,6 +11,11 @@ pub(super) const TILE: usize = 64;
 /// Samples along a side of a tile.
 pub(super) const SIDE: usize = TILE * SAMPLES;
 
+/// Samples around a tile into which stamps may be drawn, and that are not seen.
+pub(super) const MARGIN: usize = 32;
+/// Samples along a side of a tile and its margin.
+pub(super) const STRIDE: usize = SIDE + 2 * MARGIN;
+
 /// Number of bits of a key below the depth.
 pub(super) const CLASS_BITS: u32 = 10;
 /// Largest class.
@@ -25,6 +30,7 @@ const BLOCKS: [u32; 4] = [2, 4, 6, 8];
 
 /// Samples of a tile.
 pub(super) struct Buffer {
+    /// Keys of the samples and of the margin.
     keys: Vec<u32>,
     /// Largest keys of blocks of 4 × 4, 16 × 16, 64 × 64 and 256 × 256 samples.
     pyramid: [Vec<u32>; 4],
@@ -34,7 +40,7 @@ impl Buffer {
     /// Creates a buffer that shows nothing.
     pub(super) fn new() -> Self {
         Self {
-            keys: vec![EMPTY; SIDE * SIDE],
+            keys: vec![EMPTY; STRIDE * STRIDE],
             pyramid: BLOCKS.map(|exponent| {
                 let side = SIDE >> exponent;
                 vec![EMPTY; side * side]
@@ -50,13 +56,19 @@ impl Buffer {
 
     /// Returns the keys of the samples in a row of the tile.
     pub(super) fn row(&self, y: usize) -> &[u32] {
-        &self.keys[y * SIDE..(y + 1) * SIDE]
+        &self.keys[place(y)..place(y) + SIDE]
     }
 
     /// Returns the keys of the samples in a row of the tile, to be changed. [`refresh`](Self::refresh) has to
     /// follow.
     pub(super) fn row_mut(&mut self, y: usize) -> &mut [u32] {
-        &mut self.keys[y * SIDE..(y + 1) * SIDE]
+        &mut self.keys[place(y)..place(y) + SIDE]
+    }
+
+    /// Returns the keys of the samples and of the margin, in rows, to be changed. [`refresh`](Self::refresh) has to
+    /// follow.
+    pub(super) fn with_margin(&mut self) -> &mut [u32] {
+        &mut self.keys
     }
 
     /// Returns whether all samples of a rectangle, without its last column and row, are strictly nearer than a
@@ -81,43 +93,54 @@ impl Buffer {
     }
 
     /// Updates the pyramid after samples of a rectangle have been changed.
-    pub(super) fn refresh(&mut self, rectangle: [usize; 4]) {
-        let [mut left, mut top, mut right, mut bottom] = rectangle;
-        for level in 0..BLOCKS.len() {
-            let step = if level == 0 {
-                2
-            } else {
-                BLOCKS[level] - BLOCKS[level - 1]
-            };
+    pub(super) fn refresh(&mut self, [left, top, right, bottom]: [usize; 4]) {
+        const BLOCK: usize = 1 << BLOCKS[0];
+        let mut range = [left, top, right - 1, bottom - 1].map(|end| end >> BLOCKS[0]);
+        let mut changes = false;
+        for row in range[1]..=range[3] {
+            for column in range[0]..=range[2] {
+                let start = place(row * BLOCK) + column * BLOCK;
+                let lines: [&[u32]; BLOCK] = std::array::from_fn(|line| {
+                    let start = start + line * STRIDE;
+                    &self.keys[start..start + BLOCK]
+                });
+                let most = lines.into_iter().flatten().fold(0, |a, b| a.max(*b));
+                let known = &mut self.pyramid[0][row * (SIDE >> BLOCKS[0]) + column];
+                changes |= *known != most;
+                *known = most;
+            }
+        }
+        for level in 1..BLOCKS.len() {
+            if !changes {
+                return;
+            }
+            let step = BLOCKS[level] - BLOCKS[level - 1];
             let side = SIDE >> BLOCKS[level];
-            let wide = side << step;
-            (left, top) = (left >> step, top >> step);
-            (right, bottom) = (((right - 1) >> step) + 1, ((bottom - 1) >> step) + 1);
-            let mut changes = false;
-            for row in top..bottom {
-                for column in left..right {
-                    let below: &[u32] = match level {
-                        0 => &self.keys,
-                        _ => &self.pyramid[level - 1],
-                    };
-                    let start = (row << step) * wide + (column << step);
+            let (fine, coarse) = self.pyramid.split_at_mut(level);
+            let fine = &fine[level - 1];
+            range = range.map(|end| end >> step);
+            changes = false;
+            for row in range[1]..=range[3] {
+                for column in range[0]..=range[2] {
                     let mut most = 0;
-                    for line in 0..1usize << step {
-                        let start = start + line * wide;
-                        for key in &below[start..start + (1 << step)] {
+                    for line in row << step..(row + 1) << step {
+                        let start = (line * side + column) << step;
+                        for key in &fine[start..start + (1 << step)] {
                             most = most.max(*key);
                         }
                     }
-                    let known = &mut self.pyramid[level][row * side + column];
+                    let known = &mut coarse[0][row * side + column];
                     changes |= *known != most;
                     *known = most;
                 }
             }
-            if !changes {
-                return;
-            }
         }
     }
+}
+
+/// Returns the place of the first sample of a row.
+fn place(y: usize) -> usize {
+    (y + MARGIN) * STRIDE + MARGIN
 }
 
 #[cfg(test)]

@@ -1,11 +1,14 @@
 //! Instances in equal positions, which are drawn once.
 
-use crate::geometry::{DAffine3, DVec3};
+use crate::geometry::DVec3;
 
 use super::scene::{Child, Part};
 
-/// Number of instances that are remembered.
-const SLOTS: usize = 1 << 14;
+/// Number of instances of a level that are remembered.
+const SLOTS: usize = 1 << 11;
+
+/// Number of levels that share their slots with others from that on.
+const LEVELS: usize = 16;
 
 /// Fraction of a sample by which equal positions may differ.
 const FINE: f64 = 1024.0;
@@ -14,16 +17,13 @@ const FINE: f64 = 1024.0;
 const MAX_PRODUCTS: usize = 1 << 16;
 
 /// Scale at which products of maps are compared.
-const LARGE: f64 = 1e6;
-
-/// Numbers of a map, in fractions of a sample.
-type Key = [i64; 12];
+const LARGE: f64 = 1e9;
 
 #[derive(Clone, Copy)]
 struct Slot {
-    key: Key,
-    kind: usize,
-    level: u32,
+    /// Position in fractions of a sample.
+    at: [i64; 3],
+    form: usize,
     class: u16,
     tile: u64,
 }
@@ -38,7 +38,7 @@ impl Copies {
     /// Creates a table.
     pub(super) fn new() -> Self {
         Self {
-            slots: vec![None; SLOTS],
+            slots: vec![None; SLOTS * LEVELS],
             tile: 0,
         }
     }
@@ -48,27 +48,25 @@ impl Copies {
         self.tile += 1;
     }
 
-    /// Notes an instance; returns whether an equal one, of the same class or of one before it, is known.
-    pub(super) fn knows(&mut self, map: &DAffine3, kind: usize, level: u32, class: u16) -> bool {
-        let key = key(map);
-        let mut hash = kind as u64 ^ u64::from(level).rotate_left(32);
-        for part in key {
+    /// Notes an instance of a form; returns whether an equal one, of the same class or of one before it, is known.
+    pub(super) fn knows(&mut self, at: DVec3, form: usize, level: u32, class: u16) -> bool {
+        let at = rounded(at.to_array(), FINE);
+        let mut hash = form as u64;
+        for part in at {
             hash = (hash.rotate_left(5) ^ part.cast_unsigned()).wrapping_mul(0x517c_c1b7_2722_0a95);
         }
-        let place = usize::try_from(hash >> 50).unwrap_or_default() % SLOTS;
-        let slot = &mut self.slots[place];
+        let place = usize::try_from(hash >> 32).unwrap_or_default() % SLOTS;
+        let slot = &mut self.slots[level as usize % LEVELS * SLOTS + place];
         if let Some(known) = slot
             && known.tile == self.tile
-            && known.key == key
-            && (known.kind, known.level) == (kind, level)
+            && (known.at, known.form) == (at, form)
             && known.class <= class
         {
             return true;
         }
         *slot = Some(Slot {
-            key,
-            kind,
-            level,
+            at,
+            form,
             class,
             tile: self.tile,
         });
@@ -80,9 +78,8 @@ impl Copies {
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
-fn key(map: &DAffine3) -> Key {
-    map.to_cols_array()
-        .map(|value| (value * FINE).round() as i64)
+fn rounded<const N: usize>(numbers: [f64; N], scale: f64) -> [i64; N] {
+    numbers.map(|number| (number * scale).round() as i64)
 }
 
 /// Returns whether instances meet in equal positions within two steps.
@@ -99,13 +96,8 @@ pub(super) fn overlap(parts: &[Part]) -> bool {
             let inner = parts[outer.object].children.iter();
             inner.map(|inner: &Child| (parts[inner.object].kind, outer.map * inner.map))
         });
-        let mut keys: Vec<(usize, Key)> = products
-            .map(|(kind, map)| {
-                (
-                    kind,
-                    key(&(DAffine3::from_scale(DVec3::splat(LARGE)) * map)),
-                )
-            })
+        let mut keys: Vec<(usize, [i64; 12])> = products
+            .map(|(kind, map)| (kind, rounded(map.to_cols_array(), LARGE)))
             .collect();
         keys.sort_unstable();
         keys.windows(2).any(|pair| pair[0] == pair[1])

@@ -1,28 +1,24 @@
 //! Descent of a graph into the depth buffer of a tile: nearest first, and nothing that is hidden.
 
-use crate::geometry::DAffine3;
+use crate::geometry::{DAffine3, DVec3};
 
 use super::buffer::{Buffer, MAX_CLASS};
 use super::copies::Copies;
-use super::scene::{Child, ClassBy, End, Part};
+use super::forms::{Form, Forms, class};
+use super::scene::{ClassBy, End, Part, ends};
 use super::solid::{Pencil, View};
-
-/// Relative tolerance of lengths: a cell of exactly a pixel is not replaced.
-const ROUNDING: f64 = 1e-9;
+use super::stamp::Stamp;
 
 /// An instance that may be seen on the tile.
+#[derive(Clone, Copy)]
 struct Node {
-    map: DAffine3,
-    object: usize,
-    level: u32,
-    /// Upper bound of the stretch of the map, in samples.
-    length: f64,
+    /// Middle of the box around the subtree.
+    at: DVec3,
+    /// Number of its form; those of the descent follow the known ones.
+    form: usize,
     class: u16,
-    /// Whether it is too small to be replaced.
-    is_small: bool,
     /// Depth of its nearest point.
     nearest: u32,
-    near: f64,
     /// The samples of the tile that it may meet.
     rectangle: [usize; 4],
 }
@@ -31,6 +27,10 @@ struct Node {
 #[derive(Default)]
 pub(super) struct Descent {
     stack: Vec<Node>,
+    /// Forms that are not known before: those of nodes on the stack, in their order.
+    own: Vec<Form>,
+    /// Instances in a form, with their middles and classes.
+    inner: Vec<(Form, DVec3, u16)>,
     pencil: Pencil,
     copies: Option<Copies>,
     /// Number of solids that were drawn.
@@ -42,132 +42,184 @@ pub(super) struct Descent {
 /// Parts of the graph into which all tiles descend.
 pub(super) struct Roots<'a> {
     pub(super) parts: &'a [Part],
-    /// The instances of the initiator, in the coordinates of the projection, with their lengths in units.
-    pub(super) start: &'a [Child],
+    pub(super) forms: &'a Forms,
     pub(super) end: End,
     pub(super) class_by: ClassBy,
-    /// Length of an element whose frame is the unit frame.
-    pub(super) unit: f64,
     /// Samples by which flat solids may exceed the hulls of their objects.
     pub(super) pad: f64,
     /// Whether instances may lie in equal positions.
     pub(super) overlap: bool,
 }
 
+impl Roots<'_> {
+    /// Returns the class of an element; `outer` is that of the instance that contains it.
+    pub(super) fn class(&self, form: &Form, outer: u16) -> u16 {
+        let class = match self.class_by {
+            ClassBy::Step => u16::try_from(form.level).unwrap_or(MAX_CLASS),
+            ClassBy::FirstMap => class(self.parts[form.object].origin),
+            ClassBy::LastMap | ClassBy::Nothing => outer,
+        };
+        class.min(MAX_CLASS)
+    }
+}
+
 impl Descent {
     /// Draws all that is seen on a tile.
     pub(super) fn run(&mut self, roots: &Roots<'_>, view: &View<'_>, buffer: &mut Buffer) {
         self.stack.clear();
+        self.own.clear();
         if roots.overlap {
             self.copies.get_or_insert_with(Copies::new).clear();
         }
-        for child in roots.start {
-            let node = self.node(
+        let forms = roots.forms;
+        for step in &forms.start {
+            let node = node(
                 roots,
                 view,
                 buffer,
-                child.map,
-                (child.object, 0, child.length, 0),
+                (&forms.known[step.form], step.form),
+                step.offset,
+                0,
             );
             self.stack.extend(node);
         }
-        self.sort_from(0);
         while let Some(node) = self.stack.pop() {
+            let known = forms.known.get(node.form);
+            let own = match known {
+                Some(_) => None,
+                None => {
+                    // The forms that follow belonged to nodes that are done.
+                    self.own.truncate(node.form + 1 - forms.known.len());
+                    self.own.pop()
+                }
+            };
             if buffer.hides(node.rectangle, node.nearest) {
                 continue;
             }
-            let part = &roots.parts[node.object];
-            let kind = match roots.class_by {
-                ClassBy::FirstMap => node.object,
-                _ => part.kind,
-            };
-            let is_known = self
-                .copies
-                .as_mut()
-                .is_some_and(|copies| copies.knows(&node.map, kind, node.level, node.class));
-            if is_known {
-                continue;
+            if let Some(form) = known {
+                self.visit_known(roots, view, buffer, form, &node);
+            } else if let Some(form) = own {
+                self.visit(roots, view, buffer, &form, &node);
             }
-            if !part.is_replaced || node.is_small || node.level == roots.end.steps {
-                if let Some(solid) = &part.solid {
-                    let class = match roots.class_by {
-                        ClassBy::Step => u16::try_from(node.level).unwrap_or(MAX_CLASS),
-                        ClassBy::FirstMap => class(part.origin),
-                        _ => node.class,
-                    };
-                    let class = class.min(MAX_CLASS);
-                    self.pencil
-                        .draw(buffer, view, solid, &node.map, node.rectangle, class);
-                    self.drawn += 1;
-                    self.deepest = self.deepest.max(node.level);
-                }
-                continue;
-            }
-            let first = self.stack.len();
-            for child in &part.children {
-                let of_child = match (roots.class_by, node.level) {
-                    (ClassBy::LastMap, 0) => class(roots.parts[child.object].origin),
-                    _ => node.class,
-                };
-                let length = node.length * child.length;
-                let placed = (child.object, node.level + 1, length, of_child);
-                let node = self.node(roots, view, buffer, node.map * child.map, placed);
-                self.stack.extend(node);
-            }
-            self.sort_from(first);
         }
     }
 
-    /// Returns an instance, if it may be seen.
-    fn node(
-        &self,
+    fn visit_known<'a>(
+        &mut self,
+        roots: &Roots<'a>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        form: &'a Form,
+        node: &Node,
+    ) {
+        let copies = self.copies.as_mut();
+        if copies.is_some_and(|copies| copies.knows(node.at, node.form, form.level, node.class)) {
+            return;
+        }
+        if !view.cuts_through(node.at, form.half)
+            && let Some(stamp) = Stamp::draw(roots, view, buffer, (form, node.at, node.class))
+        {
+            self.drawn += stamp.elements;
+            self.deepest = self.deepest.max(stamp.deepest);
+            return;
+        }
+        let Some(steps) = roots.forms.steps(form) else {
+            return self.visit(roots, view, buffer, form, node);
+        };
+        if form.is_small(&roots.end, view.scale_of_box(node.at.z + form.half.z)) {
+            return self.draw(roots, view, buffer, form, node);
+        }
+        for step in steps {
+            let inner = (&roots.forms.known[step.form], step.form);
+            let at = node.at + step.offset;
+            self.stack.extend(self::node(
+                roots,
+                view,
+                buffer,
+                inner,
+                at,
+                step.class.unwrap_or(node.class),
+            ));
+        }
+    }
+
+    /// Visits an instance of a form the forms in which are not known.
+    fn visit(
+        &mut self,
         roots: &Roots<'_>,
         view: &View<'_>,
-        buffer: &Buffer,
-        map: DAffine3,
-        (object, level, length, class): (usize, u32, f64, u16),
-    ) -> Option<Node> {
-        let (middle, half) = roots.parts[object].hull.image(&map);
-        for (normal, distance) in view.cuts {
-            // All of it lies beyond the cut.
-            if normal.dot(middle) - normal.abs().dot(half) > *distance {
-                return None;
+        buffer: &mut Buffer,
+        form: &Form,
+        node: &Node,
+    ) {
+        let scale = view.scale_of_box(node.at.z + form.half.z);
+        if ends(roots.parts, form, &roots.end) || form.is_small(&roots.end, scale) {
+            return self.draw(roots, view, buffer, form, node);
+        }
+        self.inner.clear();
+        for child in &roots.parts[form.object].children {
+            let inner = form.inner(roots.parts, child);
+            let at = node.at + form.offset(child, &inner);
+            let class = match (roots.class_by, form.level) {
+                (ClassBy::LastMap, 0) => class(roots.parts[child.object].origin),
+                _ => node.class,
+            };
+            self.inner.push((inner, at, class));
+        }
+        self.inner.reverse();
+        let near = |(form, at, _): &(Form, DVec3, u16)| at.z + form.half.z;
+        self.inner.sort_by(|a, b| near(a).total_cmp(&near(b)));
+        for (form, at, class) in self.inner.drain(..) {
+            let number = roots.forms.known.len() + self.own.len();
+            if let Some(node) = self::node(roots, view, buffer, (&form, number), at, class) {
+                self.stack.push(node);
+                self.own.push(form);
             }
         }
-        let near = middle.z + half.z;
-        let half = half + roots.pad / view.scale_of_box(near);
-        let near = middle.z + half.z;
-        let rectangle = view.rectangle(middle, half)?;
-        // One less for rounding.
-        let nearest = view.depths.of(near).saturating_sub(1);
-        if buffer.hides(rectangle, nearest) {
-            return None;
-        }
-        let scale = view.scale_of_box(near);
-        let across = 2.0 * half.x.max(half.y) * scale;
-        let longest = length * roots.unit * scale;
-        Some(Node {
-            map,
-            object,
-            level,
-            length,
-            class,
-            is_small: across.min(longest) <= roots.end.detail * (1.0 + ROUNDING),
-            nearest,
-            near,
-            rectangle,
-        })
     }
 
-    /// Sorts the nodes from a place on: the nearest last; of those that are equally near, the first.
-    fn sort_from(&mut self, first: usize) {
-        let nodes = &mut self.stack[first..];
-        nodes.reverse();
-        nodes.sort_by(|a, b| a.near.total_cmp(&b.near));
+    /// Draws an instance that is not replaced.
+    fn draw(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        form: &Form,
+        node: &Node,
+    ) {
+        if let Some(solid) = &roots.parts[form.object].solid {
+            let map = DAffine3::from_mat3_translation(form.linear, node.at - form.middle);
+            let class = roots.class(form, node.class);
+            self.pencil
+                .draw(buffer, view, solid, &map, node.rectangle, class);
+            self.drawn += 1;
+            self.deepest = self.deepest.max(form.level);
+        }
     }
 }
 
-/// Returns the class of a map.
-fn class(map: Option<usize>) -> u16 {
-    map.map_or(0, |map| u16::try_from(map).unwrap_or(MAX_CLASS))
+/// Returns an instance of a form, which is given with its number, if it may be seen.
+fn node(
+    roots: &Roots<'_>,
+    view: &View<'_>,
+    buffer: &Buffer,
+    (form, number): (&Form, usize),
+    at: DVec3,
+    class: u16,
+) -> Option<Node> {
+    if view.cuts_off(at, form.half) {
+        return None;
+    }
+    let near = at.z + form.half.z;
+    let pad = roots.pad / view.scale_of_box(near);
+    let rectangle = view.rectangle(at, form.half + pad)?;
+    // One less for rounding.
+    let nearest = view.depths.of(near + pad).saturating_sub(1);
+    (!buffer.hides(rectangle, nearest)).then_some(Node {
+        at,
+        form: number,
+        class,
+        nearest,
+        rectangle,
+    })
 }

@@ -2,7 +2,8 @@
 //!
 //! The picture is divided into tiles, each of which is drawn from the whole graph, by any thread: instances that
 //! lie beside the tile or strictly behind what is drawn already are left out, and the nearest are drawn first.
-//! The cost is that of the visible part, at any number of steps. Elements smaller than a detail are not replaced,
+//! The cost is that of the visible part, at any number of steps. Instances that differ by a translation only are
+//! copies of one small picture in a parallel view. Elements smaller than a detail are not replaced,
 //! and drawn as the convex solid that the graph has for them.
 //!
 //! A pixel has 4 × 4 samples, whose depths are multiples of 2⁻²² of the exact range of the set; the nearer wins,
@@ -12,11 +13,13 @@ mod buffer;
 mod camera;
 mod copies;
 mod descent;
+mod forms;
 mod place;
 mod relief;
 mod scene;
 mod shade;
 mod solid;
+mod stamp;
 
 pub use camera::{Camera, CameraError};
 pub(super) use shade::ink;
@@ -36,6 +39,7 @@ use crate::style::{ColorBy, Colour, Named};
 use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
 use self::camera::Placement;
 use self::descent::{Descent, Roots};
+use self::forms::Forms;
 use self::relief::Relief;
 use self::scene::{Child, ClassBy, End};
 use self::shade::Inks;
@@ -219,6 +223,7 @@ fn draw(
     let end = End {
         steps: steps.unwrap_or(MAX_STEPS),
         detail: detail * SAMPLES as f64,
+        unit: graph.unit(),
     };
     let class_by = ClassBy::of(style.color_by)?;
     let classes = match class_by {
@@ -226,14 +231,15 @@ fn draw(
         ClassBy::FirstMap | ClassBy::LastMap => graph.origins(),
         ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
     };
+    let pad = solid::pad(graph);
+    let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad);
     let scene = Scene {
         roots: Roots {
             parts: &parts,
-            start: &start,
+            forms: &forms,
             end,
             class_by,
-            unit: graph.unit(),
-            pad: solid::pad(graph),
+            pad,
             overlap: copies::overlap(&parts),
         },
         placement,

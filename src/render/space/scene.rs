@@ -7,6 +7,7 @@ use crate::grow::Growth;
 use crate::style::ColorBy;
 
 use super::SpaceError;
+use super::forms::Form;
 
 /// Tolerance of boxes that contain images of boxes.
 const SLACK: f64 = 1e-9;
@@ -29,25 +30,29 @@ impl Hull {
         Self::Cuboid(bounds.min() + half, half)
     }
 
-    /// Returns the middle and the half sides of the box of the image under a map.
+    /// Returns the middle and the half sides of the box of the image under a linear map.
     #[inline]
-    pub(super) fn image(&self, map: &DAffine3) -> (DVec3, DVec3) {
-        let linear = &map.matrix3;
+    pub(super) fn image(&self, linear: &DMat3) -> (DVec3, DVec3) {
         match self {
             Self::Cuboid(middle, half) => {
                 let half = linear.x_axis.abs() * half.x
                     + linear.y_axis.abs() * half.y
                     + linear.z_axis.abs() * half.z;
-                (map.transform_point3(*middle), half)
+                (*linear * *middle, half)
             }
             Self::Ball(middle, radius) => {
                 let rows = linear.transpose();
                 let along = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.length());
-                (
-                    map.transform_point3(*middle),
-                    DVec3::from_array(along) * *radius,
-                )
+                (*linear * *middle, DVec3::from_array(along) * *radius)
             }
+        }
+    }
+
+    /// Returns the distance from the origin within which the set lies.
+    pub(super) fn reach(&self) -> f64 {
+        match self {
+            Self::Cuboid(middle, half) => (middle.abs() + *half).length(),
+            Self::Ball(middle, radius) => middle.length() + radius,
         }
     }
 }
@@ -81,6 +86,13 @@ pub(super) struct End {
     pub(super) steps: u32,
     /// Length in samples below which nothing is replaced; 0 if there is none.
     pub(super) detail: f64,
+    /// Length of an element whose frame is the unit frame.
+    pub(super) unit: f64,
+}
+
+/// Returns whether a form is not replaced, whatever its size.
+pub(super) fn ends(parts: &[Part], form: &Form, end: &End) -> bool {
+    !parts[form.object].is_replaced || form.level == end.steps
 }
 
 /// Property that the class of a solid depends on.
@@ -205,7 +217,9 @@ fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
             if inner.is_empty() {
                 return true;
             }
-            let (middle, half) = Hull::of(inner).image(instance.frame.map());
+            let map = instance.frame.map();
+            let (middle, half) = Hull::of(inner).image(&map.matrix3);
+            let middle = middle + map.translation;
             (middle - half).cmpge(bounds.min() - slack).all()
                 && (middle + half).cmple(bounds.max() + slack).all()
         })

@@ -33,7 +33,18 @@ impl Depths {
         Self { near, steps }
     }
 
-    /// Returns the depth of a point, 0 at the near end.
+    /// Returns the number of steps a unit of z.
+    pub(super) fn steps(&self) -> f64 {
+        self.steps
+    }
+
+    /// Returns the depth of a point in steps, 0 at the near end.
+    #[inline]
+    pub(super) fn exact(&self, z: f64) -> f64 {
+        (self.near - z) * self.steps
+    }
+
+    /// Returns the depth of a point in whole steps.
     #[inline]
     #[expect(
         clippy::cast_possible_truncation,
@@ -41,11 +52,26 @@ impl Depths {
         reason = "the value is clamped"
     )]
     pub(super) fn of(&self, z: f64) -> u32 {
-        ((self.near - z) * self.steps).clamp(0.0, STEPS) as u32
+        self.exact(z).clamp(0.0, STEPS) as u32
     }
 }
 
-/// A face of a solid that is drawn, as z − `x` · x − `y` · y ≤ `z`, or ≥ where it is seen from behind.
+/// Returns the half-spaces n · x ≤ d of a solid under a map to the coordinates of the projection.
+pub(super) fn faces(
+    solid: &Solid,
+    map: &DAffine3,
+    view: &View<'_>,
+) -> impl Iterator<Item = (DVec3, f64)> {
+    let place = *map * *solid.place();
+    let least = THINNEST / 2.0 / view.scale(place.translation.z);
+    let inverse = thickened(&place.matrix3, least).inverse().transpose();
+    solid.faces().iter().map(move |face| {
+        let normal = inverse * face.normal;
+        (normal, face.distance + normal.dot(place.translation))
+    })
+}
+
+/// A linear function of the position in samples, `z` + `x` · x + `y` · y.
 #[derive(Clone, Copy, Default)]
 struct Plane {
     x: f64,
@@ -53,12 +79,106 @@ struct Plane {
     z: f64,
 }
 
-/// Draws solids; the lists of planes are reused.
+/// The faces of a convex solid as functions of the position in samples.
+///
+/// Their values are z in a parallel picture, and one over the distance in a picture from a point, where planes
+/// are linear functions, too.
+#[derive(Default)]
+pub(super) struct Planes {
+    /// The solid lies below.
+    front: Vec<Plane>,
+    /// The solid lies above.
+    back: Vec<Plane>,
+    /// Faces seen edge-on: the solid lies where they are at most 0.
+    edges: Vec<Plane>,
+}
+
+impl Planes {
+    /// Takes the half-spaces n · x ≤ d whose intersection is a solid.
+    pub(super) fn set(
+        &mut self,
+        projection: Projection,
+        faces: impl Iterator<Item = (DVec3, f64)>,
+    ) {
+        self.front.clear();
+        self.back.clear();
+        self.edges.clear();
+        for (normal, distance) in faces {
+            // The face is z = plane / across.
+            let (plane, across) = match projection {
+                Projection::Parallel => (
+                    Plane {
+                        x: -normal.x,
+                        y: -normal.y,
+                        z: distance,
+                    },
+                    normal.z,
+                ),
+                Projection::Central { focus, middle } => {
+                    let [x, y] = [normal.x / focus, normal.y / focus];
+                    let z = -normal.z - x * middle[0] - y * middle[1];
+                    // With w = 1 / distance from the viewer, n · x ≤ d is n · ray ≤ d w.
+                    (
+                        Plane {
+                            x: -x,
+                            y: -y,
+                            z: -z,
+                        },
+                        -distance,
+                    )
+                }
+            };
+            let slope = plane.x.abs() + plane.y.abs();
+            if across.abs() <= EDGE_ON * slope {
+                self.edges.push(Plane {
+                    x: -plane.x,
+                    y: -plane.y,
+                    z: -plane.z,
+                });
+                continue;
+            }
+            let plane = Plane {
+                x: plane.x / across,
+                y: plane.y / across,
+                z: plane.z / across,
+            };
+            if across > 0.0 {
+                self.front.push(plane);
+            } else {
+                self.back.push(plane);
+            }
+        }
+        if let Projection::Central { .. } = projection {
+            // Nothing is seen that is behind the viewer.
+            self.back.push(Plane::default());
+        }
+    }
+
+    /// Returns the nearest value at a point of the picture, and its slopes; `None` if the solid is farther from
+    /// the point than `spread`, along the axes.
+    pub(super) fn meet(&self, [x, y]: [f64; 2], spread: f64) -> Option<(f64, [f64; 2])> {
+        let at = |plane: &Plane| plane.z + plane.x * x + plane.y * y;
+        let room = |plane: &Plane| (plane.x.abs() + plane.y.abs()) * spread;
+        if self.edges.iter().any(|edge| at(edge) > room(edge)) {
+            return None;
+        }
+        let (mut high, mut nearest) = (f64::INFINITY, (f64::INFINITY, [0.0; 2]));
+        for front in &self.front {
+            let z = at(front);
+            high = high.min(z + room(front));
+            if z < nearest.0 {
+                nearest = (z, [front.x, front.y]);
+            }
+        }
+        let low = self.back.iter().map(|back| at(back) - room(back));
+        (high >= low.fold(f64::NEG_INFINITY, f64::max)).then_some(nearest)
+    }
+}
+
+/// Draws solids; the lists are reused.
 #[derive(Default)]
 pub(super) struct Pencil {
-    front: Vec<Plane>,
-    back: Vec<Plane>,
-    edges: Vec<Plane>,
+    planes: Planes,
     highest: Vec<f64>,
     lowest: Vec<f64>,
 }
@@ -69,92 +189,35 @@ impl Pencil {
     pub(super) fn draw(
         &mut self,
         buffer: &mut Buffer,
-        view: &View,
+        view: &View<'_>,
         solid: &Solid,
         map: &DAffine3,
         rectangle: [usize; 4],
         class: u16,
     ) {
-        let place = *map * *solid.place();
-        let linear = thickened(
-            &place.matrix3,
-            THINNEST / 2.0 / view.scale(place.translation.z),
-        );
-        let inverse = linear.inverse().transpose();
-        let faces = solid.faces().iter().map(|face| {
-            let normal = inverse * face.normal;
-            (normal, face.distance + normal.dot(place.translation))
-        });
-        let faces = faces.chain(view.cuts.iter().copied());
+        let faces = faces(solid, map, view).chain(view.cuts.iter().copied());
+        self.planes.set(view.projection, faces);
         let [left, top, right, bottom] = rectangle;
-        match view.projection {
-            Projection::Parallel => {
-                self.set_planes(faces);
-                for y in top..bottom {
-                    self.draw_row(buffer, view, [left, right], y, class);
-                }
-            }
-            Projection::Central { focus, middle } => {
-                let faces: Vec<(DVec3, f64)> = faces.collect();
-                for y in top..bottom {
-                    draw_row_centrally(
-                        buffer,
-                        view,
-                        &faces,
-                        (focus, middle),
-                        [left, right],
-                        y,
-                        class,
-                    );
-                }
-            }
+        for y in top..bottom {
+            self.draw_row(buffer, view, [left, right], y, class);
         }
         buffer.refresh(rectangle);
-    }
-
-    /// Sorts half-spaces n · x ≤ d by the side from which they are seen.
-    fn set_planes(&mut self, faces: impl Iterator<Item = (DVec3, f64)>) {
-        self.front.clear();
-        self.back.clear();
-        self.edges.clear();
-        for (normal, distance) in faces {
-            let slope = normal.x.abs() + normal.y.abs();
-            if normal.z.abs() <= EDGE_ON * slope {
-                self.edges.push(Plane {
-                    x: normal.x,
-                    y: normal.y,
-                    z: distance,
-                });
-                continue;
-            }
-            let plane = Plane {
-                x: -normal.x / normal.z,
-                y: -normal.y / normal.z,
-                z: distance / normal.z,
-            };
-            if normal.z > 0.0 {
-                self.front.push(plane);
-            } else {
-                self.back.push(plane);
-            }
-        }
     }
 
     #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
     fn draw_row(
         &mut self,
         buffer: &mut Buffer,
-        view: &View,
+        view: &View<'_>,
         [mut left, mut right]: [usize; 2],
         y: usize,
         class: u16,
     ) {
         let [corner_x, corner_y] = view.corner;
         let at_y = corner_y + y as f64 + 0.5;
-        for plane in &self.edges {
-            // The samples of the row with x · plane.x ≤ rest.
-            let rest = plane.z - plane.y * at_y;
-            let inside = |x: usize| plane.x * (corner_x + x as f64 + 0.5) <= rest;
+        for plane in &self.planes.edges {
+            let rest = plane.z + plane.y * at_y;
+            let inside = |x: usize| rest + plane.x * (corner_x + x as f64 + 0.5) <= 0.0;
             while left < right && !inside(left) {
                 left += 1;
             }
@@ -171,13 +234,13 @@ impl Pencil {
         self.highest.resize(count, f64::INFINITY);
         self.lowest.clear();
         self.lowest.resize(count, f64::NEG_INFINITY);
-        for plane in &self.front {
+        for plane in &self.planes.front {
             let start = plane.z + plane.y * at_y + plane.x * first;
             for (step, highest) in self.highest.iter_mut().enumerate() {
                 *highest = highest.min(start + plane.x * step as f64);
             }
         }
-        for plane in &self.back {
+        for plane in &self.planes.back {
             let start = plane.z + plane.y * at_y + plane.x * first;
             for (step, lowest) in self.lowest.iter_mut().enumerate() {
                 *lowest = lowest.max(start + plane.x * step as f64);
@@ -185,43 +248,13 @@ impl Pencil {
         }
         let row = &mut buffer.row_mut(y)[left..right];
         for ((key, highest), lowest) in row.iter_mut().zip(&self.highest).zip(&self.lowest) {
-            if highest >= lowest {
-                *key = (*key).min(view.depths.of(*highest) << CLASS_BITS | u32::from(class));
+            if highest >= lowest && *highest < f64::INFINITY {
+                let z = match view.projection {
+                    Projection::Parallel => *highest,
+                    Projection::Central { .. } => -1.0 / highest,
+                };
+                *key = (*key).min(view.depths.of(z) << CLASS_BITS | u32::from(class));
             }
-        }
-    }
-}
-
-/// Draws a row of a solid that is seen from a point.
-#[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-fn draw_row_centrally(
-    buffer: &mut Buffer,
-    view: &View,
-    faces: &[(DVec3, f64)],
-    (focus, middle): (f64, [f64; 2]),
-    [left, right]: [usize; 2],
-    y: usize,
-    class: u16,
-) {
-    let up = (view.corner[1] + y as f64 + 0.5 - middle[1]) / focus;
-    for x in left..right {
-        let across = (view.corner[0] + x as f64 + 0.5 - middle[0]) / focus;
-        // The points of the ray are far · (across, up, −1).
-        let ray = DVec3::new(across, up, -1.0);
-        let (mut near, mut far) = (0.0f64, f64::INFINITY);
-        for (normal, distance) in faces {
-            let along = normal.dot(ray);
-            if along > 0.0 {
-                far = far.min(distance / along);
-            } else if along < 0.0 {
-                near = near.max(distance / along);
-            } else if *distance < 0.0 {
-                far = -1.0;
-            }
-        }
-        if near <= far && near > 0.0 {
-            let key = &mut buffer.row_mut(y)[x];
-            *key = (*key).min(view.depths.of(-near) << CLASS_BITS | u32::from(class));
         }
     }
 }
@@ -243,6 +276,20 @@ impl View<'_> {
             Projection::Parallel => 1.0,
             Projection::Central { focus, .. } => focus / (-z).max(f64::MIN_POSITIVE),
         }
+    }
+
+    /// Returns whether nothing of a box about a point is shown.
+    pub(super) fn cuts_off(&self, middle: DVec3, half: DVec3) -> bool {
+        self.cuts
+            .iter()
+            .any(|(normal, distance)| normal.dot(middle) - normal.abs().dot(half) > *distance)
+    }
+
+    /// Returns whether a part of a box about a point is not shown.
+    pub(super) fn cuts_through(&self, middle: DVec3, half: DVec3) -> bool {
+        self.cuts
+            .iter()
+            .any(|(normal, distance)| normal.dot(middle) + normal.abs().dot(half) > *distance)
     }
 
     /// Returns the largest number of samples a unit of a box whose nearest point is at a z.

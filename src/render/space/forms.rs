@@ -1,0 +1,282 @@
+//! Forms of instances: an object under the linear part of a map.
+//!
+//! Instances of one form differ by a translation. A system has few forms where its maps have few linear parts:
+//! they are found before the descent, with their instances from far to near, and a parallel picture shows small
+//! ones as copies of one [stamp](super::stamp::Stamp).
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use crate::geometry::{DMat3, DVec3};
+
+use super::camera::{Placement, Projection};
+use super::scene::{Child, ClassBy, End, Part};
+use super::stamp::{PHASES, REACH, Stamp};
+use super::{buffer::MAX_CLASS, scene};
+
+/// Limit of the number of forms that are known before the descent.
+const MAX_FORMS: usize = 1 << 12;
+
+/// Limit of the number of elements of a stamp.
+const MAX_ELEMENTS: u64 = 1 << 12;
+
+/// Limit of the number of samples of all stamps, in one position each.
+const MAX_SAMPLES: f64 = (1 << 16) as f64;
+
+/// Fraction of a sample by which equal forms may differ.
+const FINE: f64 = (1 << 24) as f64;
+
+/// Relative tolerance of lengths: a cell of exactly a pixel is not replaced.
+const ROUNDING: f64 = 1e-9;
+
+/// An object under a linear map.
+pub(super) struct Form {
+    pub(super) object: usize,
+    pub(super) level: u32,
+    pub(super) linear: DMat3,
+    /// Upper bound of the stretch.
+    length: f64,
+    /// Middle of the box around the subtree, from the origin of the object.
+    pub(super) middle: DVec3,
+    /// Half sides of the box.
+    pub(super) half: DVec3,
+    /// Places of its instances in the table, if they are known.
+    steps: Option<Range<usize>>,
+    /// Number of elements of which it consists; 0 if it is not known to the last, or has too many.
+    elements: u64,
+    /// Its pictures in all positions relative to a sample, if it is small enough to have them.
+    pub(super) stamps: Option<Box<[OnceLock<Stamp>]>>,
+}
+
+impl Form {
+    /// Creates the form of an instance in a form.
+    pub(super) fn inner(&self, parts: &[Part], child: &Child) -> Self {
+        let linear = self.linear * child.map.matrix3;
+        let placed = (child.object, self.level + 1);
+        Self::new(parts, placed, linear, self.length * child.length)
+    }
+
+    fn new(parts: &[Part], (object, level): (usize, u32), linear: DMat3, length: f64) -> Self {
+        let (middle, half) = parts[object].hull.image(&linear);
+        Self {
+            object,
+            level,
+            linear,
+            length,
+            middle,
+            half,
+            steps: None,
+            elements: 0,
+            stamps: None,
+        }
+    }
+
+    /// Returns the vector from the middle of the form to that of an instance in it, whose form is given.
+    pub(super) fn offset(&self, child: &Child, inner: &Self) -> DVec3 {
+        self.linear * child.map.translation + inner.middle - self.middle
+    }
+
+    /// Returns whether the form is too small to be replaced. `scale` is the number of samples a unit.
+    #[inline]
+    pub(super) fn is_small(&self, end: &End, scale: f64) -> bool {
+        let across = 2.0 * self.half.x.max(self.half.y);
+        across.min(self.length * end.unit) * scale <= end.detail * (1.0 + ROUNDING)
+    }
+}
+
+/// An instance in a form.
+pub(super) struct Step {
+    /// From the middle of the form to that of the instance.
+    pub(super) offset: DVec3,
+    pub(super) form: usize,
+    /// Class of all that is in the instance, where it begins one.
+    pub(super) class: Option<u16>,
+}
+
+/// The forms that are known before the descent, those of outer instances first.
+pub(super) struct Forms {
+    pub(super) known: Vec<Form>,
+    steps: Vec<Step>,
+    /// The instances of the initiator, from far to near: offsets are positions.
+    pub(super) start: Vec<Step>,
+}
+
+/// Forms by level, kind of object, and linear part.
+type Names = HashMap<(u32, usize, [i64; 9]), usize>;
+
+struct Finder<'a> {
+    parts: &'a [Part],
+    class_by: ClassBy,
+    /// Multiples of the unit in which linear parts are compared.
+    fine: f64,
+    names: Names,
+    forms: Forms,
+}
+
+impl Forms {
+    /// Finds forms, from the initiator on.
+    pub(super) fn find(
+        parts: &[Part],
+        start: &[Child],
+        end: &End,
+        class_by: ClassBy,
+        placement: &Placement,
+        pad: f64,
+    ) -> Self {
+        let [far, near] = placement.range;
+        let scale = match placement.projection {
+            Projection::Parallel => 1.0,
+            Projection::Central { focus, .. } if near < 0.0 => focus / -near,
+            Projection::Central { focus, .. } => focus / (near - far),
+        };
+        let reach = parts.iter().map(|part| part.hull.reach());
+        let mut finder = Finder {
+            parts,
+            class_by,
+            fine: FINE * scale * reach.fold(0.0, f64::max),
+            names: Names::new(),
+            forms: Self {
+                known: Vec::new(),
+                steps: Vec::new(),
+                start: Vec::new(),
+            },
+        };
+        for child in start {
+            let linear = child.map.matrix3;
+            let form = Form::new(parts, (child.object, 0), linear, child.length);
+            let offset = child.map.translation + form.middle;
+            let form = finder.number(form);
+            finder.forms.start.push(Step {
+                offset,
+                form,
+                class: None,
+            });
+        }
+        finder.forms.sort_start();
+        let mut next = 0;
+        while next < finder.forms.known.len() && finder.forms.known.len() < MAX_FORMS {
+            let form = &finder.forms.known[next];
+            if !scene::ends(parts, form, end) && !form.is_small(end, scale) {
+                finder.expand(next);
+            }
+            next += 1;
+        }
+        let mut forms = finder.forms;
+        if let Projection::Parallel = placement.projection {
+            forms.count(parts, end);
+            forms.admit_stamps(pad);
+        }
+        forms
+    }
+
+    /// Returns the instances in a form, from far to near, if they are known.
+    #[inline]
+    pub(super) fn steps(&self, form: &Form) -> Option<&[Step]> {
+        form.steps.clone().map(|steps| &self.steps[steps])
+    }
+
+    fn sort_start(&mut self) {
+        sort(&mut self.start, &self.known);
+    }
+
+    /// Counts the elements of all forms, the inner ones first.
+    fn count(&mut self, parts: &[Part], end: &End) {
+        for number in (0..self.known.len()).rev() {
+            let form = &self.known[number];
+            let elements = match self.steps(form) {
+                Some(steps) => steps.iter().try_fold(0, |sum: u64, step| {
+                    let inner = self.known[step.form].elements;
+                    let sum = sum.checked_add(inner)?;
+                    (inner > 0 && sum <= MAX_ELEMENTS).then_some(sum)
+                }),
+                None => (scene::ends(parts, form, end) || form.is_small(end, 1.0)).then_some(1),
+            };
+            self.known[number].elements = elements.unwrap_or(0);
+        }
+    }
+
+    /// Admits stamps of forms as large as there is memory for.
+    fn admit_stamps(&mut self, pad: f64) {
+        let mut reach = REACH;
+        loop {
+            let fits =
+                |form: &Form| form.elements > 0 && form.half.x.max(form.half.y) + pad <= reach;
+            let samples = self.known.iter().filter(|form| fits(form)).map(|form| {
+                let sides = 2.0 * (form.half + pad + 1.0);
+                sides.x * sides.y
+            });
+            if samples.sum::<f64>() <= MAX_SAMPLES {
+                for form in self.known.iter_mut().filter(|form| fits(form)) {
+                    let stamps = (0..PHASES * PHASES).map(|_| OnceLock::new());
+                    form.stamps = Some(stamps.collect());
+                }
+                return;
+            }
+            reach /= 2.0;
+        }
+    }
+}
+
+impl Finder<'_> {
+    /// Returns the number of a form, which is known from then on.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "casts from floats saturate"
+    )]
+    fn number(&mut self, form: Form) -> usize {
+        let kind = match self.class_by {
+            ClassBy::FirstMap => form.object,
+            _ => self.parts[form.object].kind,
+        };
+        let numbers = form.linear.to_cols_array();
+        let linear = numbers.map(|value| (value * self.fine).round() as i64);
+        let known = &mut self.forms.known;
+        let name = (form.level, kind, linear);
+        *self.names.entry(name).or_insert_with(|| {
+            known.push(form);
+            known.len() - 1
+        })
+    }
+
+    /// Finds the instances in a form.
+    fn expand(&mut self, number: usize) {
+        let parts = self.parts;
+        let mut steps: Vec<Step> = Vec::new();
+        for child in &parts[self.forms.known[number].object].children {
+            let outer = &self.forms.known[number];
+            let inner = outer.inner(parts, child);
+            let offset = outer.offset(child, &inner);
+            let class = match (self.class_by, outer.level) {
+                (ClassBy::LastMap, 0) => Some(class(parts[child.object].origin)),
+                _ => None,
+            };
+            let form = self.number(inner);
+            let is_known =
+                |step: &Step| step.form == form && step.offset.abs_diff_eq(offset, 1.0 / FINE);
+            if !steps.iter().any(is_known) {
+                steps.push(Step {
+                    offset,
+                    form,
+                    class,
+                });
+            }
+        }
+        sort(&mut steps, &self.forms.known);
+        let first = self.forms.steps.len();
+        self.forms.steps.extend(steps);
+        self.forms.known[number].steps = Some(first..self.forms.steps.len());
+    }
+}
+
+/// Sorts instances: the nearest last; of those that are equally near, the first.
+fn sort(steps: &mut [Step], forms: &[Form]) {
+    let near = |step: &Step| step.offset.z + forms[step.form].half.z;
+    steps.reverse();
+    steps.sort_by(|a, b| near(a).total_cmp(&near(b)));
+}
+
+/// Returns the class of a map.
+pub(super) fn class(map: Option<usize>) -> u16 {
+    map.map_or(0, |map| u16::try_from(map).unwrap_or(MAX_CLASS))
+}
