@@ -17,7 +17,7 @@ use super::{Failure, help, output, text};
 
 /// Converts the entries of Fractint files to files that kfrac can grow
 ///
-/// An L-system file (.l) or a file of systems of maps in the plane (.ifs) has many entries, each of which
+/// An L-system file (.l) or a file of systems of maps, of the plane or (3D) of space (.ifs), has many entries, each of which
 /// becomes a YAML file of the same name. Unsupported constructs are reported for each entry, and an entry
 /// that cannot be converted faithfully is not written. The exit status is 1 if an entry is not written.
 #[derive(clap::Args)]

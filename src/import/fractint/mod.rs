@@ -26,7 +26,7 @@ use entries::Entry;
 pub enum Fractint {
     /// L-systems, in files with the extension `.l`.
     LSystems,
-    /// Systems of affine maps of the plane, in files with the extension `.ifs`.
+    /// Systems of affine maps of the plane or of space, in files with the extension `.ifs`.
     Ifs,
 }
 

@@ -178,6 +178,51 @@ fn systems_of_maps_are_read() {
 }
 
 #[test]
+fn systems_in_space_are_read() {
+    let text = "3dfern (3D) {
+  .00  .00 0 .0 .18 .0 0  0.0 0.00 0 0.0 0 .01
+  .85  .00 0 .0 .85 .1 0 -0.1 0.85 0 1.6 0 .85
+  .20 -.20 0 .2 .20 .0 0  0.0 0.30 0 0.8 0 .07
+ -.20  .20 0 .2 .20 .0 0  0.0 0.30 0 0.8 0 .07
+}
+few (3d) {
+ .5 0 0 0 .5 0 0 0 .5 0 0 0 .5
+ .5 0 0 0 .5 0 0 0 .5 1 0 .5
+ .5 0 0 0 .5 0 0 0 .5 0 1 0 .5
+}
+flat { .5 0 0 0 .5 0 0 0 .5 0 0 0 1 }
+";
+    let (imported, stray) = read(&source(text), Fractint::Ifs);
+    let [fern, few, flat] = &imported[..] else {
+        panic!("{imported:?}");
+    };
+    assert!(stray.is_empty() && fern.found.is_empty(), "{fern:?}");
+    let document = fern.document.as_ref().expect("it is right");
+    let Ok((Model::IfsInSpace(system), _)) = document.resolve(&[]) else {
+        panic!("it is a system in space");
+    };
+    let map = &system.ifs().maps()[1];
+    assert_eq!(map.weight, Some(0.85));
+    // Coefficients in the order of x' = a x + b y + c z + j, and so on: the stem bends towards the viewer.
+    assert_eq!(
+        map.affine.to_cols_array(),
+        [
+            0.85, 0.0, 0.0, 0.0, 0.85, -0.1, 0.0, 0.1, 0.85, 0.0, 1.6, 0.0
+        ]
+    );
+    assert!(few.document.is_none() && flat.document.is_none());
+    let short = few.found.iter().next().expect("it has a mistake");
+    let place = short.place().expect("it has a place");
+    assert_eq!(
+        short.message(),
+        "this line has 12 numbers, and a map has 13"
+    );
+    assert_eq!(place.line(), 9);
+    let flat = flat.found.to_string();
+    assert!(flat.contains("(3D) after the name"), "{flat}");
+}
+
+#[test]
 fn systems_that_cannot_be_told_are_named_and_the_others_read() {
     let (imported, _) = read(
         &source(
@@ -200,7 +245,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
         (
             "space",
             false,
-            vec![("the maps are of space", "space (3D)")],
+            vec![("the last map has 1 of 13 numbers", "1")],
         ),
         ("odd", false, vec![("'(4D)' is not understood", "odd (4D)")]),
         ("word", false, vec![("'two' is not a number", "two")]),
