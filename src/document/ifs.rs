@@ -33,12 +33,32 @@ pub enum MapsDocument {
     /// Contractions towards vertices by a common factor.
     Vertices {
         /// The vertices.
-        points: Vec<WrittenPoint>,
+        points: VerticesDocument,
         /// Contraction factor f of the maps x → f x + (1 − f) v.
         shrink: WrittenNumber,
     },
     /// The maps of fractal interpolation.
     Interpolated(InterpolationDocument),
+}
+
+/// Vertices as written.
+#[derive(Clone, Debug)]
+pub enum VerticesDocument {
+    /// A list of points, or the corners of a solid.
+    Listed(Vec<WrittenPoint>),
+    /// Points that are drawn at random.
+    Scattered(Box<ScatterDocument>),
+}
+
+/// Points in an ellipsoid, or in an ellipse of the plane, as written.
+#[derive(Clone, Debug)]
+pub struct ScatterDocument {
+    /// Half lengths of its axes, which are those of the coordinates.
+    pub ellipsoid: WrittenPoint,
+    /// Number of points.
+    pub count: WrittenNumber,
+    /// Seed of the random draws; 0 if `None`.
+    pub seed: Option<WrittenNumber>,
 }
 
 /// Fractal interpolation as written.

@@ -27,8 +27,8 @@ mod yaml;
 
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
-    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ShapeDocument,
-    TurnDocument,
+    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ScatterDocument,
+    ShapeDocument, TurnDocument, VerticesDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,

@@ -15,6 +15,7 @@ mod set;
 mod space;
 mod transform;
 mod turtle;
+mod vertices;
 mod word;
 
 pub(super) use base_element::BASE_ELEMENT;

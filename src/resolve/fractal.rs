@@ -5,7 +5,7 @@ use crate::geometry::Frame2;
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
 
-use super::{Resolver, resolve, whole_number};
+use super::{Resolver, resolve};
 
 /// Maximum number of lines, curves and sides in all sets of a file that are fractals.
 const MAX_PIECES: usize = 100_000;
@@ -14,15 +14,7 @@ impl<K> Resolver<K> {
     /// Grows a fractal and returns the outlines that it draws. Reports a mistake and returns `None`.
     pub(super) fn fractal(&mut self, document: &FractalDocument) -> Option<Shape> {
         let steps = document.steps.as_ref().map(|steps| self.steps(steps));
-        let seed = document.seed.as_ref().map(|seed| {
-            let value = self.constant(seed)?;
-            let whole = whole_number(value, u32::MAX);
-            if whole.is_none() {
-                let message = format!("a seed is a whole number from 0, not {value}");
-                self.error(&seed.place, message);
-            }
-            whole
-        });
+        let seed = self.seed(document.seed.as_ref());
         let map = document
             .map
             .as_ref()
@@ -57,7 +49,7 @@ impl<K> Resolver<K> {
             }
         };
         let growth = Growth {
-            seed: seed.unwrap_or(Some(0))?.into(),
+            seed: seed?.into(),
             ..Growth::steps(steps)
         };
         let frame = map.map_or(Some(Frame2::UNIT), |map| map.map(Frame2::from))?;

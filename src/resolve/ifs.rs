@@ -1,5 +1,6 @@
 //! Resolution of iterated function systems.
 
+mod scatter;
 mod space;
 
 use crate::diagnostic::did_you_mean;
@@ -150,7 +151,7 @@ impl Resolver<OfIfs> {
             }
             MapsDocument::Vertices { points, shrink } => {
                 let factor = self.constant_program(shrink);
-                let points = self.points(points)?;
+                let points = self.vertices(points, Self::point)?;
                 let factors = [factor.clone(), factor];
                 let toward = |point| {
                     let map = Affine::scaling(&mut Symbols, factors.clone());

@@ -6,7 +6,7 @@ use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type
 use crate::geometry::DVec2;
 use crate::rule::ElementContext;
 
-use super::{MAX_MISTAKES, Resolver};
+use super::{MAX_MISTAKES, Resolver, whole_number};
 
 impl<K> Resolver<K> {
     /// Compiles a number in a scope. Reports a mistake and returns an unknown program.
@@ -61,6 +61,20 @@ impl<K> Resolver<K> {
     /// Evaluates a number that may be left out. Returns `None` if its value is unknown.
     pub(super) fn optional(&mut self, number: Option<&WrittenNumber>) -> Option<Option<f64>> {
         number.map_or(Some(None), |number| self.constant(number).map(Some))
+    }
+
+    /// Evaluates a seed, 0 where it is left out. Reports a mistake and returns `None`.
+    pub(super) fn seed(&mut self, number: Option<&WrittenNumber>) -> Option<u32> {
+        let Some(number) = number else {
+            return Some(0);
+        };
+        let value = self.constant(number)?;
+        let whole = whole_number(value, u32::MAX);
+        if whole.is_none() {
+            let message = format!("a seed is a whole number from 0, not {value}");
+            self.error(&number.place, message);
+        }
+        whole
     }
 
     /// Compiles a number in the scope of parameters. The program is a constant if its value is known.

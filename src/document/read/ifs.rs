@@ -16,7 +16,8 @@ use crate::kind::Kind;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, read_initial, read_set};
-use super::space::{self, SOLIDS, TURN};
+use super::space::{self, TURN};
+use super::vertices::{VERTICES, read_vertices};
 use super::{KindTable, OfKind};
 
 /// Keys of an iterated function system.
@@ -111,19 +112,6 @@ const WAYS_TO_PLACE: [Way; 3] = [
     way(&["scale"], &["matrix", "times", "conjugate"]),
     way(&["times"], &["matrix", "scale", "rotate"]),
 ];
-
-const VERTICES: Shape = Shape {
-    what: "vertices",
-    keys: &[&keys![
-        points: Form::List(&Form::Place, 1, None), "The vertices: a map towards each.";
-        solid: Form::Words(&SOLIDS), "In place of `points`, in space: the corners of a solid.";
-        needed shrink: Form::Number,
-            "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it."
-            => "vertices need `shrink`: what is left of the way to one";
-    ]],
-    ways: &[way(&["points"], &["solid"]), way(&["solid"], &["points"])],
-    hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
-};
 
 const INTERPOLATION: Shape = Shape {
     what: "an interpolation",
@@ -350,32 +338,6 @@ pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPo
     None
 }
 
-fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
-    let fields = reader.fields(node, &VERTICES)?;
-    let points = match (fields.take("solid"), fields.take("points")) {
-        (Some(node), None) if reader.is_in_space => space::read_solid(reader, node),
-        (Some(_), given) => {
-            let (message, hint) = match given {
-                Some(_) => ("`solid` stands in place of `points`", "write one of them"),
-                None => ("a solid lies in space", "write `space: 3`"),
-            };
-            reader.error_with_hint(fields.place_of("solid"), message, hint);
-            None
-        }
-        (None, Some(_)) => read_points(reader, &fields, VERTICES.hint),
-        (None, None) => {
-            let place = node.place.first_line();
-            reader.error_with_hint(&place, "there are no `points`", VERTICES.hint);
-            None
-        }
-    };
-    let shrink = fields.optional(reader, "shrink");
-    Some(MapsDocument::Vertices {
-        points: points?,
-        shrink: shrink?,
-    })
-}
-
 fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationDocument> {
     let fields = reader.fields(node, &INTERPOLATION)?;
     let points = read_points(reader, &fields, INTERPOLATION.hint);
@@ -402,7 +364,7 @@ fn read_interpolation(reader: &mut Reader, node: &Node) -> Option<InterpolationD
 }
 
 /// Reads the required key `points`.
-fn read_points(
+pub(super) fn read_points(
     reader: &mut Reader,
     fields: &Fields<'_>,
     hint: &'static str,

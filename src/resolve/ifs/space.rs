@@ -42,8 +42,7 @@ impl Resolver<OfIfs> {
             }
             MapsDocument::Vertices { points, shrink } => {
                 let factor = self.constant_program(shrink);
-                let points: Vec<_> = points.iter().map(|it| self.point_in_space(it)).collect();
-                let points = points.into_iter().collect::<Option<Vec<_>>>()?;
+                let points = self.vertices(points, Self::point_in_space)?;
                 let toward = |point: &[Program; 3]| {
                     let factors = std::array::from_fn(|_| factor.clone());
                     Affine::scaling(&mut Symbols, factors).about(&mut Symbols, point)
