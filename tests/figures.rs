@@ -7,6 +7,7 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::document::Document;
 use kfrac::figure::rule::{self, RuleFigureOptions};
 use kfrac::model::Model;
+use kfrac::render::space::Camera;
 use kfrac::render::{Format, Labels, Size};
 use kfrac::rule::Rule;
 use svg::Path;
@@ -316,4 +317,55 @@ fn what_is_odd_is_drawn_all_the_same() {
         let (size, _) = svg::read(&String::from_utf8(bytes).unwrap());
         assert!(size[0] < 2000 && size[1] < 2000, "{text}");
     }
+}
+
+#[test]
+fn systems_in_space_show_their_maps_as_seen() {
+    let text = "{title: Cube, kind: ifs, space: 3, vertices: {solid: cube, shrink: 1/2}}";
+    let document = document_of(text);
+    let (_, paths) = svg::read(&svg_of(&document));
+    let labels = labels(&paths);
+    let labels: Vec<_> = labels.iter().filter_map(|it| it.label.as_deref()).collect();
+    for label in ["Cube", "initial set", "maps", "1", "8"] {
+        assert!(labels.contains(&label), "{label}: {labels:?}");
+    }
+    // Three edges of a cube are hidden by itself: they are dashed, and nine are seen.
+    let lines = |is_dashed: bool, count: usize| {
+        let paths = paths.iter().filter(|path| path.label.is_none());
+        let alike = paths.filter(|path| path.is_dashed == is_dashed && path.lines.len() == count);
+        alike.count()
+    };
+    // In the panels of the initial set and of the maps.
+    assert_eq!(lines(true, 3), 2);
+    assert_eq!(lines(true, 9), 1);
+    // The initial set, and its eight images.
+    assert_eq!(lines(false, 9), 9);
+    let seen = |from| {
+        let (model, options) = (
+            document.resolve(&[]).unwrap().0,
+            RuleFigureOptions::default(),
+        );
+        let camera = Camera::default().from(from);
+        let mut bytes = Vec::new();
+        rule::write(&model, &document, None, &options.camera(camera), &mut bytes).unwrap();
+        bytes
+    };
+    assert_ne!(seen([30.0, 25.0]), seen([0.0, 0.0]));
+}
+
+#[test]
+fn every_system_in_space_of_the_library_has_a_figure() {
+    let mut drawn = 0;
+    for name in names(Shelf::IFS) {
+        let document = document(&name);
+        if document.resolve(&[]).unwrap().0.is_in_space() {
+            let (size, paths) = svg::read(&svg_of(&document));
+            let inside = |path: &Path| {
+                (0..2).all(|side| path.min[side] >= 0 && path.max[side] <= 100 * size[side])
+            };
+            assert!(paths.iter().all(inside), "{name}");
+            drawn += 1;
+        }
+    }
+    assert!(drawn >= 11);
 }

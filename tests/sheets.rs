@@ -203,3 +203,92 @@ fn what_is_wrong_with_the_command_line_is_said() {
     run(folder.path(), &["koch", "--steps", "2..30"]).code(1);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn sets_in_space_are_shown_from_several_directions() {
+    let folder = tempfile::tempdir().unwrap();
+    let kfrac = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("kfrac").unwrap();
+        let command = command.current_dir(folder.path()).args(arguments);
+        let output = command.output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), said)
+    };
+    let pixels = |name: &str| {
+        let pixmap = tiny_skia::Pixmap::load_png(folder.path().join(name)).unwrap();
+        ([pixmap.width(), pixmap.height()], pixmap)
+    };
+    let sheet = [
+        "sheet",
+        "menger",
+        "--size",
+        "64",
+        "--columns",
+        "2",
+        "--steps",
+        "2",
+    ];
+    let from = [&sheet[..], &["--from", "front,0,90"]].concat();
+    let (status, said) = kfrac(&from);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(
+        said.starts_with("menger-sheet.png: 2 pictures of menger, "),
+        "{said}"
+    );
+    let (size, sheet_of_two) = pixels("menger-sheet.png");
+    // The front view and the view from above of the sponge are equal, and as the single picture.
+    let single = [
+        "grow", "menger", "--size", "64", "--steps", "2", "--from", "front", "-o", "one.png", "-q",
+    ];
+    assert_eq!(kfrac(&single).0, Some(0));
+    let ([64, 64], one) = pixels("one.png") else {
+        panic!("the front of a cube is a square");
+    };
+    let column = (size[0] - 3 * 16) / 2;
+    for left in [16, 32 + column] {
+        let left = left + (column - 64) / 2;
+        for (x, y) in (0..64).flat_map(|x| (0..64).map(move |y| (x, y))) {
+            assert_eq!(sheet_of_two.pixel(left + x, 16 + y), one.pixel(x, y));
+        }
+    }
+    let (status, said) = kfrac(&[
+        "sheet",
+        "cloud",
+        "--set",
+        "cloud=1,2",
+        "--size",
+        "32",
+        "--steps",
+        "1",
+    ]);
+    assert_eq!(status, Some(0), "{said}");
+    for (arguments, message) in [
+        (
+            &["sheet", "menger", "-o", "sheet.svg"][..],
+            "is drawn as .png, not as .svg",
+        ),
+        (
+            &["sheet", "menger", "--stroke-width", "2"],
+            "--stroke-width is for the plane",
+        ),
+        (
+            &["sheet", "koch", "--from", "front"],
+            "--from applies to sets in space",
+        ),
+        (
+            &["show", "koch", "--from", "front"],
+            "--from applies to sets in space",
+        ),
+        (
+            &["grow", "menger", "--from", "front,top"],
+            "kfrac sheet shows several",
+        ),
+        (
+            &["grow", "menger", "--from", "front,30"],
+            "write azimuth and elevation",
+        ),
+    ] {
+        let (status, said) = kfrac(arguments);
+        assert!(status == Some(2) && said.contains(message), "{said}");
+    }
+}

@@ -18,6 +18,7 @@ use crate::export;
 use crate::fractal::Goal;
 use crate::render::RenderError;
 
+use super::camera::SpaceArguments;
 use super::growth::GrowthArguments;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
@@ -27,7 +28,6 @@ use chaos::ChaosArguments;
 use drawing::Drawing;
 use plan::{Format, Plan};
 use plot::PlotArguments;
-use space::SpaceArguments;
 use svg::SvgArguments;
 use zoom::ZoomArguments;
 

@@ -1,5 +1,6 @@
 //! Command line: one module per subcommand, and helpers that they share.
 
+mod camera;
 mod cat;
 mod check;
 mod compare;
@@ -68,7 +69,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Grow(Box<grow::Arguments>),
-    Sheet(sheet::Arguments),
+    Sheet(Box<sheet::Arguments>),
     Show(show::Arguments),
     Info(info::Arguments),
     Count(count::Arguments),

@@ -1,5 +1,7 @@
 //! `kfrac sheet`: approximants or members of a family, side by side.
 
+mod space;
+
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -16,6 +18,7 @@ use crate::grow::{Growth, Progress};
 use crate::render::{self, Size};
 use crate::style::{Named, Style, Width};
 
+use super::camera::SpaceArguments;
 use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
@@ -28,7 +31,7 @@ use super::{Failure, format, help, length, light, number, output, steps, text};
 /// All pictures have the same scale, each with its step and number of elements below. If --set gives a
 /// parameter several values, as in angle=10,20,30 or angle=0..90, the sheet shows one step for each value.
 /// Several parameters with the same number of values are varied together, beginning with the first value of
-/// each.
+/// each. A set in space is shown from every direction of --from, as a PNG.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -40,7 +43,7 @@ pub(super) struct Arguments {
     /// shows fewer steps, and a note reports it.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
-    /// Output file, or - for standard output [default: NAME-sheet.svg]
+    /// Output file, or - for standard output [default: NAME-sheet.svg, or .png in space]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// Output format [default: from the extension of the file]
@@ -60,6 +63,8 @@ pub(super) struct Arguments {
     size: Size,
     #[command(flatten)]
     picture: PictureArguments,
+    #[command(flatten)]
+    space: SpaceArguments,
 }
 
 const MORE: &str = "\
@@ -70,6 +75,8 @@ Examples:
       Draws the tree for six angles
   kfrac sheet complex-pair --set 's=[0.3,0.2]..[0.6,0.5]' --samples 8 --columns 4
       Draws a fractal for eight values of a complex parameter, both parts at once
+  kfrac sheet menger --from front,side,top,iso --steps 4
+      Draws a set in space from four directions, into menger-sheet.png
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
       Draws three larger pictures in a row, as a PNG
 ";
@@ -77,15 +84,27 @@ Examples:
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     arguments.picture.refuse_hits()?;
-    let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let (growth, rule) = (&arguments.growth, &arguments.rule);
     let family = rule.load_family(catalogue, growth.quiet, arguments.samples)?;
-    if !family.is_empty() {
+    if family
+        .first()
+        .is_some_and(|(_, first)| first.model.is_in_space())
+    {
+        return arguments.draw_in_space(&family, start);
+    }
+    if let Some((_, first)) = family.first() {
+        arguments.space.refuse_in_plane(first)?;
         let grown = |(settings, loaded): Member| (settings, loaded.grown(growth));
+        let format = format::choose(arguments.format, arguments.output.as_deref())?;
         let family: Vec<_> = family.into_iter().map(grown).collect();
         return arguments.draw_family(family, format, start);
     }
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
+    if loaded.model.is_in_space() {
+        return arguments.draw_in_space(&[(Vec::new(), loaded)], start);
+    }
+    arguments.space.refuse_in_plane(&loaded)?;
+    let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let steps = match &arguments.steps {
         Some(steps) => steps.clone(),
         None => Several::up_to(steps::choose(None, &loaded)?.min(steps::MAX_CELLS - 1)),

@@ -7,8 +7,8 @@ use clap::ValueHint;
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
 use crate::figure::rule;
-use crate::graph::CompileError;
 use crate::model::Kind;
+use crate::render::space::Camera;
 use crate::render::{self, RenderError, Size};
 use crate::style::Named;
 
@@ -16,7 +16,7 @@ use super::component::Component;
 use super::labels::labels;
 use super::picture;
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, format, help, length, output, text};
+use super::{Failure, camera, format, help, length, output, text};
 
 /// Draws a rule as a figure: initiator, generators, base element; maps; objects
 ///
@@ -40,6 +40,10 @@ pub(super) struct Arguments {
     /// Background colour of the figure
     #[arg(long, value_name = "COLOR", value_parser = picture::ink)]
     background: Option<picture::Ink>,
+    /// Direction from which a system in space is seen: azimuth and elevation in degrees, or front, side, top or iso
+    /// [default: 30,25]
+    #[arg(long, value_name = "AZ,EL", value_parser = camera::direction, allow_hyphen_values = true)]
+    from: Option<[f64; 2]>,
     /// Suppresses all messages except errors
     #[arg(long, short)]
     quiet: bool,
@@ -51,6 +55,8 @@ Examples:
       Draws the rule of the dragon sweep, into dragon-rule.svg
   kfrac show pythagoras --set angle=30 --background white -o rule.png
       Draws a rule with the given parameter, as a PNG on white
+  kfrac show menger --from 20,30
+      Draws the maps of a system in space as they are seen from a direction
   kfrac show generators/dragon
       Draws the generator alone, into dragon-generator.svg
 ";
@@ -67,8 +73,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         }
         None => arguments.rule.load(catalogue, arguments.quiet)?,
     };
-    if loaded.model.is_in_space() {
-        return Err(loaded.failure(&CompileError::InSpace));
+    if arguments.from.is_some() && !loaded.model.is_in_space() {
+        return Err(camera::in_plane("from", &loaded));
     }
     let alone = component.as_ref().map(Component::shelf);
     let suffix = alone.map_or("-rule".into(), |shelf| {
@@ -125,10 +131,16 @@ impl Arguments {
         options.extend(self.size.map(|size| ("size", size.to_string())));
         let background = self.background.map(|ink| ink.to_string());
         options.extend(background.map(|colour| ("background", colour)));
+        let from = self
+            .from
+            .map(|from| from.map(|it| it.to_string()).join(","));
+        options.extend(from.map(|from| ("from", from)));
+        let camera = Camera::default();
         rule::RuleFigureOptions {
             format,
             size: self.size,
             background: self.background.and_then(picture::Ink::colour),
+            camera: camera.from(self.from.unwrap_or(camera.from)),
             labels: labels(loaded, &shown, "show", options),
         }
     }

@@ -13,6 +13,7 @@ mod lines;
 mod marks;
 mod page;
 mod panel;
+mod space;
 mod structure;
 mod system;
 mod words;
@@ -25,6 +26,7 @@ use crate::document::Document;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::model::Model;
 use crate::parallel::Team;
+use crate::render::space::{Camera, SpaceError};
 use crate::render::{
     self, Drawing, Format, Labels, Pen, RenderError, Size, Surface, write_drawing,
 };
@@ -44,6 +46,8 @@ pub struct RuleFigureOptions {
     pub size: Option<Size>,
     /// Background colour; none by default.
     pub background: Option<Colour>,
+    /// Direction from which a system in space is seen; figures are parallel projections.
+    pub camera: Camera,
     /// Metadata of the file. The title stands above the figure.
     pub labels: Labels,
 }
@@ -52,6 +56,7 @@ setters!(RuleFigureOptions {
     format: Format,
     size: Option<Size>,
     background: Option<Colour>,
+    camera: Camera,
     labels: Labels,
 });
 
@@ -61,6 +66,7 @@ impl Default for RuleFigureOptions {
             format: Format::Svg,
             size: None,
             background: None,
+            camera: Camera::default(),
             labels: Labels::default(),
         }
     }
@@ -73,7 +79,8 @@ impl Default for RuleFigureOptions {
 ///
 /// # Errors
 ///
-/// Returns an error if there is no figure of the kind, if the picture is too large, or if `out` fails.
+/// Returns an error if there is no figure of the kind, if the camera is not valid, if the picture is too large, or if
+/// `out` fails.
 pub fn write(
     model: &Model,
     document: &Document,
@@ -85,6 +92,10 @@ pub fn write(
     let page = match (model, document.rule()) {
         (Model::Rule(rule), Some(document)) => page::page(rule, document, alone, title),
         (Model::Ifs(system), _) => system::page(system, title),
+        (Model::IfsInSpace(system), _) => {
+            let view = options.camera.rotation().map_err(SpaceError::from)?;
+            space::page(system, view, title)
+        }
         (Model::Instancing(structure), _) => structure::page(structure, title),
         _ => return Err(RenderError::NoFigure(model.kind())),
     };

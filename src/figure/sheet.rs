@@ -1,5 +1,9 @@
 //! Sheets: approximants side by side at one scale, each with its name and its number of elements.
 
+mod space;
+
+pub use space::{SpaceCell, write_in_space};
+
 use std::io::Write;
 
 use crate::geometry::DVec2;
@@ -82,21 +86,10 @@ pub fn write(
         scenes.push((caption, Scene::new(survey, &cell.growth, canvas)));
         elements += survey.elements;
     }
-    let widest = scenes
-        .iter()
-        .map(|(caption, _)| font.width(caption, CAPTION));
-    let widest = widest.fold(0.0, f64::max).ceil();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "captions are short"
-    )]
+    let captions = scenes.iter().map(|(caption, _)| caption.as_str());
     let sheet = Sheet {
-        columns: columns.unwrap_or_else(|| columns_for(cells.len(), canvas.size())),
-        column: canvas.size()[0].max(widest as u32),
-        row: canvas.size()[1] + CAPTION_HEIGHT,
+        grid: Grid::of(captions, &font, canvas.size(), columns),
         scenes,
-        canvas,
         font,
         style,
     };
@@ -107,32 +100,95 @@ pub fn write(
     })
 }
 
-struct Sheet<'a> {
-    /// The approximants with their captions.
-    scenes: Vec<(String, Scene<'a>)>,
-    /// Canvas of every picture.
-    canvas: Canvas,
+/// Places of the pictures of a sheet.
+struct Grid {
+    count: u32,
+    /// Width and height of every picture, in pixels.
+    cell: [u32; 2],
     columns: u32,
     /// Width of a column, in pixels, without the gap.
     column: u32,
     /// Height of a row, in pixels, without the gap.
     row: u32,
-    font: Font,
-    style: &'a Style,
 }
 
-impl Drawing for Sheet<'_> {
+impl Grid {
+    fn of<'a>(
+        captions: impl ExactSizeIterator<Item = &'a str>,
+        font: &Font,
+        cell: [u32; 2],
+        columns: Option<u32>,
+    ) -> Self {
+        let count = captions.len();
+        let widest = captions.map(|caption| font.width(caption, CAPTION));
+        let widest = widest.fold(0.0, f64::max).ceil();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "captions are short"
+        )]
+        let widest = widest as u32;
+        Self {
+            count: u32::try_from(count).unwrap_or(u32::MAX),
+            cell,
+            columns: columns.unwrap_or_else(|| columns_for(count, cell)),
+            column: cell[0].max(widest),
+            row: cell[1] + CAPTION_HEIGHT,
+        }
+    }
+
+    /// Returns width and height of the sheet.
     fn size(&self) -> [u32; 2] {
-        let count = u32::try_from(self.scenes.len()).unwrap_or(u32::MAX);
         let sides = [
-            (self.columns.min(count), self.column),
-            (count.div_ceil(self.columns), self.row),
+            (self.columns.min(self.count), self.column),
+            (self.count.div_ceil(self.columns), self.row),
         ];
         sides.map(|(count, side)| {
             side.saturating_add(GAP)
                 .saturating_mul(count)
                 .saturating_add(GAP)
         })
+    }
+
+    /// Returns the upper left corners of the columns and rows.
+    fn corners(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        (0..self.count).map(|number| {
+            let left = GAP + number % self.columns * (self.column + GAP);
+            [left, GAP + number / self.columns * (self.row + GAP)]
+        })
+    }
+
+    /// Returns the upper left corner of a picture at the corner of its column and row.
+    fn picture(&self, [left, top]: [u32; 2]) -> [u32; 2] {
+        [left + (self.column - self.cell[0]) / 2, top]
+    }
+
+    /// Draws the caption of the picture at the corner of its column and row.
+    fn caption(
+        &self,
+        surface: &mut impl Surface,
+        font: &Font,
+        caption: &str,
+        [left, top]: [u32; 2],
+    ) -> Result<(), RenderError> {
+        let middle = f64::from(left) + f64::from(self.column) / 2.0;
+        let at = DVec2::new(middle, f64::from(top + self.cell[1]) + CAPTION + 2.0);
+        font.draw(surface, caption, CAPTION, at, Anchor::Middle, LABEL)?;
+        Ok(())
+    }
+}
+
+struct Sheet<'a> {
+    /// The approximants with their captions.
+    scenes: Vec<(String, Scene<'a>)>,
+    grid: Grid,
+    font: Font,
+    style: &'a Style,
+}
+
+impl Drawing for Sheet<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.grid.size()
     }
 
     fn background(&self) -> Option<Colour> {
@@ -144,19 +200,12 @@ impl Drawing for Sheet<'_> {
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
-        let [width, height] = self.canvas.size();
-        let places = (0..).flat_map(|row| (0..self.columns).map(move |column| [column, row]));
-        for ((caption, scene), [column, row]) in self.scenes.iter().zip(places) {
-            let left = GAP + column * (self.column + GAP);
-            let top = GAP + row * (self.row + GAP);
-            if surface.enter([left + (self.column - width) / 2, top], [width, height])? {
+        for ((caption, scene), corner) in self.scenes.iter().zip(self.grid.corners()) {
+            if surface.enter(self.grid.picture(corner), self.grid.cell)? {
                 scene.draw(surface, team)?;
                 surface.leave()?;
             }
-            let middle = f64::from(left) + f64::from(self.column) / 2.0;
-            let at = DVec2::new(middle, f64::from(top + height) + CAPTION + 2.0);
-            self.font
-                .draw(surface, caption, CAPTION, at, Anchor::Middle, LABEL)?;
+            self.grid.caption(surface, &self.font, caption, corner)?;
         }
         Ok(())
     }

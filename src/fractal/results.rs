@@ -86,13 +86,8 @@ impl Fractal {
         let options = self.options(Format::Png, size.into())?;
         if let Some(graph) = self.graph_to_draw_in_space(&options)? {
             let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
-            return Ok(pixels_in_space(
-                graph,
-                steps,
-                &options,
-                &self.space,
-                cancel,
-            )?);
+            let drawn = pixels_in_space(graph, steps, &options, &self.space, cancel);
+            return Ok(drawn.map(|(pixels, _)| pixels)?);
         }
         let pixels = self.draw_by(&options, |graph, growth, options| {
             render::pixels(graph, growth, options)

@@ -62,6 +62,7 @@ pub use instanced::{NotInstanced, write_usda};
 pub use options::{Detail, Format, Labels, Options, PngEncoding};
 pub(crate) use paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
 pub use picture::{Empty, Instanced, Nearest, Picture};
+pub(crate) use pixels::draw_paths;
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
 pub use png::TooManyPixels;

@@ -1,8 +1,9 @@
 //! Pictures as pixels in memory, without an encoder.
 
+use std::io::Write;
 use std::sync::atomic::AtomicBool;
 
-use tiny_skia::Pixmap;
+use tiny_skia::{IntSize, Pixmap};
 
 use crate::graph::Graph;
 use crate::grow::Growth;
@@ -13,7 +14,7 @@ use super::drawing::Drawing;
 use super::error::RenderError;
 use super::options::Options;
 use super::plot::Plot;
-use super::png::Png;
+use super::png::{Png, TooManyPixels, write_pixels};
 
 /// Pixels of a picture, in rows from the top, each from the left: red, green, blue and alpha of 8 bits (sRGB).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -58,6 +59,36 @@ impl Pixels {
     }
 }
 
+impl Pixels {
+    /// Copies a smaller picture over this one, at the column and row of its upper left corner. Pixels beyond the edges
+    /// are left out.
+    pub(crate) fn put(&mut self, other: &Self, [left, top]: [u32; 2]) {
+        let [width, height] = self.size;
+        let columns = other.size[0].min(width.saturating_sub(left)) as usize;
+        let rows = other.size[1].min(height.saturating_sub(top)) as usize;
+        for row in 0..rows {
+            let to = 4 * ((top as usize + row) * width as usize + left as usize);
+            let from = 4 * row * other.size[0] as usize;
+            let row = &other.bytes[from..from + 4 * columns];
+            self.bytes[to..to + 4 * columns].copy_from_slice(row);
+        }
+    }
+
+    /// Writes the picture as PNG.
+    pub(crate) fn write(self, options: &Options, out: &mut impl Write) -> Result<(), RenderError> {
+        let Self {
+            size: size @ [width, height],
+            bytes,
+        } = self;
+        let pixmap = IntSize::from_wh(width, height).and_then(|size| Pixmap::from_vec(bytes, size));
+        let pixmap = pixmap.ok_or(TooManyPixels { size })?;
+        // The encoder does not pass on why writing to `out` fails, so it writes to memory.
+        let mut png = Vec::new();
+        write_pixels(&pixmap, &options.labels, options.png, &mut png)?;
+        Ok(out.write_all(&png)?)
+    }
+}
+
 /// Grows a graph and draws the approximant as pixels in memory, of any size that
 /// [fits into memory](super::TooManyPixels).
 ///
@@ -88,7 +119,8 @@ fn draw(
     draw_paths(drawing, options)
 }
 
-fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pixels, RenderError> {
+/// Draws paths as pixels in memory.
+pub(crate) fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pixels, RenderError> {
     let size = drawing.size();
     with_team(options.threads, |team| {
         let mut png = Png::begin(size, drawing.background(), team)?;

@@ -1,96 +1,17 @@
-//! Pictures of sets in space: the camera, the shading, and the drawing.
+//! Pictures of sets in space.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 
-use crate::geometry::DVec3;
-use crate::render::space::{Camera, Light, Shade, SpaceOptions, write_space};
+use crate::render::space::write_space;
 use crate::render::{self, Detail, Unit, write_usda};
 use crate::style::{ColorBy, Named};
 
 use super::super::labels::labels;
-use super::super::picture::named;
 use super::super::rule::Loaded;
 use super::super::{Failure, format, output, readable};
 use super::{Arguments, Format};
-
-/// Options of sets in space.
-#[derive(clap::Args)]
-#[command(next_help_heading = "Space")]
-pub(super) struct SpaceArguments {
-    /// Direction from which a set in space is seen: azimuth and elevation in degrees, or front, side, top or iso
-    ///
-    /// Azimuth 0 is in front and 90 on the right; elevation 90 is above. [default: 30,25]
-    #[arg(long, value_name = "AZ,EL", value_parser = from, allow_hyphen_values = true)]
-    from: Option<[f64; 2]>,
-    /// Vector that points upwards in the picture [default: the y axis]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
-    up: Option<DVec3>,
-    /// Point in the middle of the picture [default: that of the set]
-    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
-    look_at: Option<DVec3>,
-    /// Angle of view in degrees, for a picture in perspective [default: parallel]
-    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true)]
-    perspective: Option<f64>,
-    /// Shading: depth darkens what is far, relief lights surfaces that are taken from the depths
-    #[arg(long, value_name = "HOW", value_parser = named::<Shade>())]
-    shade: Option<Shade>,
-    /// Direction of the light of relief: azimuth and elevation in degrees [default: 0,45]
-    #[arg(long, value_name = "AZ,EL", value_parser = from, allow_hyphen_values = true)]
-    light: Option<[f64; 2]>,
-    /// Intensity of what the light of relief does not reach, from 0 to 1 [default: 0.15]
-    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
-    ambient: Option<f64>,
-}
-
-impl SpaceArguments {
-    /// Returns the options that are given, with their values.
-    fn options(&self) -> Vec<(&'static str, String)> {
-        let vector = |vector: DVec3| vector.to_array().map(|it| it.to_string()).join(",");
-        let angles = |angles: [f64; 2]| angles.map(|it| it.to_string()).join(",");
-        let all = [
-            ("from", self.from.map(angles)),
-            ("up", self.up.map(vector)),
-            ("look-at", self.look_at.map(vector)),
-            ("perspective", self.perspective.map(|it| it.to_string())),
-            ("shade", self.shade.map(|it| it.name().into())),
-            ("light", self.light.map(angles)),
-            ("ambient", self.ambient.map(|it| it.to_string())),
-        ];
-        let given = all
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)));
-        given.collect()
-    }
-
-    /// Refuses the options for a set of the plane.
-    pub(super) fn refuse_in_plane(&self, loaded: &Loaded) -> Result<(), Failure> {
-        match self.options().first() {
-            Some((option, _)) => Err(Failure::Usage(format!(
-                "--{option} applies to sets in space, and {} lies in the plane",
-                loaded.name
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    fn to_options(&self) -> SpaceOptions {
-        let (camera, light) = (Camera::default(), Light::default());
-        let camera = camera
-            .from(self.from.unwrap_or(camera.from))
-            .up(self.up)
-            .look_at(self.look_at)
-            .perspective(self.perspective);
-        let light = light
-            .from(self.light.unwrap_or(light.from))
-            .ambient(self.ambient.unwrap_or(light.ambient));
-        SpaceOptions::default()
-            .camera(camera)
-            .light(light)
-            .shade(self.shade.unwrap_or_default())
-    }
-}
 
 /// Draws a set in space; returns the path, a summary and the number of bytes.
 pub(super) fn draw(
@@ -143,7 +64,7 @@ pub(super) fn draw(
         );
         return Ok((path.clone(), summary, bytes));
     }
-    let space = arguments.space.to_options();
+    let space = arguments.space.to_options()?;
     let (picture, bytes) = output::write(path, quiet, |mut out, _| {
         write_space(&graph, steps, &options, &space, None, &mut out)
             .map_err(|error| output::explain(error, path))
@@ -226,51 +147,4 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<Format, Failure> {
     }
     arguments.picture.refuse_hits()?;
     Ok(asked)
-}
-
-/// Parses azimuth and elevation, or the name of a view.
-fn from(text: &str) -> Result<[f64; 2], String> {
-    if let Some((_, angles)) = Camera::NAMED.iter().find(|(name, _)| *name == text) {
-        return Ok(*angles);
-    }
-    let wrong = || "write azimuth and elevation in degrees, as 30,25, or front, side, top or iso";
-    let angles = numbers::<2>(text).ok_or_else(wrong)?;
-    if angles.iter().any(|angle| angle.abs() > 1e6) {
-        return Err(wrong().into());
-    }
-    Ok(angles)
-}
-
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers = text
-        .split(',')
-        .map(|number| number.trim().parse::<f64>().ok());
-    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
-    let are_finite = numbers.iter().all(|number| number.is_finite());
-    numbers.try_into().ok().filter(|_| are_finite)
-}
-
-fn point(text: &str) -> Result<DVec3, String> {
-    let point = numbers::<3>(text).map(DVec3::from_array);
-    point.ok_or_else(|| "a point in space is X,Y,Z".into())
-}
-
-fn vector(text: &str) -> Result<DVec3, String> {
-    let vector = point(text).map_err(|_| "a vector in space is X,Y,Z")?;
-    match vector.try_normalize() {
-        Some(_) => Ok(vector),
-        None => Err("a vector upwards has a length".into()),
-    }
-}
-
-fn angle(text: &str) -> Result<f64, String> {
-    let angle = text.parse::<f64>().ok();
-    let angle = angle.filter(|angle| (1.0..=150.0).contains(angle));
-    angle.ok_or_else(|| "an angle of view is a number of degrees from 1 to 150".into())
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    let share = text.parse::<f64>().ok();
-    let share = share.filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "expected a number from 0 to 1".into())
 }

@@ -3,7 +3,7 @@
 
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::graph::Graph;
-use crate::ifs::{Ifs, System};
+use crate::ifs::{AffineMap, Ifs, System};
 use crate::rule::{BaseElement, Piece};
 
 use super::super::text::Font;
@@ -14,12 +14,12 @@ use super::onto_panel;
 use super::page::{WORDS, lay_out, plural};
 
 /// Largest width and height of the panel of images, in pixels.
-const MOST: DVec2 = DVec2::new(380.0, 380.0);
+pub(super) const MOST: DVec2 = DVec2::new(380.0, 380.0);
 /// Factor of the size of the other panels.
-const SMALL: f64 = 0.55;
+pub(super) const SMALL: f64 = 0.55;
 
 /// Limit of the number of maps that are drawn with numbers.
-const MAX_NUMBERS: usize = 100;
+pub(super) const MAX_NUMBERS: usize = 100;
 
 /// Lays out a system under a title.
 pub(super) fn page(system: &System, title: &str) -> Block {
@@ -49,22 +49,24 @@ pub(super) fn page(system: &System, title: &str) -> Block {
 }
 
 /// Returns the edges of a recurrent system's digraph as text, one line for each map.
-fn edges(ifs: &Ifs) -> Vec<String> {
+pub(super) fn edges<M: AffineMap>(ifs: &Ifs<M>) -> Vec<String> {
     let Some(edges) = ifs.edges() else {
         return Vec::new();
     };
-    let name = |map: usize| {
-        let name = ifs.maps()[map].name.clone();
-        name.unwrap_or_else(|| (map + 1).to_string())
-    };
     let mut after = vec![Vec::new(); ifs.maps().len()];
     for (edge, _) in edges {
-        after[edge.from].push(name(edge.to));
+        after[edge.from].push(name(ifs, edge.to));
     }
     let lines = after.iter().enumerate();
     lines
-        .map(|(map, after)| format!("after {}: {}", name(map), after.join(", ")))
+        .map(|(map, after)| format!("after {}: {}", name(ifs, map), after.join(", ")))
         .collect()
+}
+
+/// Returns the name of a map, or its number from 1.
+pub(super) fn name<M: AffineMap>(ifs: &Ifs<M>, map: usize) -> String {
+    let name = ifs.maps()[map].name.clone();
+    name.unwrap_or_else(|| (map + 1).to_string())
 }
 
 /// Content of the figure, and its bounds.
@@ -166,7 +168,7 @@ impl<'a> Plan<'a> {
         }
         if self.ifs.maps().len() <= MAX_NUMBERS {
             for (number, it) in self.ifs.maps().iter().enumerate() {
-                let name = it.name.clone().unwrap_or_else(|| (number + 1).to_string());
+                let name = name(self.ifs, number);
                 let mut bounds = Bounds::EMPTY;
                 self.shown
                     .add_to(&mut bounds, &(map * it.affine).into(), 0.0);

@@ -72,7 +72,7 @@ impl Camera {
 
     /// Returns the rotation from space to view coordinates: x to the right, y upwards in the picture, z towards
     /// the viewer.
-    pub(super) fn rotation(&self) -> Result<DMat3, CameraError> {
+    pub(crate) fn rotation(&self) -> Result<DMat3, CameraError> {
         let ahead = self.towards();
         let [azimuth, elevation] = self.from;
         let (right, up) = match self.up {

@@ -44,7 +44,7 @@ use self::relief::Relief;
 use self::scene::{Child, ClassBy, End};
 use self::shade::Inks;
 use self::solid::{Depths, View};
-use super::png::{TooManyPixels, write_pixels};
+use super::png::TooManyPixels;
 use super::{NoRoom, Options, Picture, Pixels, RenderError};
 
 /// Error of drawing in space.
@@ -87,7 +87,7 @@ setters!(SpaceOptions {
 });
 
 /// White: the paper of pictures whose style has no background.
-const PAPER: Colour = Colour::grey(255);
+pub(crate) const PAPER: Colour = Colour::grey(255);
 
 /// Draws a set in space and writes it as PNG: approximant `steps`, or the limit set. Elements of at most
 /// [`Options::detail`] pixels, or of one pixel where it is not given, are not replaced.
@@ -104,11 +104,8 @@ pub fn write_space(
     cancel: Option<&AtomicBool>,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
-    let (pixmap, picture) = draw(graph, steps, options, space, cancel)?;
-    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
-    let mut bytes = Vec::new();
-    write_pixels(&pixmap, &options.labels, options.png, &mut bytes)?;
-    out.write_all(&bytes)?;
+    let (pixels, picture) = pixels_in_space(graph, steps, options, space, cancel)?;
+    pixels.write(options, out)?;
     Ok(picture)
 }
 
@@ -124,9 +121,9 @@ pub fn pixels_in_space(
     options: &Options,
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
-) -> Result<Pixels, RenderError> {
-    let (pixmap, _) = draw(graph, steps, options, space, cancel)?;
-    Ok(Pixels::of(pixmap))
+) -> Result<(Pixels, Picture), RenderError> {
+    let (pixmap, picture) = draw(graph, steps, options, space, cancel)?;
+    Ok((Pixels::of(pixmap), picture))
 }
 
 /// Piece of work: a tile of the picture.

@@ -1,0 +1,194 @@
+//! Options of pictures in space: the camera, the shading and the light.
+
+use std::fmt;
+
+use crate::geometry::DVec3;
+use crate::render::space::{Camera, Light, Shade, SpaceOptions};
+use crate::style::Named;
+
+use super::Failure;
+use super::picture::named;
+use super::rule::Loaded;
+
+/// Options of sets in space.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Space")]
+pub(super) struct SpaceArguments {
+    /// Direction from which a set in space is seen: azimuth and elevation in degrees, or front, side, top or iso
+    ///
+    /// Azimuth 0 is in front and 90 on the right; elevation 90 is above. [default: 30,25]
+    #[arg(long, value_name = "AZ,EL", value_parser = views, allow_hyphen_values = true)]
+    from: Option<Views>,
+    /// Vector that points upwards in the picture [default: the y axis]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    up: Option<DVec3>,
+    /// Point in the middle of the picture [default: that of the set]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    look_at: Option<DVec3>,
+    /// Angle of view in degrees, for a picture in perspective [default: parallel]
+    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true)]
+    perspective: Option<f64>,
+    /// Shading: depth darkens what is far, relief lights surfaces that are taken from the depths
+    #[arg(long, value_name = "HOW", value_parser = named::<Shade>())]
+    shade: Option<Shade>,
+    /// Direction of the light of relief: azimuth and elevation in degrees [default: 0,45]
+    #[arg(long, value_name = "AZ,EL", value_parser = direction, allow_hyphen_values = true)]
+    light: Option<[f64; 2]>,
+    /// Intensity of what the light of relief does not reach, from 0 to 1 [default: 0.15]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    ambient: Option<f64>,
+}
+
+impl SpaceArguments {
+    /// Returns the options that are given, with their values.
+    pub(super) fn options(&self) -> Vec<(&'static str, String)> {
+        let vector = |vector: DVec3| vector.to_array().map(|it| it.to_string()).join(",");
+        let angles = |angles: [f64; 2]| angles.map(|it| it.to_string()).join(",");
+        let all = [
+            ("from", self.from.as_ref().map(ToString::to_string)),
+            ("up", self.up.map(vector)),
+            ("look-at", self.look_at.map(vector)),
+            ("perspective", self.perspective.map(|it| it.to_string())),
+            ("shade", self.shade.map(|it| it.name().into())),
+            ("light", self.light.map(angles)),
+            ("ambient", self.ambient.map(|it| it.to_string())),
+        ];
+        let given = all
+            .into_iter()
+            .filter_map(|(name, value)| Some((name, value?)));
+        given.collect()
+    }
+
+    /// Refuses the options for a set of the plane.
+    pub(super) fn refuse_in_plane(&self, loaded: &Loaded) -> Result<(), Failure> {
+        match self.options().first() {
+            Some((option, _)) => Err(in_plane(option, loaded)),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the options of a picture from the one direction that is given, or from the default.
+    pub(super) fn to_options(&self) -> Result<SpaceOptions, Failure> {
+        match self.from.as_ref().map(|views| &views.0[..]) {
+            None => Ok(self.seen_from(Camera::default().from)),
+            Some([from]) => Ok(self.seen_from(*from)),
+            Some(_) => Err(Failure::Usage(
+                "a picture is seen from one direction: kfrac sheet shows several".into(),
+            )),
+        }
+    }
+
+    /// Returns the options of one picture for each direction, with its name.
+    pub(super) fn views(&self) -> Vec<(String, SpaceOptions)> {
+        let default = vec![Camera::default().from];
+        let views = self.from.as_ref().map_or(&default, |views| &views.0);
+        let name = |from: &[f64; 2]| {
+            let named = Camera::NAMED.iter().find(|(_, angles)| angles == from);
+            named.map_or_else(
+                || format!("from {},{}", from[0], from[1]),
+                |(name, _)| (*name).into(),
+            )
+        };
+        let all = views.iter();
+        all.map(|from| (name(from), self.seen_from(*from)))
+            .collect()
+    }
+
+    /// Returns the options of a picture from a direction.
+    fn seen_from(&self, from: [f64; 2]) -> SpaceOptions {
+        let light = Light::default();
+        let camera = Camera::default()
+            .from(from)
+            .up(self.up)
+            .look_at(self.look_at)
+            .perspective(self.perspective);
+        let light = light
+            .from(self.light.unwrap_or(light.from))
+            .ambient(self.ambient.unwrap_or(light.ambient));
+        SpaceOptions::default()
+            .camera(camera)
+            .light(light)
+            .shade(self.shade.unwrap_or_default())
+    }
+}
+
+/// Directions of view, at least one: azimuth and elevation in degrees.
+#[derive(Clone, Debug)]
+struct Views(Vec<[f64; 2]>);
+
+/// Formats the directions in the notation of the command line.
+impl fmt::Display for Views {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let all: Vec<_> = self.0.iter().flatten().map(f64::to_string).collect();
+        f.write_str(&all.join(","))
+    }
+}
+
+/// Returns the error of an option of space that is given for a set of the plane.
+pub(super) fn in_plane(option: &str, loaded: &Loaded) -> Failure {
+    Failure::Usage(format!(
+        "--{option} applies to sets in space, and {} lies in the plane",
+        loaded.name
+    ))
+}
+
+/// Parses directions: each an azimuth and an elevation, or the name of a view.
+fn views(text: &str) -> Result<Views, String> {
+    let angle = |text: &str| text.parse::<f64>().ok().filter(|angle| angle.abs() <= 1e6);
+    let wrong = "write azimuth and elevation in degrees, as 30,25, or front, side, top or iso";
+    let mut views = Vec::new();
+    let mut parts = text.split(',').map(str::trim);
+    while let Some(part) = parts.next() {
+        let named = Camera::NAMED.iter().find(|(name, _)| *name == part);
+        let angles = match named {
+            Some((_, angles)) => Some(*angles),
+            None => angle(part)
+                .zip(parts.next().and_then(angle))
+                .map(<[f64; 2]>::from),
+        };
+        views.push(angles.ok_or(wrong)?);
+    }
+    Ok(Views(views))
+}
+
+/// Parses one direction.
+pub(super) fn direction(text: &str) -> Result<[f64; 2], String> {
+    match views(text)?.0[..] {
+        [direction] => Ok(direction),
+        _ => Err("write one direction".into()),
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers = text
+        .split(',')
+        .map(|number| number.trim().parse::<f64>().ok());
+    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let are_finite = numbers.iter().all(|number| number.is_finite());
+    numbers.try_into().ok().filter(|_| are_finite)
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let point = numbers::<3>(text).map(DVec3::from_array);
+    point.ok_or_else(|| "a point in space is X,Y,Z".into())
+}
+
+fn vector(text: &str) -> Result<DVec3, String> {
+    let vector = point(text).map_err(|_| "a vector in space is X,Y,Z")?;
+    match vector.try_normalize() {
+        Some(_) => Ok(vector),
+        None => Err("a vector upwards has a length".into()),
+    }
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    let angle = text.parse::<f64>().ok();
+    let angle = angle.filter(|angle| (1.0..=150.0).contains(angle));
+    angle.ok_or_else(|| "an angle of view is a number of degrees from 1 to 150".into())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse::<f64>().ok();
+    let share = share.filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "expected a number from 0 to 1".into())
+}

@@ -1,0 +1,104 @@
+//! Sheets of sets in space: approximants, members of a family or directions of view side by side, as pixels.
+
+use std::io::Write;
+use std::sync::atomic::AtomicBool;
+
+use crate::geometry::Frame3;
+use crate::graph::Graph;
+use crate::parallel::Team;
+use crate::render::space::{PAPER, SpaceOptions, pixels_in_space};
+use crate::render::{Drawing, Options, Pen, RenderError, Surface, draw_paths, pen};
+use crate::style::{Colour, Style};
+
+use super::super::text::Font;
+use super::{Grid, SheetSummary};
+
+/// One picture of a sheet.
+pub struct SpaceCell<'a> {
+    /// Caption of the picture.
+    pub caption: String,
+    /// Graph of the set.
+    pub graph: &'a Graph<Frame3>,
+    /// Number of steps; `None` for the limit set.
+    pub steps: Option<u32>,
+    /// Camera, shading and light.
+    pub space: SpaceOptions,
+}
+
+/// Draws sets in space side by side, in rows of `columns`, and writes them as PNG. With `None`, the sides of the sheet
+/// are about 4 to 3.
+///
+/// [`Options::size`] is the size of every picture, not of the sheet. Every picture is fitted to what it shows.
+///
+/// # Errors
+///
+/// As for [`write_space`](crate::render::space::write_space).
+pub fn write_in_space(
+    cells: &[SpaceCell<'_>],
+    columns: Option<u32>,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<SheetSummary, RenderError> {
+    let mut pictures = Vec::new();
+    let mut elements = 0;
+    for cell in cells {
+        let drawn = pixels_in_space(cell.graph, cell.steps, options, &cell.space, cancel);
+        let (pixels, picture) = drawn?;
+        elements += picture.elements;
+        pictures.push(pixels);
+    }
+    let side = |axis: usize| pictures.iter().map(|it| it.size()[axis]).max();
+    let largest = [0, 1].map(|axis| side(axis).unwrap_or_default());
+    let font = Font::new();
+    let captions = cells.iter().map(|cell| cell.caption.as_str());
+    let sheet = Captions {
+        grid: Grid::of(captions, &font, largest, columns),
+        cells,
+        font,
+        style: &options.style,
+    };
+    let mut pixels = draw_paths(&sheet, options)?;
+    for (picture, corner) in pictures.iter().zip(sheet.grid.corners()) {
+        let [left, top] = sheet.grid.picture(corner);
+        let [width, height] = picture.size();
+        let middle = [
+            left + (largest[0] - width) / 2,
+            top + (largest[1] - height) / 2,
+        ];
+        pixels.put(picture, middle);
+    }
+    let size = pixels.size();
+    pixels.write(options, out)?;
+    Ok(SheetSummary { size, elements })
+}
+
+/// A sheet without its pictures.
+struct Captions<'a> {
+    cells: &'a [SpaceCell<'a>],
+    grid: Grid,
+    font: Font,
+    style: &'a Style,
+}
+
+impl Drawing for Captions<'_> {
+    fn size(&self) -> [u32; 2] {
+        self.grid.size()
+    }
+
+    fn background(&self) -> Option<Colour> {
+        Some(self.style.background.unwrap_or(PAPER))
+    }
+
+    fn pen(&self) -> Pen {
+        pen(self.style)
+    }
+
+    fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
+        for (cell, corner) in self.cells.iter().zip(self.grid.corners()) {
+            let grid = &self.grid;
+            grid.caption(surface, &self.font, &cell.caption, corner)?;
+        }
+        Ok(())
+    }
+}
