@@ -77,7 +77,7 @@ fn ten_million_points(bencher: Bencher, levels: u32) {
     let map = DAffine2::from_scale(DVec2::splat(0.999_999_999 * boxes as f64));
     bencher
         .counter(ItemsCount::new(points.len()))
-        .bench(|| counts(&points, &map, [boxes; 2], levels));
+        .bench(|| counts(&points, &map, [boxes, boxes, 1], levels));
 }
 
 /// Measures a limit set completely, on one thread.

@@ -3,9 +3,11 @@
 mod bad;
 mod laws;
 mod pictures;
+mod space;
 
 use std::num::NonZero;
 
+use crate::common;
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
 use kfrac::extent::NoLimit;

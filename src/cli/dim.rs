@@ -12,7 +12,7 @@ use clap::builder::PossibleValue;
 
 use crate::catalogue::Catalogue;
 use crate::figure::dimension;
-use crate::measure::{BoxCounting, Generalised, Grid, Lacunarity, exact};
+use crate::measure::{BoxCounting, Generalised, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels};
 
@@ -197,10 +197,6 @@ impl Arguments {
             set: self.set.clone(),
             omit: self.omit.clone(),
         }
-    }
-
-    fn grids(&self) -> Vec<Grid> {
-        Grid::spread(self.grids)
     }
 
     fn threads(&self) -> NonZero<usize> {

@@ -39,6 +39,10 @@ pub trait Affine:
     #[must_use]
     fn is_finite(&self) -> bool;
 
+    /// Returns whether the numbers of two maps differ by no more than a tolerance.
+    #[must_use]
+    fn is_near(&self, other: &Self, tolerance: f64) -> bool;
+
     /// Returns the map as one of space: of the plane z = 0, where the third direction is scaled as by a
     /// similarity.
     #[must_use]
@@ -77,6 +81,11 @@ impl Affine for DAffine2 {
 
     fn is_finite(&self) -> bool {
         self.is_finite()
+    }
+
+    #[inline]
+    fn is_near(&self, other: &Self, tolerance: f64) -> bool {
+        self.abs_diff_eq(*other, tolerance)
     }
 
     fn in_space(&self) -> DAffine3 {
@@ -125,6 +134,11 @@ impl Affine for DAffine3 {
 
     fn is_finite(&self) -> bool {
         self.is_finite()
+    }
+
+    #[inline]
+    fn is_near(&self, other: &Self, tolerance: f64) -> bool {
+        self.abs_diff_eq(*other, tolerance)
     }
 
     fn in_space(&self) -> DAffine3 {

@@ -34,6 +34,9 @@ pub trait Point:
     /// Returns the point whose coordinates all have one value.
     #[must_use]
     fn splat(value: f64) -> Self;
+    /// Creates the point with the first of three coordinates.
+    #[must_use]
+    fn of_coordinates(coordinates: [f64; 3]) -> Self;
     /// Returns the coordinates, completed by zeros.
     #[must_use]
     fn coordinates(self) -> [f64; 3];
@@ -89,6 +92,11 @@ macro_rules! point {
             #[inline]
             fn splat(value: f64) -> Self {
                 Self::splat(value)
+            }
+
+            #[inline]
+            fn of_coordinates(coordinates: [f64; 3]) -> Self {
+                Self::from_slice(&coordinates)
             }
 
             #[inline]

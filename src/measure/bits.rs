@@ -2,7 +2,7 @@
 
 mod dilation;
 
-use super::points::gathered;
+use super::morton::gathered;
 
 /// Boxes in rows, a bit for each: set where the box is occupied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,30 +85,31 @@ impl Bits {
         self.words[row * self.width.div_ceil(64) + column / 64] >> (column % 64) & 1 == 1
     }
 
-    /// Sets a box, if it is inside.
-    #[inline]
-    pub(super) fn mark(&mut self, place: [i64; 2]) {
-        if let Some([column, row]) = self.inside(place) {
-            self.set(column, row);
+    /// Returns the words of up to `count` rows from a row on.
+    pub(super) fn rows(&self, first: usize, count: usize) -> &[u64] {
+        let stride = self.width.div_ceil(64);
+        let rows = self.words.get(first * stride..).unwrap_or_default();
+        &rows[..(count * stride).min(rows.len())]
+    }
+
+    /// Creates the union of two sets from their words; missing words are empty.
+    pub(super) fn union(width: usize, height: usize, [one, other]: [&[u64]; 2]) -> Self {
+        let mut union = Self::new(width, height);
+        for words in [one, other] {
+            let pairs = union.words.iter_mut().zip(words);
+            pairs.for_each(|(all, word)| *all |= word);
         }
+        union
     }
 
-    /// Returns `true` if all boxes from `low` to `high` that are inside are set.
-    #[inline]
-    pub(super) fn are_marked(&self, low: [i64; 2], high: [i64; 2]) -> bool {
-        let is_marked = |place| {
-            let inside = self.inside(place);
-            inside.is_none_or(|[column, row]| self.get(column, row))
-        };
-        let rows = low[1]..=high[1];
-        rows.into_iter()
-            .all(|row| (low[0]..=high[0]).all(|column| is_marked([column, row])))
-    }
-
-    #[inline]
-    fn inside(&self, [column, row]: [i64; 2]) -> Option<[usize; 2]> {
-        let [column, row] = [usize::try_from(column).ok()?, usize::try_from(row).ok()?];
-        (column < self.width && row < self.height).then_some([column, row])
+    /// Creates the set of the rows of several sets of one width, one below the other.
+    pub(super) fn stacked(width: usize, parts: impl Iterator<Item = Self>) -> Self {
+        let mut stacked = Self::new(width, 0);
+        for mut part in parts {
+            stacked.height += part.height;
+            stacked.words.append(&mut part.words);
+        }
+        stacked
     }
 
     /// Returns the words of a row.

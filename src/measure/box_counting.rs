@@ -2,6 +2,7 @@
 
 use std::num::NonZero;
 
+use crate::geometry::Point;
 use crate::saturating::{real, whole};
 
 use super::averaging::averaged;
@@ -12,11 +13,9 @@ use super::limit::LimitSet;
 use super::raster::{means, own_base, raster_scales, regular, thickness};
 use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
+use super::space::Space;
 use super::statistics::logarithm;
 use super::trend::Trend;
-
-/// Upper bound of the dimension of a set in the plane.
-pub(super) const PLANE: f64 = 2.0;
 
 /// Minimum number of boxes of a size that is used: fewer depend only on the position of the grid.
 const MIN_BOXES: u64 = 9;
@@ -91,18 +90,19 @@ impl BoxCounting {
     /// The default base is the smallest integer up to 8 that is a power of the set's own period, for which
     /// counts do not oscillate with the size, or else 2. Boxes that are too many to be counted are estimated
     /// from a sample of them, down to 10⁻⁹ of the extent, and the sizes that determine the dimension are
-    /// weighted by their likelihood. Where a sample does not reach 1/16384 of the extent (the base is not an
+    /// weighted by their likelihood. Where a sample does not reach 1/16384 of the extent (1/512 in space; the base is not an
     /// integer, or too many copies overlap), the sizes are those up to half the extent for which the smallest
     /// cover has at least 9 boxes, down to where it has about 130,000.
     #[must_use]
-    pub fn of_limit(
-        set: &LimitSet,
+    pub fn of_limit<M: Space>(
+        set: &LimitSet<M>,
         base: Option<f64>,
-        grids: &[Grid],
+        grids: &[Grid<M>],
         threads: NonZero<usize>,
     ) -> Self {
         const MAX_BOXES: u64 = 1 << 17;
-        const FINE: f64 = 1.0 / 16_384.0;
+        let fine = libm::exp2(-f64::from(M::FILLED_LEVELS));
+        let most = real(M::Point::DIMENSION);
         let extent = set.bounds().size().max_element();
         if extent <= 0.0 {
             return Self::of_point();
@@ -115,9 +115,9 @@ impl BoxCounting {
         let base = base.unwrap_or_else(|| whole_power(set.period()));
         let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
         let comes_far =
-            |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < FINE * extent);
+            |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < fine * extent);
         match scales.filter(comes_far) {
-            Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, PLANE)),
+            Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, most)),
             None => Self::of(&set.scales(base, MAX_BOXES, grids, threads), &window),
         }
     }
@@ -198,7 +198,7 @@ impl BoxCounting {
             least_boxes: 4,
         };
         Self::by(&sample.scales(), &window, |readings| {
-            averaged(readings, PLANE).or_else(|| estimate(readings))
+            averaged(readings, real(sample.dimension)).or_else(|| estimate(readings))
         })
     }
 

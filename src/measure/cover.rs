@@ -2,10 +2,11 @@
 
 use std::num::NonZero;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, Linear, Point};
 use crate::parallel::map;
 use crate::saturating::{real, whole};
 
+use super::space::Space;
 use super::statistics::{deviation, logarithm};
 
 /// Cover of a set by boxes of one size.
@@ -35,56 +36,54 @@ impl Scale {
 
 /// Position of a grid relative to a set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// Angle by which the set is turned against the grid: radians, counter-clockwise, from 0 to below π/2.
-    pub angle: f64,
-    /// Distance at which the grid begins left of and below the set, as a fraction of the largest box, from 0
-    /// to 1.
-    pub shift: DVec2,
+pub struct Grid<M: Space = DAffine2> {
+    /// Turn of the set against the grid: in the plane an angle in radians, counter-clockwise; in space a
+    /// rotation.
+    pub turn: M::Turn,
+    /// Distance at which the grid begins before the set along every axis, as a fraction of the largest box,
+    /// from 0 to 1.
+    pub shift: M::Point,
 }
 
-impl Grid {
+/// Numbers of boxes along the axes; 1 along those beyond the dimension of the set's space.
+pub(super) type Counts = [usize; 3];
+
+impl<M: Space> Grid<M> {
     /// The grid along the axes, from the lower left corner of the set.
     pub const ALONG: Self = Self {
-        angle: 0.0,
-        shift: DVec2::ZERO,
+        turn: M::ALONG,
+        shift: M::Point::ZERO,
     };
 
     /// Creates `count` grids: the first along the axes from the lower left corner of the set, the others
-    /// spread evenly (by the golden section and its analogue in two dimensions).
+    /// spread evenly (by the golden section and its analogues in more dimensions).
     #[must_use]
     pub fn spread(count: NonZero<usize>) -> Vec<Self> {
-        // The reciprocals of the positive roots of x² = x + 1 and x³ = x + 1.
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        const PLASTIC: f64 = 0.754_877_666_246_692_7;
         let spread = (0..count.get()).map(|number| {
-            let number = real(number);
-            Self {
-                angle: (number * GOLDEN).fract() * std::f64::consts::FRAC_PI_2,
-                shift: (DVec2::new(PLASTIC, PLASTIC * PLASTIC) * number).fract(),
-            }
+            let (turn, shift) = M::spread(real(number));
+            Self { turn, shift }
         });
         spread.collect()
     }
 
     /// Returns the map from the plane to a grid of boxes of side 1 that covers a turned box, and the numbers
     /// of its columns and rows. Before the map, boxes have the side `size`, and the largest ones `largest`.
-    pub(super) fn map(&self, turned: &Bounds, size: f64, largest: f64) -> (DAffine2, [usize; 2]) {
+    pub(super) fn map(&self, turned: &Bounds<M::Point>, size: f64, largest: f64) -> (M, Counts) {
         // Points on the rim of the set must not open new boxes because of rounding.
         const HAIR: f64 = 1e-9;
         let hair = HAIR * turned.size().max_element();
+        let hair = M::Point::splat(hair);
         let corner = turned.min() - hair - self.shift * largest;
         let extent = (turned.max() + hair - corner) / size;
-        let map = DAffine2::from_scale(DVec2::splat(1.0 / size))
-            * DAffine2::from_translation(-corner)
-            * DAffine2::from_mat2(self.turn());
-        (map, extent.to_array().map(boxes))
+        let map = M::new(M::Linear::IDENTITY * (1.0 / size), M::Point::ZERO)
+            * M::new(M::Linear::IDENTITY, -corner)
+            * M::new(self.linear(), M::Point::ZERO);
+        (map, extent.coordinates().map(boxes))
     }
 
     /// Returns the rotation by which the set is turned.
-    pub(super) fn turn(&self) -> crate::geometry::DMat2 {
-        let (sin, cos) = libm::sincos(self.angle);
-        crate::geometry::DMat2::from_cols(DVec2::new(cos, sin), DVec2::new(-sin, cos))
+    pub(super) fn linear(&self) -> M::Linear {
+        M::rotation(&self.turn)
     }
 }
 
@@ -97,11 +96,11 @@ fn boxes(extent: f64) -> usize {
 ///
 /// `count` returns the counts for the sizes on one grid; sizes beyond the shortest of these lists are
 /// dropped. The result does not depend on the number of threads.
-pub(super) fn least(
+pub(super) fn least<M: Space>(
     sizes: &[f64],
-    grids: &[Grid],
+    grids: &[Grid<M>],
     threads: NonZero<usize>,
-    count: impl Fn(&Grid) -> Vec<u64> + Sync,
+    count: impl Fn(&Grid<M>) -> Vec<u64> + Sync,
 ) -> Vec<Scale> {
     let counts = map(grids, threads.get(), |_, grid| count(grid));
     let logs = |number: usize| counts.iter().map(move |counts| logarithm(counts[number]));

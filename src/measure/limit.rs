@@ -3,15 +3,18 @@
 mod cascade;
 mod descent;
 mod moments;
+mod states;
 
 use std::num::NonZero;
 
-use crate::extent::{NoLimit, settled};
-use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
+use crate::extent::{Bounded, NoLimit, settled};
+use crate::geometry::{Affine, Bounds, DAffine2, Linear, Point};
 use crate::graph::{Graph, Instance};
 
 use super::bits::Bits;
-use super::cover::{Grid, Scale, least};
+use super::cover::{Counts, Grid, Scale, least};
+use super::space::Space;
+use super::voxels::Voxels;
 
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
@@ -21,50 +24,52 @@ pub(super) use moments::Moments;
 /// The limit of an element is a copy of its object's set, which is the union of the copies of its instances'
 /// sets. Infertile elements are not replaced and add nothing.
 #[derive(Clone, Debug)]
-pub struct LimitSet {
-    objects: Vec<Part>,
-    start: Vec<Placed>,
-    bounds: Bounds,
+pub struct LimitSet<M: Affine = DAffine2> {
+    objects: Vec<Part<M>>,
+    start: Vec<Placed<M>>,
+    bounds: Bounds<M::Point>,
 }
 
 /// The limit set of an object, in its unit frame.
-#[derive(Clone, Debug, Default)]
-struct Part {
-    /// A point of the set, and the radius of a disc about it that holds the set.
-    point: DVec2,
+#[derive(Clone, Debug)]
+struct Part<M: Affine> {
+    /// A point of the set, and the radius of a ball about it that holds the set.
+    point: M::Point,
     radius: f64,
-    /// Centre of a box that holds the set, and the radius of a disc about it that holds the set.
-    middle: DVec2,
+    /// Centre of a box that holds the set, and the radius of a ball about it that holds the set.
+    middle: M::Point,
     reach: f64,
-    children: Vec<Placed>,
+    children: Vec<Placed<M>>,
 }
 
 /// A copy of an object's set: its map, and the largest factor by which the map lengthens a vector.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
-    map: DAffine2,
+struct Placed<M> {
+    map: M,
     scale: f64,
     /// Whether the map is a similarity.
     is_similar: bool,
     object: usize,
 }
 
-impl Placed {
-    fn new(map: DAffine2, object: usize) -> Self {
+impl<M: Affine> Placed<M> {
+    fn new(map: M, object: usize) -> Self {
         const TOLERANCE: f64 = 1e-12;
-        let scale = stretch(&map.matrix2);
-        let area = map.matrix2.determinant().abs();
+        let linear = map.linear();
+        let scale = linear.stretch();
+        let volume = linear.determinant().abs();
+        let cube: f64 = (0..M::Point::DIMENSION).map(|_| scale).product();
         Self {
             map,
             scale,
-            is_similar: scale * scale - area <= TOLERANCE * area,
+            is_similar: cube - volume <= TOLERANCE * volume,
             object,
         }
     }
 
     /// Returns the object's own set.
     fn whole(object: usize) -> Self {
-        Self::new(DAffine2::IDENTITY, object)
+        Self::new(M::IDENTITY, object)
     }
 
     /// Returns a copy inside this one.
@@ -77,7 +82,7 @@ impl Placed {
         let scale = if is_similar {
             self.scale * inner.scale
         } else {
-            stretch(&map.matrix2)
+            map.linear().stretch()
         };
         Self {
             map,
@@ -89,13 +94,12 @@ impl Placed {
 
     /// Enlarges the copy by a factor, about 0.
     fn grow(&mut self, factor: f64) {
-        self.map.matrix2 *= factor;
-        self.map.translation *= factor;
+        self.map = M::new(self.map.linear() * factor, self.map.translation() * factor);
         self.scale *= factor;
     }
 
-    fn moved(mut self, by: DVec2) -> Self {
-        self.map.translation += by;
+    fn moved(mut self, by: M::Point) -> Self {
+        self.map = M::new(self.map.linear(), self.map.translation() + by);
         self
     }
 }
@@ -109,7 +113,7 @@ const MAX_LOOKED_AT: usize = 1 << 23;
 
 /// The boxes of a cover, and the number of copies that it may still examine.
 struct Marking {
-    bits: Bits,
+    boxes: Voxels,
     left: usize,
 }
 
@@ -119,13 +123,13 @@ const NEGLIGIBLE: f64 = 1e-17;
 /// Maximum number of sweeps or levels of an iteration.
 const MAX_SWEEPS: usize = 10_000;
 
-impl LimitSet {
+impl<M: Space> LimitSet<M> {
     /// Creates the limit set of a graph's fertile elements.
     ///
     /// # Errors
     ///
     /// Returns an error if there is no limit set, or if the graph does not determine it.
-    pub fn of(graph: &Graph) -> Result<Self, NoLimit> {
+    pub fn of<F: Bounded<Map = M>>(graph: &Graph<F>) -> Result<Self, NoLimit> {
         graph.check_maps()?;
         if !graph.shrinks() {
             return Err(NoLimit::DoesNotShrink);
@@ -136,8 +140,8 @@ impl LimitSet {
             let goes_on = |object| fertile(object).any(|instance| lasting[instance.object]);
             (0..lasting.len()).map(goes_on).collect()
         });
-        let kept = |instance: &&Instance| lasting[instance.object];
-        let placed = |instance: &Instance| Placed::new(*instance.frame.map(), instance.object);
+        let kept = |instance: &&Instance<F>| lasting[instance.object];
+        let placed = |instance: &Instance<F>| Placed::new(*instance.frame.map(), instance.object);
         let children = |object| fertile(object).filter(kept).map(placed).collect();
         let children = (0..graph.objects().len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();
@@ -151,10 +155,13 @@ impl LimitSet {
     /// Creates the limit set from the copies in every object's set, and those that the whole is made of.
     ///
     /// Precondition: objects that are copied contain copies in turn, and cycles contract.
-    fn of_copies(children: Vec<Vec<Placed>>, start: Vec<Placed>) -> Self {
+    fn of_copies(children: Vec<Vec<Placed<M>>>, start: Vec<Placed<M>>) -> Self {
         let part = |children| Part {
+            point: M::Point::ZERO,
+            radius: 0.0,
+            middle: M::Point::ZERO,
+            reach: 0.0,
             children,
-            ..Part::default()
         };
         let mut set = Self {
             objects: children.into_iter().map(part).collect(),
@@ -175,18 +182,18 @@ impl LimitSet {
 
     /// Returns the bounding box of the set, to about 12 digits.
     #[must_use]
-    pub fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> Bounds<M::Point> {
         self.bounds
     }
 
     /// Visits points of the set such that every point of it is within `distance` of one of them, until
     /// `visit` returns `false`.
-    pub fn visit(&self, distance: f64, mut visit: impl FnMut(DVec2) -> bool) {
+    pub fn visit(&self, distance: f64, mut visit: impl FnMut(M::Point) -> bool) {
         let mut stack: Vec<_> = self.start.iter().rev().copied().collect();
         while let Some(copy) = stack.pop() {
             let part = &self.objects[copy.object];
             if part.radius * copy.scale <= distance {
-                if !visit(copy.map.transform_point2(part.point)) {
+                if !visit(copy.map.apply(part.point)) {
                     return;
                 }
                 continue;
@@ -221,7 +228,7 @@ impl LimitSet {
     }
 
     /// Covers the set by boxes whose sides are fractions of its extent, each smaller than the one before by
-    /// the factor `base`, down to about `most` boxes (or 2^14 in a row), or to where too many copies would
+    /// the factor `base`, down to about `most` boxes (or 2^14 in a row, 2^9 in space), or to where too many copies would
     /// have to be examined.
     ///
     /// # Panics
@@ -232,11 +239,11 @@ impl LimitSet {
         &self,
         base: f64,
         most: u64,
-        grids: &[Grid],
+        grids: &[Grid<M>],
         threads: NonZero<usize>,
     ) -> Vec<Scale> {
         assert!(base > 1.0, "boxes get smaller");
-        const FINEST: f64 = 1.0 / 16_384.0;
+        let finest = libm::exp2(-f64::from(M::FILLED_LEVELS));
         let extent = self.bounds.size().max_element();
         if extent <= 0.0 {
             return Vec::new();
@@ -244,9 +251,9 @@ impl LimitSet {
         let largest = extent / 2.0;
         let mut sizes = Vec::new();
         let mut size = extent * (1.0 + 2e-9) / base;
-        while size >= FINEST * extent {
+        while size >= finest * extent {
             let (map, boxes) = Grid::ALONG.map(&self.bounds, size, largest);
-            let Some(cover) = self.cover(&map, boxes) else {
+            let Some(cover) = self.covered(&map, boxes) else {
                 break;
             };
             sizes.push(size);
@@ -259,16 +266,16 @@ impl LimitSet {
             let turned = self.turned_bounds(grid);
             let count = |&size: &f64| {
                 let (map, boxes) = grid.map(&turned, size, largest);
-                Some(self.cover(&map, boxes)?.count())
+                Some(self.covered(&map, boxes)?.count())
             };
             sizes.iter().map_while(count).collect()
         })
     }
 
     /// Returns the bounding box of the set, turned as a grid requires.
-    pub(super) fn turned_bounds(&self, grid: &Grid) -> Bounds {
-        let turn = DAffine2::from_mat2(grid.turn());
-        let turned = |copy: &Placed| Placed {
+    pub(super) fn turned_bounds(&self, grid: &Grid<M>) -> Bounds<M::Point> {
+        let turn = M::new(grid.linear(), M::Point::ZERO);
+        let turned = |copy: &Placed<M>| Placed {
             map: turn * copy.map,
             ..*copy
         };
@@ -283,12 +290,11 @@ impl LimitSet {
     ///
     /// Every box that is marked holds a point of the set. A box that the set enters by no more than a quarter
     /// of its side may be missed.
-    #[must_use]
-    pub fn cover(&self, map: &DAffine2, boxes: [usize; 2]) -> Option<Bits> {
+    pub(super) fn covered(&self, map: &M, boxes: Counts) -> Option<Voxels> {
         let grid = Placed::new(*map, 0);
         let mut stack: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
         let mut marking = Marking {
-            bits: Bits::new(boxes[0], boxes[1]),
+            boxes: Voxels::new(boxes),
             left: MAX_LOOKED_AT,
         };
         // A box that one copy hardly enters is mostly met by another. When such copies are examined later,
@@ -298,15 +304,15 @@ impl LimitSet {
             self.mark(&mut stack, Some(&mut later), &mut marking)?;
             self.mark(&mut later, None, &mut marking)?;
         }
-        Some(marking.bits)
+        Some(marking.boxes)
     }
 
     /// Marks the boxes that copies meet. Copies in no more than two columns and rows of boxes, some of which
     /// are not marked, are moved to `later` until this is full; without `later`, they are divided further.
     fn mark(
         &self,
-        stack: &mut Vec<Placed>,
-        mut later: Option<&mut Vec<Placed>>,
+        stack: &mut Vec<Placed<M>>,
+        mut later: Option<&mut Vec<Placed<M>>>,
         marking: &mut Marking,
     ) -> Option<()> {
         const WIDEST: i64 = 8;
@@ -314,15 +320,17 @@ impl LimitSet {
         while let Some(copy) = stack.pop() {
             marking.left = marking.left.checked_sub(1)?;
             let part = &self.objects[copy.object];
-            let point = copy.map.transform_point2(part.point);
+            let point = copy.map.apply(part.point);
             let radius = part.radius * copy.scale;
-            let [low, high] = [point - radius, point + radius].map(boxed);
-            let span = (high[0] - low[0]).max(high[1] - low[1]);
+            let around = M::Point::splat(radius);
+            let [low, high] = [point - around, point + around].map(boxed);
+            let spans = low.iter().zip(&high).map(|(low, high)| high - low);
+            let span = spans.fold(0, i64::max);
             if span <= 1 {
-                marking.bits.mark(boxed(point));
+                marking.boxes.mark(boxed(point));
             }
             // Where copies overlap, all boxes of a large one may be marked already.
-            if span <= WIDEST && marking.bits.are_marked(low, high) {
+            if span <= WIDEST && marking.boxes.are_marked(low, high) {
                 continue;
             }
             if span <= 1 {
@@ -355,25 +363,22 @@ impl LimitSet {
                 let turn = (0x9e37_79b9_7f4a_7c15u64.wrapping_mul(level as u64 + 1) >> 33) as usize;
                 copy = copy.compose(&children[turn % children.len()]);
             }
-            self.objects[start].point = copy.map.translation;
+            self.objects[start].point = copy.map.translation();
         }
     }
 
     /// Computes the discs about all points and all centres.
     fn find_radii(&mut self) {
-        let points: Vec<DVec2> = self.objects.iter().map(|part| part.point).collect();
+        let points: Vec<M::Point> = self.objects.iter().map(|part| part.point).collect();
         let radii = self.radii_about(&points);
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
-        let middle = |object| {
-            let bounds = Self::extent(&self.objects, &[Placed::whole(object)]);
-            bounds.min().midpoint(bounds.max())
-        };
+        let middle = |object| Self::extent(&self.objects, &[Placed::whole(object)]).centre();
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();
         let middles = (0..self.objects.len())
-            .map(|object| Some(object).filter(lasting).map_or(DVec2::ZERO, middle));
-        let middles: Vec<DVec2> = middles.collect();
+            .map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
+        let middles: Vec<M::Point> = middles.collect();
         let reaches = self.radii_about(&middles);
         let discs = middles.into_iter().zip(reaches);
         for (part, (middle, reach)) in self.objects.iter_mut().zip(discs) {
@@ -383,14 +388,14 @@ impl LimitSet {
 
     /// Returns the smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
     /// c, approached from below, for points p.
-    fn radii_about(&self, points: &[DVec2]) -> Vec<f64> {
+    fn radii_about(&self, points: &[M::Point]) -> Vec<f64> {
         const TOLERANCE: f64 = 1e-9;
         let mut radii = vec![0.0; points.len()];
         for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..self.objects.len()).rev() {
                 let reach = self.objects[object].children.iter().map(|copy| {
-                    let away = copy.map.transform_point2(points[copy.object]) - points[object];
+                    let away = copy.map.apply(points[copy.object]) - points[object];
                     away.length() + copy.scale * radii[copy.object]
                 });
                 let radius = reach.fold(0.0, f64::max);
@@ -405,10 +410,31 @@ impl LimitSet {
     }
 
     /// Returns the bounding box of copies, to about 12 digits.
-    fn extent(objects: &[Part], copies: &[Placed]) -> Bounds {
-        let [right, up, left, down] = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y]
-            .map(|direction| reach(objects, copies, direction));
-        Bounds::new(DVec2::new(-left, -down), DVec2::new(right, up))
+    fn extent(objects: &[Part<M>], copies: &[Placed<M>]) -> Bounds<M::Point> {
+        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+        for (axis, both) in M::Point::AXES.chunks_exact(2).enumerate() {
+            high[axis] = reach(objects, copies, both[0]);
+            low[axis] = -reach(objects, copies, both[1]);
+        }
+        Bounds::new(
+            M::Point::of_coordinates(low),
+            M::Point::of_coordinates(high),
+        )
+    }
+}
+
+impl LimitSet {
+    /// Returns the boxes that the set meets, on the grid that `map` leads to: its boxes have side 1 and
+    /// corners at whole numbers from (0, 0) to `boxes`. Parts of the set outside the grid are ignored.
+    /// Returns `None` where too many copies would have to be examined: long ones that lie side by side, or
+    /// copies that overlap.
+    ///
+    /// Every box that is marked holds a point of the set. A box that the set enters by no more than a quarter
+    /// of its side may be missed.
+    #[must_use]
+    pub fn cover(&self, map: &DAffine2, [columns, rows]: [usize; 2]) -> Option<Bits> {
+        let covered = self.covered(map, [columns, rows, 1])?;
+        Some(covered.into_layers())
     }
 }
 
@@ -416,12 +442,12 @@ impl LimitSet {
 ///
 /// The copies whose discs may reach farthest are divided repeatedly; of more than 256 such copies, those
 /// whose discs reach farthest are kept.
-fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
+fn reach<M: Affine>(objects: &[Part<M>], copies: &[Placed<M>], direction: M::Point) -> f64 {
     const MAX_COPIES: usize = 256;
     const TOLERANCE: f64 = 1e-13;
-    let disc = |copy: &Placed| {
+    let disc = |copy: &Placed<M>| {
         let part = &objects[copy.object];
-        let at = copy.map.transform_point2(part.point).dot(direction);
+        let at = copy.map.apply(part.point).dot(direction);
         (at, at + copy.scale * part.radius)
     };
     let mut copies = copies.to_vec();
@@ -452,9 +478,13 @@ fn reach(objects: &[Part], copies: &[Placed], direction: DVec2) -> f64 {
 
 /// Merges items whose copies are of one object and have nearly equal maps: `join` adds the later item to the
 /// earlier one.
-fn merge<T>(items: &mut Vec<T>, copy: impl Fn(&T) -> &Placed, join: impl Fn(&mut T, T)) {
+fn merge<M: Affine, T>(
+    items: &mut Vec<T>,
+    copy: impl Fn(&T) -> &Placed<M>,
+    join: impl Fn(&mut T, T),
+) {
     const SAME: f64 = 1e-5;
-    let x = |item: &T| copy(item).map.translation.x;
+    let x = |item: &T| copy(item).map.translation().coordinates()[0];
     items.sort_by(|a, b| x(a).total_cmp(&x(b)));
     let mut kept: Vec<T> = Vec::with_capacity(items.len());
     for item in items.drain(..) {
@@ -463,7 +493,7 @@ fn merge<T>(items: &mut Vec<T>, copy: impl Fn(&T) -> &Placed, join: impl Fn(&mut
         let mut near = near.take_while(|it| x(&item) - x(it) <= SAME);
         let is_same = |it: &&mut T| {
             let it = copy(it);
-            it.object == own.object && it.map.abs_diff_eq(own.map, SAME)
+            it.object == own.object && it.map.is_near(&own.map, SAME)
         };
         match near.find(is_same) {
             Some(same) => join(same, item),
@@ -479,6 +509,6 @@ fn merge<T>(items: &mut Vec<T>, copy: impl Fn(&T) -> &Placed, join: impl Fn(&mut
     clippy::cast_possible_truncation,
     reason = "casts from floats saturate"
 )]
-fn boxed(point: DVec2) -> [i64; 2] {
-    [point.x.floor() as i64, point.y.floor() as i64]
+fn boxed<P: Point>(point: P) -> [i64; 3] {
+    point.coordinates().map(|at| at.floor() as i64)
 }

@@ -1,20 +1,17 @@
 //! The distribution of a set's mass over boxes, and its lacunarity.
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, Point};
 use crate::saturating::{real, whole};
 
 use super::bits::Bits;
-use super::cover::Grid;
+use super::cover::{Counts, Grid};
 use super::limit::LimitSet;
 use super::points::Points;
 use super::sample::histogram;
+use super::space::Space;
 
 /// Maximum number of boxes in a row of the finest grid.
 const MAX_BOXES: usize = 2048;
-
-/// Numbers of boxes in a row of grids for limit sets, in the order of trial: where a grid cannot be filled,
-/// the next one is tried.
-pub const FINENESS: [usize; 4] = [1024, 512, 256, 128];
 
 /// Side of the largest boxes from which a spectrum is computed, as a fraction of the extent.
 pub(super) const COARSEST: f64 = 1.0 / 4.0;
@@ -22,8 +19,9 @@ pub(super) const COARSEST: f64 = 1.0 / 4.0;
 /// Mass in every box of a grid.
 #[derive(Clone, Debug)]
 pub struct Masses {
-    width: usize,
-    height: usize,
+    /// Number of axes, and numbers of boxes along these.
+    dimension: usize,
+    boxes: Counts,
     /// Side of a box, in the units of the set.
     size: f64,
     masses: Vec<u32>,
@@ -51,7 +49,7 @@ impl Masses {
             (pixels.width() + before).div_ceil(side),
             (pixels.height() + above).div_ceil(side),
         );
-        let mut grid = Self::empty(width, height, real(side));
+        let mut grid = Self::empty(2, [width, height, 1], real(side));
         for row in 0..pixels.height() {
             let masses = &mut grid.masses[(row + above) / side * width..][..width];
             for (number, &word) in pixels.row(row).iter().enumerate() {
@@ -72,14 +70,15 @@ impl Masses {
 
     /// Computes the masses of points, each of which has a mass of 1.
     #[must_use]
-    pub fn of_points(points: &Points) -> Self {
-        // The number of boxes in a row is a quarter of the number of places, from 4 to 2048, rounded up to a
+    pub fn of_points<M: Space>(points: &Points<M>) -> Self {
+        // The number of boxes in a row is a quarter of the number of places, from 4 to 2048 (256 in space), rounded up to a
         // power of two.
-        let few = (points.places().count() / 4).clamp(4, MAX_BOXES);
+        let most = M::FINENESS[0].saturating_mul(2);
+        let few = (points.places().count() / 4).clamp(4, most);
         let (own, turned) = points.own(&Grid::ALONG);
-        let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(MAX_BOXES));
+        let (map, mut grid) = Self::over(&own, &turned, few.next_power_of_two().min(most));
         for (at, points) in points.places() {
-            let number = grid.number(map.transform_point2(at));
+            let number = grid.number(map.apply(at));
             grid.masses[number] = grid.masses[number].saturating_add(points);
         }
         grid.size *= points.extent();
@@ -90,45 +89,50 @@ impl Masses {
     /// its longer side, has a mass of 1. Returns `None` where the set cannot be covered by boxes of this
     /// size.
     #[must_use]
-    pub fn of_limit(set: &LimitSet, grid: &Grid, boxes: usize) -> Option<Self> {
+    pub fn of_limit<M: Space>(set: &LimitSet<M>, grid: &Grid<M>, boxes: usize) -> Option<Self> {
         let (map, mut masses) = Self::over(grid, &set.turned_bounds(grid), boxes);
-        let bits = set.cover(&map, [masses.width, masses.height])?;
-        for row in 0..masses.height {
-            for column in 0..masses.width {
-                masses.masses[row * masses.width + column] = u32::from(bits.get(column, row));
+        let bits = set.covered(&map, masses.boxes)?.into_layers();
+        let width = masses.boxes[0];
+        for (row, masses) in masses.masses.chunks_exact_mut(width).enumerate() {
+            for (column, mass) in masses.iter_mut().enumerate() {
+                *mass = u32::from(bits.get(column, row));
             }
         }
         Some(masses)
     }
 
-    fn empty(width: usize, height: usize, size: f64) -> Self {
+    fn empty(dimension: usize, boxes: Counts, size: f64) -> Self {
         Self {
-            width,
-            height,
+            dimension,
+            boxes,
             size,
-            masses: vec![0; width * height],
+            masses: vec![0; boxes.iter().product()],
         }
     }
 
     /// Creates an empty grid with `boxes` boxes along the longer side of a turned box, and the map to it.
-    fn over(grid: &Grid, turned: &Bounds, boxes: usize) -> (DAffine2, Self) {
+    fn over<M: Space>(grid: &Grid<M>, turned: &Bounds<M::Point>, boxes: usize) -> (M, Self) {
         let extent = turned.size().max_element();
         let size = extent * (1.0 + 4e-9) / real(boxes);
-        let (map, [width, height]) = grid.map(turned, size, extent * COARSEST);
-        (map, Self::empty(width, height, size))
+        let (map, boxes) = grid.map(turned, size, extent * COARSEST);
+        (map, Self::empty(M::Point::DIMENSION, boxes, size))
     }
 
-    fn number(&self, at: DVec2) -> usize {
-        let [column, row] = at.to_array().map(whole);
-        row.min(self.height - 1) * self.width + column.min(self.width - 1)
+    fn number<P: Point>(&self, at: P) -> usize {
+        let axes = at.coordinates().into_iter().zip(self.boxes);
+        { axes.rev() }.fold(0, |number, (at, boxes)| {
+            number * boxes + whole(at).min(boxes - 1)
+        })
     }
 
     /// Returns the masses in boxes twice as large.
     pub(super) fn folded(&self) -> Self {
-        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut folded = Self::empty(width, height, 2.0 * self.size);
-        for (row, masses) in self.masses.chunks_exact(self.width).enumerate() {
-            let sums = &mut folded.masses[row / 2 * width..][..width];
+        let boxes = self.boxes.map(|boxes| boxes.div_ceil(2));
+        let [width, height, _] = boxes;
+        let mut folded = Self::empty(self.dimension, boxes, 2.0 * self.size);
+        for (number, masses) in self.masses.chunks_exact(self.boxes[0]).enumerate() {
+            let (layer, row) = (number / self.boxes[1], number % self.boxes[1]);
+            let sums = &mut folded.masses[(layer / 2 * height + row / 2) * width..][..width];
             for (sum, pair) in sums.iter_mut().zip(masses.chunks(2)) {
                 *sum += pair.iter().sum::<u32>();
             }
@@ -172,33 +176,34 @@ impl Masses {
     /// grid.
     #[must_use]
     pub fn lacunarity(&self) -> Vec<Lacunarity> {
-        let stride = self.width + 1;
-        // The sums of the masses left of and above every corner.
-        let mut sums = vec![0u64; stride * (self.height + 1)];
-        for (row, masses) in self.masses.chunks_exact(self.width).enumerate() {
-            let mut along = 0;
-            for (column, &mass) in masses.iter().enumerate() {
-                along += u64::from(mass);
-                sums[(row + 1) * stride + column + 1] = sums[row * stride + column + 1] + along;
-            }
-        }
-        let shortest = self.width.min(self.height);
+        let sums = self.sums();
+        let [across, down, _] = self.boxes.map(|boxes| boxes + 1);
+        let used = self.boxes[..self.dimension].iter();
+        let shortest = used.copied().min().unwrap_or(1);
         let sides = std::iter::successors(Some(1), |side| Some(2 * side));
         let of = |side: usize| {
             let (mut first, mut second) = (0.0, 0.0);
-            let (columns, rows) = (self.width - side + 1, self.height - side + 1);
-            for row in 0..rows {
-                let [above, below] = [row, row + side].map(|row| &sums[row * stride..][..stride]);
-                for column in 0..columns {
-                    let mass =
-                        below[column + side] + above[column] - below[column] - above[column + side];
-                    #[expect(clippy::cast_precision_loss, reason = "a mean is rounded")]
-                    let mass = mass as f64;
-                    first += mass;
-                    second += mass * mass;
+            // The layer of the plane is one box thick.
+            let sides = self.boxes.map(|boxes| side.min(boxes));
+            let [columns, rows, layers] = [0, 1, 2].map(|axis| self.boxes[axis] - sides[axis] + 1);
+            for layer in 0..layers {
+                for row in 0..rows {
+                    let corner = |layer: usize, row: usize| &sums[(layer * down + row) * across..];
+                    let [near, far] = [layer, layer + sides[2]]
+                        .map(|layer| [row, row + sides[1]].map(|row| corner(layer, row)));
+                    for column in 0..columns {
+                        let end = column + sides[0];
+                        let [[a, b], [c, d]] = [near, far]
+                            .map(|both| both.map(|sums| sums[end].wrapping_sub(sums[column])));
+                        let mass = d.wrapping_sub(c).wrapping_sub(b.wrapping_sub(a));
+                        #[expect(clippy::cast_precision_loss, reason = "a mean is rounded")]
+                        let mass = mass as f64;
+                        first += mass;
+                        second += mass * mass;
+                    }
                 }
             }
-            let places = columns * rows;
+            let places = columns * rows * layers;
             Lacunarity {
                 size: real(side) * self.size,
                 value: second * real(places) / (first * first),
@@ -206,5 +211,24 @@ impl Masses {
             }
         };
         sides.take_while(|&side| side <= shortest).map(of).collect()
+    }
+
+    /// Returns the sums of the masses before every corner of the boxes, along all axes.
+    fn sums(&self) -> Vec<u64> {
+        let [across, down, deep] = self.boxes.map(|boxes| boxes + 1);
+        let mut sums = vec![0u64; across * down * deep];
+        for (number, masses) in self.masses.chunks_exact(self.boxes[0]).enumerate() {
+            let (layer, row) = (number / self.boxes[1], number % self.boxes[1]);
+            let at = |layer: usize, row: usize| (layer * down + row) * across;
+            let mut along = 0;
+            for (column, &mass) in masses.iter().enumerate() {
+                along += u64::from(mass);
+                let [behind, above, both] =
+                    [at(layer, row + 1), at(layer + 1, row), at(layer, row)]
+                        .map(|row| sums[row + column + 1]);
+                sums[at(layer + 1, row + 1) + column + 1] = along + behind + above - both;
+            }
+        }
+        sums
     }
 }

@@ -8,11 +8,13 @@
 
 use std::num::NonZero;
 
+use crate::geometry::Point;
 use crate::parallel::map;
 use crate::saturating::{real, whole};
 
 use super::cover::{Grid, Scale};
 use super::points::Points;
+use super::space::Space;
 use super::statistics::{deviation, mean};
 
 /// Maximum part of the boxes that half of the points may miss; beyond it, there are too few points.
@@ -24,6 +26,8 @@ const LEFT: [f64; 2] = [1.0 / 2.0, 2.0 / 3.0];
 /// The contents of boxes of several sizes, on several grids.
 #[derive(Clone, Debug)]
 pub struct Sample {
+    /// Dimension of the space of the points.
+    pub(super) dimension: usize,
     /// Sides of the boxes, from the largest on.
     sizes: Vec<f64>,
     /// Contents by grid and size.
@@ -42,20 +46,25 @@ struct Tally {
 /// A box that holds points.
 #[derive(Clone, Copy)]
 struct Held {
-    /// Row (upper half) and column (lower half) of the box.
+    /// Coordinates of the box, the first in the lowest bits.
     key: u64,
     places: u32,
     points: u32,
 }
 
-impl Points {
+impl<M: Space> Points<M> {
     /// Returns the contents of boxes whose sides are the extent divided by powers of a base.
     ///
     /// # Panics
     ///
     /// Panics if the base is 1.
     #[must_use]
-    pub fn sample(&self, base: NonZero<usize>, grids: &[Grid], threads: NonZero<usize>) -> Sample {
+    pub fn sample(
+        &self,
+        base: NonZero<usize>,
+        grids: &[Grid<M>],
+        threads: NonZero<usize>,
+    ) -> Sample {
         assert!(base.get() > 1, "boxes get smaller");
         let (_, turned) = self.own(&Grid::ALONG);
         let extent = turned.size().max_element() * (1.0 + 4e-9);
@@ -72,6 +81,7 @@ impl Points {
         });
         let sizes = sizes.into_iter().map(|size| size * self.extent());
         Sample {
+            dimension: M::Point::DIMENSION,
             sizes: sizes.collect(),
             tallies,
         }
@@ -79,18 +89,25 @@ impl Points {
 
     /// Returns the contents of boxes of `sizes` sizes on one grid, from the largest on. The smallest has a
     /// side of `size`, in units of the extent.
-    fn tallies(&self, grid: &Grid, size: f64, largest: f64, base: u32, sizes: usize) -> Vec<Tally> {
+    fn tallies(
+        &self,
+        grid: &Grid<M>,
+        size: f64,
+        largest: f64,
+        base: u32,
+        sizes: usize,
+    ) -> Vec<Tally> {
         let (own, turned) = self.own(grid);
         let (map, _) = own.map(&turned, size, largest);
         let mut boxes: Vec<Held> = Vec::new();
         for (at, points) in self.places() {
-            let at = map.transform_point2(at);
+            let at = map.apply(at).coordinates();
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
                 reason = "points lie on the grid, and casts from floats saturate"
             )]
-            let key = (u64::from(at.y as u32) << 32) | u64::from(at.x as u32);
+            let key = packed(M::Point::DIMENSION, at.map(|at| u64::from(at as u32)));
             let held = Held {
                 key,
                 places: 1,
@@ -103,7 +120,7 @@ impl Points {
             if level > 0 {
                 boxes
                     .iter_mut()
-                    .for_each(|held| held.key = coarser(held.key, base));
+                    .for_each(|held| held.key = coarser(M::Point::DIMENSION, held.key, base));
             }
             boxes.sort_unstable_by_key(|held| held.key);
             let finer = std::mem::take(&mut boxes);
@@ -127,10 +144,23 @@ fn join(boxes: &mut Vec<Held>, held: Held) {
 }
 
 /// Returns the key of the box `base` times as large that holds a box.
-fn coarser(key: u64, base: u32) -> u64 {
+fn coarser(dimension: usize, key: u64, base: u32) -> u64 {
     let base = u64::from(base);
-    let (row, column) = (key >> 32, key & 0xffff_ffff);
-    ((row / base) << 32) | (column / base)
+    let width = 64 / dimension;
+    let mask = (1 << width) - 1;
+    let at = [0, 1, 2].map(|axis| match axis < dimension {
+        true => (key >> (axis * width) & mask) / base,
+        false => 0,
+    });
+    packed(dimension, at)
+}
+
+/// Returns the key of a box: its coordinates, of 32 bits each in the plane and of 21 bits in space.
+fn packed(dimension: usize, [x, y, z]: [u64; 3]) -> u64 {
+    match dimension {
+        2 => x | y << 32,
+        _ => x | y << 21 | z << 42,
+    }
 }
 
 impl Tally {

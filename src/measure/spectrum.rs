@@ -4,14 +4,16 @@ use std::num::NonZero;
 
 use super::averaging::averaged;
 use super::bits::Bits;
-use super::box_counting::{BoxCounting, Boxes, PLANE};
+use super::box_counting::{BoxCounting, Boxes};
 use super::cover::Grid;
 use super::limit::{Cascade, Moments};
 use super::mass::Masses;
 use super::raster::distance;
 use super::regression::{Estimate, Reading, estimate};
 use super::sample::Sample;
+use super::space::Space;
 use super::statistics::{logarithm, mean, readings};
+use crate::geometry::Point;
 use crate::parallel::map;
 use crate::saturating::real;
 
@@ -78,8 +80,8 @@ impl Generalised {
     /// go from about half the extent down to 10⁻⁸ of it, or to where too many copies overlap, in `series`
     /// series of sizes. The results do not [rise](Self::fall) with the order.
     #[must_use]
-    pub fn of_measure(
-        measure: &Cascade,
+    pub fn of_measure<M: Space>(
+        measure: &Cascade<M>,
         orders: &[f64],
         base: Option<f64>,
         series: NonZero<usize>,
@@ -98,10 +100,13 @@ impl Generalised {
         let moments = Moments::of(measure, orders, base, series, threads);
         let of = |(number, &order): (usize, &f64)| {
             let readings = moments.readings(number);
-            let estimate = averaged(&readings, most(order)).or_else(|| estimate(&readings));
+            let estimate = averaged(&readings, most(M::Point::DIMENSION, order))
+                .or_else(|| estimate(&readings));
             Self {
                 order,
-                estimate: estimate.map(|estimate| with_drift(estimate, &readings, most(order))),
+                estimate: estimate.map(|estimate| {
+                    with_drift(estimate, &readings, most(M::Point::DIMENSION, order))
+                }),
                 entropies: readings.iter().map(|it| (it.size, it.log)).collect(),
             }
         };
@@ -159,7 +164,7 @@ impl Generalised {
             let entropies = used.iter();
             let entropies =
                 entropies.map(|&(number, size)| (size, sample.entropies(number, order)));
-            fitted(order, entropies, true)
+            fitted(order, entropies, Some(sample.dimension))
         };
         orders.iter().map(of).collect()
     }
@@ -239,9 +244,13 @@ fn with_drift(estimate: Estimate, readings: &[Reading], most: f64) -> Estimate {
 }
 
 /// Returns the upper bound of the dimension of an order; for negative orders, dimensions may exceed that of
-/// the plane.
-fn most(order: f64) -> f64 {
-    if order < 0.0 { f64::INFINITY } else { PLANE }
+/// the space.
+fn most(dimension: usize, order: f64) -> f64 {
+    if order < 0.0 {
+        f64::INFINITY
+    } else {
+        real(dimension)
+    }
 }
 
 /// Relative tolerance within which sizes count as equal.
@@ -275,7 +284,7 @@ fn of_masses(
             let all = entropies.iter().map(|grid| grid[size].1[number]);
             (entropies[0][size].0, all.collect())
         });
-        fitted(order, by_size, false)
+        fitted(order, by_size, None)
     };
     Some(orders.iter().enumerate().map(of).collect())
 }
@@ -283,14 +292,14 @@ fn of_masses(
 /// Fits the slope of entropies by size and grid, over the sizes at which all are finite.
 ///
 /// For a set that is known, the smallest entropy of all grids is kept, as the smallest cover is; for a
-/// sample, their mean.
+/// sample in a space of the dimension `sampled`, their mean.
 fn fitted(
     order: f64,
     entropies: impl Iterator<Item = (f64, Vec<f64>)>,
-    is_sample: bool,
+    sampled: Option<usize>,
 ) -> Generalised {
     let kept = |by_grid: &[f64]| {
-        if is_sample {
+        if sampled.is_some() {
             mean(by_grid)
         } else {
             by_grid.iter().copied().fold(f64::INFINITY, f64::min)
@@ -299,9 +308,7 @@ fn fitted(
     let readings = readings(entropies, |by_grid, last| {
         [kept(by_grid), kept(by_grid) - kept(last)]
     });
-    let averaged = is_sample
-        .then(|| averaged(&readings, most(order)))
-        .flatten();
+    let averaged = sampled.and_then(|dimension| averaged(&readings, most(dimension, order)));
     Generalised {
         order,
         estimate: averaged.or_else(|| estimate(&readings)),
@@ -366,7 +373,7 @@ mod tests {
         });
         let readings: Vec<Reading> = readings.collect();
         let plain = of(1.0, 1.9, 0.002).estimate.unwrap();
-        let told = with_drift(plain, &readings, PLANE);
+        let told = with_drift(plain, &readings, 2.0);
         assert!((told.value - 2.0).abs() < 0.04, "{told:?}");
         assert!((told.value - 2.0).abs() < 2.0 * told.std_error, "{told:?}");
     }

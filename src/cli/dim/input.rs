@@ -8,13 +8,15 @@ use anyhow::{Context, anyhow};
 
 use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
-use crate::extent::NoLimit;
+use crate::extent::{Bounded, NoLimit};
+use crate::geometry::DAffine2;
 use crate::graph::Graph;
 use crate::grow::Growth;
+use crate::ifs::{AffineMap, Ifs};
 use crate::import::{Channel, Raster, TableError, read_points};
 use crate::measure::exact::{GraphDimensions, Spectrum, dimensions_of_graph};
 use crate::measure::{
-    Bits, BoxCounting, Cascade, FINENESS, Generalised, Grid, LimitSet, Masses, Points, grown,
+    Bits, BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Points, Space, grown,
 };
 use crate::model::Model;
 
@@ -142,40 +144,62 @@ impl Kind {
 
 fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> {
     let title = loaded.model.metadata().description.title.clone();
-    let mut measured = Measured {
+    let measured = Measured {
         name: loaded.name.clone(),
         title: title.unwrap_or_else(|| loaded.name.clone()),
         set: "the limit set of the fertile elements".into(),
         exact: Some(exact(loaded)?),
         ..Measured::default()
     };
-    if loaded.model.is_in_space() {
-        let reason = "nothing is measured: boxes are counted in the plane only";
-        measured.warnings.push(reason.into());
-        return Ok(measured);
+    if let Some(graph) = loaded.model.compile_in_space(false) {
+        let weighted = match &loaded.model {
+            Model::IfsInSpace(system) => Some(system.ifs()),
+            _ => None,
+        };
+        return Ok(match LimitSet::of(&graph) {
+            Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
+            Err(error) => measured.without(&error),
+        });
     }
     let (graph, steps) = compiled(loaded)?;
-    let set = match LimitSet::of(&graph) {
-        Ok(set) => set,
+    let weighted = match &loaded.model {
+        Model::Ifs(system) => Some(system.ifs()),
+        _ => None,
+    };
+    Ok(match LimitSet::of(&graph) {
+        Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
         Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless) => {
             return of_growth(arguments, &graph, steps, measured);
         }
-        Err(error) => return Ok(measured.without(&error)),
-    };
-    let (grids, threads) = (arguments.grids(), arguments.threads());
-    measured.counting = BoxCounting::of_limit(&set, arguments.base, &grids, threads);
+        Err(error) => measured.without(&error),
+    })
+}
+
+/// Measures a limit set.
+fn of_limit<M: Space + AffineMap>(
+    arguments: &Arguments,
+    set: &LimitSet<M>,
+    graph: &Graph<M::Frame>,
+    weighted: Option<&Ifs<M>>,
+    mut measured: Measured,
+) -> Measured
+where
+    M::Frame: Bounded,
+{
+    let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
+    measured.counting = BoxCounting::of_limit(set, arguments.base, &grids, threads);
     if measured.counting.boxes.is_empty() {
         if measured.counting.estimate.is_none() {
             let reason = "nothing is measured: too many copies overlap";
             measured.warnings.push(reason.into());
         }
-        return Ok(measured);
+        return measured;
     }
-    measured.tell_measure(arguments, loaded, &graph);
-    let mut masses = FINENESS.into_iter();
-    let masses = masses.find_map(|boxes| Masses::of_limit(&set, &Grid::ALONG, boxes));
+    measured.tell_measure(arguments, weighted, graph);
+    let mut masses = M::FINENESS.iter();
+    let masses = masses.find_map(|&boxes| Masses::of_limit(set, &Grid::ALONG, boxes));
     measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
-    Ok(measured.enlarged(graph.place().ratio()))
+    measured.enlarged(graph.place().ratio())
 }
 
 /// Measures a rule whose limit set is known only by growing it, with the random draws of a seed.
@@ -200,7 +224,7 @@ fn of_growth(
         grown.detail * graph.place().ratio(),
         arguments.seed
     );
-    let points = match Points::new(grown.points) {
+    let points = match Points::<DAffine2>::new(grown.points) {
         Ok(points) => points,
         Err(error) => return Ok(measured.without(&error)),
     };
@@ -239,7 +263,7 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Meas
     }
     let base = arguments.base.map(|base| whole(Some(base), "pictures"));
     let base = base.transpose()?;
-    let (grids, threads) = (arguments.grids(), arguments.threads());
+    let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
     let counting = BoxCounting::of_pixels(&pixels, base, &grids, threads);
     let mut measured = Measured {
         name: name.into(),
@@ -292,7 +316,7 @@ fn of_points(
         set: format!("{count} points"),
         ..Measured::default()
     };
-    let points = Points::new(points).with_context(|| name.to_owned())?;
+    let points = Points::<DAffine2>::new(points).with_context(|| name.to_owned())?;
     measured.sampled(&points, base, 0.0, arguments);
     Ok(measured)
 }
@@ -323,11 +347,15 @@ impl Measured {
 
     /// Sets the spectrum of the measure on the limit set of a rule: the measure given by the weights of a
     /// system, or else the natural one.
-    fn tell_measure(&mut self, arguments: &Arguments, loaded: &Loaded, graph: &Graph) {
-        let weighted = match &loaded.model {
-            Model::Ifs(system) if system.ifs().has_weights() => Some(system.ifs()),
-            _ => None,
-        };
+    fn tell_measure<M: Space + AffineMap>(
+        &mut self,
+        arguments: &Arguments,
+        ifs: Option<&Ifs<M>>,
+        graph: &Graph<M::Frame>,
+    ) where
+        M::Frame: Bounded,
+    {
+        let weighted = ifs.filter(|ifs| ifs.has_weights());
         let by_weights = weighted.and_then(|ifs| Some((ifs, Cascade::of_weights(ifs)?)));
         if weighted.is_some() && by_weights.is_none() {
             let reason = "the weights do not determine a unique measure: the limit of random iteration depends on its \
@@ -357,14 +385,14 @@ impl Measured {
     }
 
     /// Measures points as a sample of a set, with boxes that are at least `finest`.
-    fn sampled(
+    fn sampled<M: Space>(
         &mut self,
-        points: &Points,
+        points: &Points<M>,
         base: NonZero<usize>,
         finest: f64,
         arguments: &Arguments,
     ) {
-        let sample = points.sample(base, &arguments.grids(), arguments.threads());
+        let sample = points.sample(base, &Grid::spread(arguments.grids), arguments.threads());
         self.counting = BoxCounting::of_sample(&sample, finest);
         self.tell(Generalised::of_sample(&sample, &arguments.orders, finest));
         self.lacunarity = Masses::of_points(points).lacunarity();

@@ -1,10 +1,12 @@
 //! Measures on a limit set: a multiplicative cascade distributes the mass of a copy over its parts.
 
-use crate::geometry::DVec2;
+use crate::extent::Bounded;
+use crate::geometry::{Affine, DAffine2, Point};
 use crate::graph::Graph;
-use crate::ifs::Ifs;
+use crate::ifs::{AffineMap, Ifs};
 use crate::measure::copies::{Copies, Shared};
 use crate::measure::exact::distinct;
+use crate::measure::space::Space;
 
 use super::{LimitSet, Placed};
 
@@ -13,20 +15,20 @@ use super::{LimitSet, Placed};
 ///
 /// Copies without a share are left out, and the set is the measure's support.
 #[derive(Clone, Debug)]
-pub struct Cascade {
-    pub(super) set: LimitSet,
+pub struct Cascade<M: Affine = DAffine2> {
+    pub(super) set: LimitSet<M>,
     /// Shares of the copies, by object; they add up to 1.
     pub(super) shares: Vec<Vec<f64>>,
     /// Masses of the copies that the whole is made of; they add up to 1.
     pub(super) start: Vec<f64>,
     /// Centres of mass of the objects.
-    pub(super) centres: Vec<DVec2>,
+    pub(super) centres: Vec<M::Point>,
 }
 
 /// Maximum number of sweeps in the computation of centres.
 const MAX_SWEEPS: usize = 1_000;
 
-impl Cascade {
+impl<M: Space> Cascade<M> {
     /// Creates the natural measure of the limit set of a graph's fertile elements: a copy of size r has a
     /// mass of about r^s, where s is the set's dimension (Hutchinson 1981; for graphs: Mauldin & Williams
     /// 1988).
@@ -37,7 +39,7 @@ impl Cascade {
     ///
     /// Returns `None` where the graph is not made of fixed maps that contract.
     #[must_use]
-    pub fn natural(graph: &Graph) -> Option<Self> {
+    pub fn natural<F: Bounded<Map = M>>(graph: &Graph<F>) -> Option<Self> {
         Self::of(&distinct(Copies::of(graph)?).natural()?)
     }
 
@@ -45,12 +47,15 @@ impl Cascade {
     ///
     /// Returns `None` where [the measure is not unique](crate::ifs::Walk::stationary).
     #[must_use]
-    pub fn of_weights(ifs: &Ifs) -> Option<Self> {
+    pub fn of_weights(ifs: &Ifs<M>) -> Option<Self>
+    where
+        M: AffineMap,
+    {
         Self::of(&Shared::of_weights(ifs)?)
     }
 
     /// Creates the measure of shares; `None` if no copy of the whole has mass.
-    pub(in crate::measure) fn of(shared: &Shared) -> Option<Self> {
+    pub(in crate::measure) fn of(shared: &Shared<M>) -> Option<Self> {
         let mut children = vec![Vec::new(); shared.copies.size];
         let mut shares = vec![Vec::new(); shared.copies.size];
         for (copy, &share) in shared.copies.copies.iter().zip(&shared.shares) {
@@ -61,14 +66,14 @@ impl Cascade {
         }
         let all = shared.copies.start.iter().zip(&shared.masses);
         let all = all.filter(|(_, mass)| **mass > 0.0);
-        let (start, masses): (Vec<Placed>, Vec<f64>) = all
+        let (start, masses): (Vec<Placed<M>>, Vec<f64>) = all
             .map(|(&(object, map), &mass)| (Placed::new(map, object), mass))
             .unzip();
         if start.is_empty() {
             return None;
         }
         let mut cascade = Self {
-            centres: vec![DVec2::ZERO; children.len()],
+            centres: vec![M::Point::ZERO; children.len()],
             set: LimitSet::of_copies(children, start),
             shares,
             start: masses,
@@ -79,22 +84,22 @@ impl Cascade {
 
     /// Returns the support of the measure.
     #[must_use]
-    pub fn set(&self) -> &LimitSet {
+    pub fn set(&self) -> &LimitSet<M> {
         &self.set
     }
 
     /// Computes the centres of mass, c(o) = Σ share f(c(p)) over the copies f of p.
     fn find_centres(&mut self) {
         const TOLERANCE: f64 = 1e-6;
-        let mut centres: Vec<DVec2> = self.set.objects.iter().map(|part| part.point).collect();
+        let mut centres: Vec<M::Point> = self.set.objects.iter().map(|part| part.point).collect();
         for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..centres.len()).rev() {
                 let part = &self.set.objects[object];
                 let copies = part.children.iter().zip(&self.shares[object]);
-                let centre: DVec2 = copies
-                    .map(|(copy, share)| *share * copy.map.transform_point2(centres[copy.object]))
-                    .sum();
+                let centre = copies
+                    .map(|(copy, share)| copy.map.apply(centres[copy.object]) * *share)
+                    .fold(M::Point::ZERO, |sum, part| sum + part);
                 if !part.children.is_empty() {
                     change = change.max((centre - centres[object]).length() / part.radius);
                     centres[object] = centre;

@@ -7,8 +7,9 @@
 
 use std::num::NonZero;
 
-use crate::geometry::DVec2;
-use crate::measure::cover::{Grid, Scale};
+use crate::geometry::Point;
+use crate::measure::cover::{Counts, Grid, Scale, least};
+use crate::measure::space::Space;
 use crate::measure::statistics::{deviation, mean};
 use crate::parallel::map;
 use crate::random::Pcg;
@@ -16,10 +17,10 @@ use crate::saturating::{real, whole};
 
 use super::{GRAZED, LimitSet, Placed, merge};
 
-/// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes. Counts are
-/// exact as long as there are fewer.
+/// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes, in the plane and in
+/// space, where more copies come near to a box. Counts are exact as long as there are fewer.
 const FOLLOWED_COPIES: usize = 1 << 14;
-const FOLLOWED: usize = 1 << 11;
+const FOLLOWED: [usize; 2] = [1 << 11, 1 << 9];
 
 /// Radius, in sides of a box, above which the disc of a copy is divided.
 const LARGEST: f64 = 2.0;
@@ -27,33 +28,29 @@ const LARGEST: f64 = 2.0;
 /// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
 const MAX_COPIES: usize = 1 << 22;
 
-/// Side of the smallest boxes, as a fraction of the extent: there, doubles still resolve six digits of a box,
-/// and counts fit 64 bits.
-const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
-
 /// Number of copies in a box from which equal ones are removed.
 const MANY: usize = 8;
 
-/// A box, as the copies near it, on a scale on which the box is the unit square.
-type Cell = Vec<Placed>;
+/// A box, as the copies near it, on a scale on which the box is the unit box.
+type Cell<M> = Vec<Placed<M>>;
 
 /// Number of boxes, and whether it is estimated from a sample.
 type Count = (f64, bool);
 
 /// The boxes of the present size that are refined.
-struct Descent<'s> {
-    set: &'s LimitSet,
-    cells: Vec<Cell>,
+struct Descent<'s, M: Space> {
+    set: &'s LimitSet<M>,
+    cells: Vec<Cell<M>>,
     /// Number of boxes that each box represents.
     weight: f64,
     random: Pcg,
     looked_at: usize,
 }
 
-impl<'s> Descent<'s> {
+impl<'s, M: Space> Descent<'s, M> {
     /// Starts from the boxes of a grid: `start` holds copies on a scale on which boxes have side 1, and
     /// corners at whole numbers from (0, 0) to `boxes`.
-    fn new(set: &'s LimitSet, start: Vec<Placed>, boxes: [usize; 2], seed: usize) -> Self {
+    fn new(set: &'s LimitSet<M>, start: Vec<Placed<M>>, boxes: Counts, seed: usize) -> Self {
         let mut descent = Self {
             set,
             cells: Vec::new(),
@@ -86,7 +83,7 @@ impl<'s> Descent<'s> {
         let mut cells = Vec::new();
         for mut cell in std::mem::take(&mut self.cells) {
             cell.iter_mut().for_each(|copy| copy.grow(scale));
-            cells.append(&mut self.divided(cell, [base; 2]));
+            cells.append(&mut self.divided(cell, M::boxes(base)));
             if self.looked_at > MAX_COPIES {
                 break;
             }
@@ -97,7 +94,8 @@ impl<'s> Descent<'s> {
     /// Keeps one box of each run of neighbours, if there are too many.
     fn choose(&mut self) {
         let copies: usize = self.cells.iter().map(Vec::len).sum();
-        let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1)).max(FOLLOWED);
+        let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1))
+            .max(FOLLOWED[M::Point::DIMENSION - 2]);
         if self.cells.len() <= most {
             return;
         }
@@ -111,35 +109,36 @@ impl<'s> Descent<'s> {
     }
 
     /// Returns the boxes of a grid that copies come near to, row by row from the lower left.
-    fn divided(&mut self, mut copies: Vec<Placed>, boxes: [usize; 2]) -> Vec<Cell> {
-        let mut cells = vec![Cell::new(); boxes[0] * boxes[1]];
+    fn divided(&mut self, mut copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
+        let mut cells = vec![Cell::new(); boxes.iter().product()];
         while let Some(copy) = copies.pop() {
             let part = &self.set.objects[copy.object];
-            let middle = copy.map.transform_point2(part.middle);
+            let middle = copy.map.apply(part.middle);
             let radius = part.reach * copy.scale;
             self.looked_at += 1;
-            let [columns, rows] = [0, 1].map(|axis| {
-                let (low, high) = (middle[axis] - radius, middle[axis] + radius);
+            let at = middle.coordinates();
+            let [columns, rows, layers] = [0, 1, 2].map(|axis| {
+                let (low, high) = (at[axis] - radius, at[axis] + radius);
                 whole(low)..whole(high + 1.0).min(boxes[axis])
             });
             if self.looked_at > MAX_COPIES {
                 break;
             }
             if radius > LARGEST {
-                if !columns.is_empty() && !rows.is_empty() {
+                if !columns.is_empty() && !rows.is_empty() && !layers.is_empty() {
                     let children = part.children.iter().rev();
                     copies.extend(children.map(|inner| copy.compose(inner)));
                 }
                 continue;
             }
-            for row in rows {
-                for column in columns.clone() {
-                    let corner = DVec2::new(real(column), real(row));
-                    let nearest = middle.clamp(corner, corner + 1.0);
-                    if middle.distance_squared(nearest) <= radius * radius {
-                        let mut inner = copy;
-                        inner.map.translation -= corner;
-                        cells[row * boxes[0] + column].push(inner);
+            for layer in layers {
+                for row in rows.clone() {
+                    for column in columns.clone() {
+                        let corner = M::Point::of_coordinates([column, row, layer].map(real));
+                        if from_box(middle - corner) <= radius * radius {
+                            let number = (layer * boxes[1] + row) * boxes[0] + column;
+                            cells[number].push(copy.moved(-corner));
+                        }
                     }
                 }
             }
@@ -152,13 +151,14 @@ impl<'s> Descent<'s> {
     }
 }
 
-impl LimitSet {
+impl<M: Space> LimitSet<M> {
     /// Covers the set by boxes whose sides are fractions of its extent, each smaller than the one before by
     /// the factor `base`, down to the resolution of doubles. Boxes that are too many to be counted are
     /// estimated from a sample.
     ///
     /// A sample gives the growth of counts: from the last smallest cover that was counted, the count grows by
-    /// the mean over all grids. The sizes end where too many copies overlap.
+    /// the mean over all grids. The sizes end where too many copies overlap. In space, the boxes along the axes are
+    /// counted exactly where their states are finitely many.
     ///
     /// # Panics
     ///
@@ -167,7 +167,7 @@ impl LimitSet {
     pub fn sampled_scales(
         &self,
         base: NonZero<usize>,
-        grids: &[Grid],
+        grids: &[Grid<M>],
         threads: NonZero<usize>,
     ) -> Vec<Scale> {
         let base = base.get();
@@ -176,10 +176,19 @@ impl LimitSet {
         if extent <= 0.0 {
             return Vec::new();
         }
+        // There, doubles still resolve six digits of a box, and counts fit 64 bits.
+        let finest = libm::exp2(-f64::from(M::LEVELS));
         let smaller = |size: &f64| size / real(base);
         let first = smaller(&(extent * (1.0 + 2e-9)));
         let sizes = std::iter::successors(Some(first), |size| Some(smaller(size)));
-        let sizes: Vec<f64> = sizes.take_while(|size| *size > FINEST * extent).collect();
+        let sizes: Vec<f64> = sizes.take_while(|size| *size > finest * extent).collect();
+        let exact = M::COUNTS_STATES
+            .then(|| self.counts_by_states(base, sizes.len()))
+            .flatten();
+        if let Some(exact) = exact {
+            let sizes: Vec<f64> = sizes.iter().map(|size| size / (1.0 + 2e-9)).collect();
+            return least(&sizes, &[Grid::ALONG], threads, |_: &Grid<M>| exact.clone());
+        }
         let counts = map(grids, threads.get(), |number, grid| {
             let (map, boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
             let map = Placed::new(map, 0);
@@ -200,12 +209,13 @@ impl LimitSet {
         joined(&sizes, &counts)
     }
 
-    /// Returns `true` if the unit square holds a point of the set; `copies` are those near it. Returns `None`
+    /// Returns `true` if the unit box holds a point of the set; `copies` are those near it. Returns `None`
     /// where more than `left` copies would have to be examined.
-    fn meets(&self, copies: &[Placed], left: &mut usize) -> Option<bool> {
-        let lies_in = |copy: &Placed| {
-            let point = copy.map.transform_point2(self.objects[copy.object].point);
-            point.cmpge(DVec2::ZERO).all() && point.cmplt(DVec2::ONE).all()
+    fn meets(&self, copies: &[Placed<M>], left: &mut usize) -> Option<bool> {
+        let lies_in = |copy: &Placed<M>| {
+            let point = copy.map.apply(self.objects[copy.object].point);
+            let mut coordinates = point.coordinates().into_iter();
+            coordinates.all(|at| (0.0..1.0).contains(&at))
         };
         if copies.iter().any(lies_in) {
             return Some(true);
@@ -214,10 +224,9 @@ impl LimitSet {
         while let Some(copy) = stack.pop() {
             *left = left.checked_sub(1)?;
             let part = &self.objects[copy.object];
-            let middle = copy.map.transform_point2(part.middle);
+            let middle = copy.map.apply(part.middle);
             let radius = part.reach * copy.scale;
-            let nearest = middle.clamp(DVec2::ZERO, DVec2::ONE);
-            if radius <= GRAZED || middle.distance_squared(nearest) > radius * radius {
+            if radius <= GRAZED || from_box(middle) > radius * radius {
                 continue;
             }
             for inner in &part.children {
@@ -230,6 +239,12 @@ impl LimitSet {
         }
         Some(false)
     }
+}
+
+/// Returns the square of the distance of a point from the unit box.
+fn from_box<P: Point>(point: P) -> f64 {
+    let away = point - point.max(P::ZERO).min(P::splat(1.0));
+    away.dot(away)
 }
 
 /// Replaces the variances of growths that are estimated from samples, on few grids, by their means with the

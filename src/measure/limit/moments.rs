@@ -13,8 +13,9 @@
 
 use std::num::NonZero;
 
-use crate::geometry::DVec2;
+use crate::geometry::Point;
 use crate::measure::regression::Reading;
+use crate::measure::space::Space;
 use crate::measure::statistics::{differences, mean, readings};
 use crate::parallel::map;
 use crate::saturating::real;
@@ -38,6 +39,10 @@ const MAX_OF_ALL: usize = 3 << 21;
 /// Number of distances between pieces that cost as much as examining a copy.
 const DISTANCES: usize = 8;
 
+/// Number of sizes, in the plane and in space, at which pieces are chosen before the first that is measured: in
+/// space, the pieces of a set in its largest balls are too many.
+const AHEAD: [u8; 2] = [0, 2];
+
 /// Size of the smallest balls, as a fraction of the extent: doubles still resolve six digits of them.
 const FINEST: f64 = 1.0 / (1u64 << 28) as f64;
 
@@ -57,8 +62,8 @@ impl Moments {
     /// factor `base`, as far as masses can be computed. The sizes of several series are spread evenly between
     /// one size and the next: oscillations that are periodic in the logarithm of the size cancel in their
     /// mean.
-    pub(in crate::measure) fn of(
-        cascade: &Cascade,
+    pub(in crate::measure) fn of<M: Space>(
+        cascade: &Cascade<M>,
         orders: &[f64],
         base: f64,
         series: NonZero<usize>,
@@ -72,7 +77,11 @@ impl Moments {
         let parts: Vec<f64> = parts.collect();
         let entropies = map(&parts, threads.get(), |_, &part| {
             let size = first * libm::pow(base, -part);
-            let mut descent = Descent::new(cascade, orders, size / 2.0, part);
+            let ahead = libm::pow(base, AHEAD[M::Point::DIMENSION - 2].into());
+            let mut descent = Descent::new(cascade, orders, size / 2.0 * ahead, part);
+            for _ in 0..AHEAD[M::Point::DIMENSION - 2] {
+                descent.go_down(base);
+            }
             let mut entropies = Vec::new();
             for number in 0..sizes.len() {
                 if number > 0 {
@@ -111,13 +120,13 @@ impl Moments {
 }
 
 /// A copy and its mass.
-type Massive = (Placed, f64);
+type Massive<M> = (Placed<M>, f64);
 
 /// A piece, on a scale on which balls have the radius 1.
-struct Piece {
-    copy: Placed,
+struct Piece<M> {
+    copy: Placed<M>,
     /// Copies that a ball about any point of the piece may contain, including the piece itself.
-    near: Vec<Massive>,
+    near: Vec<Massive<M>>,
     /// Logarithms of the mass of the piece, and of the mass of the ball about its centre.
     logs: [f64; 2],
     /// Logarithm of the number of pieces that it represents.
@@ -125,19 +134,19 @@ struct Piece {
 }
 
 /// A small copy, with its mass, its centre of mass, and a disc that holds it.
-struct Small {
-    copy: Placed,
+struct Small<M: Space> {
+    copy: Placed<M>,
     mass: f64,
-    centre: DVec2,
-    middle: DVec2,
+    centre: M::Point,
+    middle: M::Point,
     radius: f64,
 }
 
 /// The pieces of the present size, and the effort that they took.
-struct Descent<'c> {
-    cascade: &'c Cascade,
+struct Descent<'c, M: Space> {
+    cascade: &'c Cascade<M>,
     orders: &'c [f64],
-    pieces: Vec<Piece>,
+    pieces: Vec<Piece<M>>,
     /// Offset of the pieces that are chosen next, from 0 to 1.
     place: f64,
     /// Number of copies that were examined for the pieces of this size, and of larger pieces that were
@@ -148,8 +157,8 @@ struct Descent<'c> {
     before: usize,
 }
 
-impl<'c> Descent<'c> {
-    fn new(cascade: &'c Cascade, orders: &'c [f64], radius: f64, place: f64) -> Self {
+impl<'c, M: Space> Descent<'c, M> {
+    fn new(cascade: &'c Cascade<M>, orders: &'c [f64], radius: f64, place: f64) -> Self {
         let start = cascade.set.start.iter().zip(&cascade.start);
         let near = start.map(|(copy, &mass)| {
             let mut copy = *copy;
@@ -165,7 +174,7 @@ impl<'c> Descent<'c> {
             divided: 1,
             before: 0,
         };
-        let near: Vec<Massive> = near.collect();
+        let near: Vec<Massive<M>> = near.collect();
         let all = descent.small(near.clone(), |_, _| true);
         let smaller = descent.small(near, |_, _| true);
         descent.pieces = descent.with_near(&smaller, &all, 0.0);
@@ -207,7 +216,7 @@ impl<'c> Descent<'c> {
             let mass = libm::exp(piece.logs[0]);
             let smaller = self.small(vec![(piece.copy, mass)], |_, _| true);
             let near = self.small(piece.near, |at, reach| {
-                at.distance_squared(middle) <= (radius + reach + 1.0) * (radius + reach + 1.0)
+                squared(at - middle) <= (radius + reach + 1.0) * (radius + reach + 1.0)
             });
             let weight = piece.weight;
             pieces.append(&mut self.with_near(&smaller, &near, weight));
@@ -250,16 +259,17 @@ impl<'c> Descent<'c> {
     }
 
     /// Returns a disc that holds a copy.
-    fn disc(&self, copy: &Placed) -> (DVec2, f64) {
+    fn disc(&self, copy: &Placed<M>) -> (M::Point, f64) {
         let part = &self.cascade.set.objects[copy.object];
-        (
-            copy.map.transform_point2(part.middle),
-            part.reach * copy.scale,
-        )
+        (copy.map.apply(part.middle), part.reach * copy.scale)
     }
 
     /// Returns the small copies that copies are made of, without those whose discs `keep` rejects.
-    fn small(&mut self, mut stack: Vec<Massive>, keep: impl Fn(DVec2, f64) -> bool) -> Vec<Small> {
+    fn small(
+        &mut self,
+        mut stack: Vec<Massive<M>>,
+        keep: impl Fn(M::Point, f64) -> bool,
+    ) -> Vec<Small<M>> {
         let cascade = self.cascade;
         let mut small = Vec::new();
         stack.reverse();
@@ -282,7 +292,7 @@ impl<'c> Descent<'c> {
             small.push(Small {
                 copy,
                 mass,
-                centre: copy.map.transform_point2(cascade.centres[copy.object]),
+                centre: copy.map.apply(cascade.centres[copy.object]),
                 middle,
                 radius,
             });
@@ -294,18 +304,18 @@ impl<'c> Descent<'c> {
     }
 
     /// Returns pieces with the copies near them; `all` contains the pieces.
-    fn with_near(&mut self, pieces: &[Small], all: &[Small], weight: f64) -> Vec<Piece> {
+    fn with_near(&mut self, pieces: &[Small<M>], all: &[Small<M>], weight: f64) -> Vec<Piece<M>> {
         self.looked_at += pieces.len() * all.len() / DISTANCES;
-        let with_near = |piece: &Small| {
+        let with_near = |piece: &Small<M>| {
             let mut mass = 0.0;
             let mut near = Vec::new();
             for other in all {
-                if other.centre.distance_squared(piece.centre) <= 1.0 {
+                if squared(other.centre - piece.centre) <= 1.0 {
                     mass += other.mass;
                 }
                 // Balls of the next size are not larger.
                 let reach = other.radius + piece.radius + 1.0;
-                if other.middle.distance_squared(piece.middle) <= reach * reach {
+                if squared(other.middle - piece.middle) <= reach * reach {
                     near.push((other.copy.moved(-piece.centre), other.mass));
                 }
             }
@@ -323,7 +333,7 @@ impl<'c> Descent<'c> {
 /// The golden section, whose multiples do not repeat modulo 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-impl Piece {
+impl<M> Piece<M> {
     /// Returns the logarithm of the piece's term in the sum of an order.
     fn share(&self, order: f64) -> f64 {
         let [mass, ball] = self.logs;
@@ -334,6 +344,11 @@ impl Piece {
     fn own_share(&self, order: f64) -> f64 {
         self.weight + order * self.logs[0]
     }
+}
+
+/// Returns the square of a vector's length.
+fn squared<P: Point>(vector: P) -> f64 {
+    vector.dot(vector)
 }
 
 /// Returns the logarithm of a sum of exponentials.
