@@ -10,9 +10,8 @@ pub use appearance::{Appearance, Thickness};
 
 use std::sync::Arc;
 
-use crate::expression::{Affine, Program};
 use crate::geometry::{DAffine2, Homothety};
-use crate::ifs::Shape;
+use crate::ifs::AffineMap;
 use crate::metadata::Metadata;
 use crate::style::Colour;
 
@@ -21,48 +20,48 @@ use crate::style::Colour;
 /// Guarantees: all numbers of objects are in range, all maps are finite, and no instance that leads back
 /// to its object is known to expand (in some cases this is undecided).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instancing {
+pub struct Instancing<M: AffineMap = DAffine2> {
     pub(crate) heading: Metadata,
-    pub(crate) objects: Vec<ObjectDefinition>,
-    pub(crate) scene: Vec<ObjectInstance>,
-    pub(crate) initial: Option<Shape>,
+    pub(crate) objects: Vec<ObjectDefinition<M>>,
+    pub(crate) scene: Vec<ObjectInstance<M>>,
+    pub(crate) initial: Option<M::Set>,
 }
 
 /// Canonical object: a union of instances.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ObjectDefinition {
+pub struct ObjectDefinition<M: AffineMap = DAffine2> {
     /// Name, with the level if there is one: `A(3)`.
     pub name: String,
     /// Map that is applied to the whole object.
-    pub map: DAffine2,
+    pub map: M,
     /// Instances of which the object is the union.
-    pub instances: Vec<ObjectInstance>,
+    pub instances: Vec<ObjectInstance<M>>,
     /// Maps whose product is `map`, as written, for the slots of the object.
-    pub(crate) transforms: Arc<[Affine<Program>]>,
+    pub(crate) transforms: Arc<[M::Written]>,
     /// Slots of the programs of the object and of its instances: its level, if it has one.
     pub(crate) slots: Vec<f64>,
 }
 
 /// Instance of an object or of a shape.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ObjectInstance {
+pub struct ObjectInstance<M: AffineMap = DAffine2> {
     /// Map into the coordinates of the object that contains the instance.
-    pub map: DAffine2,
+    pub map: M,
     /// Object or shape that is instanced.
-    pub master: Master,
+    pub master: Master<M>,
     /// Tint of the instance and of its contents.
     pub tint: Option<Tint>,
     /// Maps whose product is `map`, as written, for the slots of the object that contains the instance.
-    pub(crate) transforms: Arc<[Affine<Program>]>,
+    pub(crate) transforms: Arc<[M::Written]>,
 }
 
 /// Object or shape of which an instance is a copy.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Master {
+pub enum Master<M: AffineMap = DAffine2> {
     /// Object, by number.
     Object(usize),
     /// Shape: a primitive.
-    Shape(Shape),
+    Shape(M::Set),
 }
 
 /// Colour with its coverage (Hart 1992, section 5).
@@ -74,7 +73,7 @@ pub struct Tint {
     pub alpha: f64,
 }
 
-impl Instancing {
+impl<M: AffineMap> Instancing<M> {
     /// Returns the metadata of the file.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
@@ -83,19 +82,19 @@ impl Instancing {
 
     /// Returns the objects that the scene reaches.
     #[must_use]
-    pub fn objects(&self) -> &[ObjectDefinition] {
+    pub fn objects(&self) -> &[ObjectDefinition<M>] {
         &self.objects
     }
 
     /// Returns the instances of the scene.
     #[must_use]
-    pub fn scene(&self) -> &[ObjectInstance] {
+    pub fn scene(&self) -> &[ObjectInstance<M>] {
         &self.scene
     }
 
     /// Returns the shape that represents an object that has not been replaced yet.
     #[must_use]
-    pub fn initial(&self) -> Option<&Shape> {
+    pub fn initial(&self) -> Option<&M::Set> {
         self.initial.as_ref()
     }
 
@@ -103,7 +102,7 @@ impl Instancing {
     /// leads back to itself.
     #[must_use]
     pub fn depth(&self) -> Option<u32> {
-        let children = |instances: &[ObjectInstance]| -> Vec<usize> {
+        let children = |instances: &[ObjectInstance<M>]| -> Vec<usize> {
             let masters = instances.iter().map(|instance| &instance.master);
             masters
                 .filter_map(|master| match master {
@@ -138,13 +137,27 @@ impl Instancing {
     }
 
     /// Returns the map of an instance, composed with the map that its object applies to itself.
-    pub(crate) fn map_of(&self, instance: &ObjectInstance) -> DAffine2 {
+    pub(crate) fn map_of(&self, instance: &ObjectInstance<M>) -> M {
         match instance.master {
             Master::Object(number) => instance.map * self.objects[number].map,
             Master::Shape(_) => instance.map,
         }
     }
 
+    /// Returns whether the structure has a shape or an initial set.
+    pub(crate) fn draws_anything(&self) -> bool {
+        let is_shape = |instance: &ObjectInstance<M>| matches!(instance.master, Master::Shape(_));
+        self.initial.is_some() || self.instances().any(is_shape)
+    }
+
+    /// Iterates over all instances, those of the scene first.
+    pub(crate) fn instances(&self) -> impl Iterator<Item = &ObjectInstance<M>> {
+        let objects = self.objects.iter().flat_map(|object| &object.instances);
+        self.scene.iter().chain(objects)
+    }
+}
+
+impl Instancing {
     /// Returns the structure in the coordinates that a homothety maps to the structure's own, or `None`
     /// if a shape has no extent there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
@@ -165,17 +178,5 @@ impl Instancing {
             *initial = initial.transformed(&back)?;
         }
         Some(within)
-    }
-
-    /// Returns whether the structure has a shape or an initial set.
-    pub(crate) fn draws_anything(&self) -> bool {
-        let is_shape = |instance: &ObjectInstance| matches!(instance.master, Master::Shape(_));
-        self.initial.is_some() || self.instances().any(is_shape)
-    }
-
-    /// Iterates over all instances, those of the scene first.
-    pub(crate) fn instances(&self) -> impl Iterator<Item = &ObjectInstance> {
-        let objects = self.objects.iter().flat_map(|object| &object.instances);
-        self.scene.iter().chain(objects)
     }
 }

@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::{DAffine3, Frame3, Homothety};
+use crate::geometry::{DAffine3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
 use crate::instancing::Instancing;
@@ -73,6 +73,8 @@ models! {
     IfsInSpace: Ifs(System<DAffine3>);
     /// Structure of objects that instance each other.
     Instancing: Instancing(Instancing);
+    /// Structure of objects in space.
+    InstancingInSpace: Instancing(Instancing<DAffine3>);
     /// L-system.
     LSystem: LSystem(LSystem);
 }
@@ -204,27 +206,6 @@ impl Model {
             Some(model) => Cow::Owned(model),
             None => Cow::Borrowed(self),
         }
-    }
-
-    /// Returns whether the model lies in space; [`compile_in_space`](Self::compile_in_space) compiles it then.
-    #[must_use]
-    pub fn is_in_space(&self) -> bool {
-        matches!(self, Self::IfsInSpace(_))
-    }
-
-    /// Compiles a model in space to its graph; `None` for a model of the plane. Objects record the map that is
-    /// applied last if `records_last`, unless there are too many for it.
-    #[must_use]
-    pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {
-        let Self::IfsInSpace(system) = self else {
-            return None;
-        };
-        let recorded = records_last.then(|| Graph::with_last_maps(system));
-        Some(
-            recorded
-                .flatten()
-                .unwrap_or_else(|| Graph::of_system(system)),
-        )
     }
 
     /// Converts an error of [`Model::compile`] or of a walk to a diagnostic of the model's file.

@@ -16,6 +16,7 @@ mod outline;
 mod parameters;
 mod rule;
 mod set;
+mod space;
 mod unused;
 
 use std::collections::HashSet;
@@ -25,8 +26,10 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::{Document, KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
+use crate::geometry::{DAffine2, DAffine3};
 use crate::metadata::Metadata;
 use crate::model::Model;
+use instancing::OfInstancing;
 
 /// Number of mistakes after which expressions and names are not checked further.
 const MAX_MISTAKES: usize = 1000;
@@ -91,9 +94,14 @@ fn resolve(
         KindDocument::Ifs(document) => resolved(&document.heading, settings, |to, heading| {
             to.system(document, heading)
         }),
+        KindDocument::Instancing(document) if document.is_in_space => {
+            resolved(&document.heading, settings, |to, heading| {
+                { to as &mut Resolver<OfInstancing<DAffine3>> }.structure(document, heading)
+            })
+        }
         KindDocument::Instancing(document) => {
             resolved(&document.heading, settings, |to, heading| {
-                to.structure(document, heading)
+                { to as &mut Resolver<OfInstancing<DAffine2>> }.structure(document, heading)
             })
         }
         KindDocument::LSystem(document) => resolved(&document.heading, settings, |to, heading| {

@@ -9,7 +9,7 @@ use crate::geometry::Homothety;
 pub use palette::{Palette, UnknownPalette};
 
 /// An sRGB colour with opacity: red, green, blue and alpha, each from 0 to 255.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Colour([u8; 4]);
 
 impl Colour {

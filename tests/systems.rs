@@ -5,6 +5,7 @@ mod boxes;
 mod cells;
 mod fractals;
 mod same;
+mod space;
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::readable;
-use crate::instancing::Master;
+use crate::ifs::AffineMap;
+use crate::instancing::{Instancing, Master};
 use crate::model::Model;
 
 /// Size of a structure, and whether it ends.
@@ -25,15 +26,20 @@ pub(super) struct StructureInfo {
 impl StructureInfo {
     /// Collects the information of a structure.
     pub(super) fn of(model: &Model) -> Option<Self> {
-        let Model::Instancing(structure) = model else {
-            return None;
-        };
+        match model {
+            Model::Instancing(structure) => Some(Self::of_structure(structure)),
+            Model::InstancingInSpace(structure) => Some(Self::of_structure(structure)),
+            _ => None,
+        }
+    }
+
+    fn of_structure<M: AffineMap>(structure: &Instancing<M>) -> Self {
         let shapes = structure
             .instances()
             .filter(|instance| matches!(instance.master, Master::Shape(_)))
             .count();
         let ends = structure.depth();
-        Some(Self {
+        Self {
             objects: structure.objects().len(),
             instances: structure.instances().count() - shapes,
             shapes,
@@ -42,7 +48,7 @@ impl StructureInfo {
                 .any(|instance| instance.tint.is_some()),
             recursive: ends.is_none(),
             ends,
-        })
+        }
     }
 
     /// Formats the information in lines, each with its label.

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame};
-use crate::ifs::Shape;
+use crate::extent::Bounded;
+use crate::geometry::{Bounds, Frame};
 use crate::instancing::{self, Instancing, Master, Tint};
-use crate::rule::{BaseElement, Piece};
 
 use crate::graph::{Chain, Graph, Instance, Object, Replacement, Successor};
-use crate::ifs::{AffineMap, outline};
+use crate::ifs::{AffineMap, OutlineOf, PointOf};
 
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MAX_BOXES: usize = 256;
@@ -17,18 +16,18 @@ const MAX_BOXES: usize = 256;
 /// Limit of the number of instances that are visited for all boxes together.
 const MAX_LOOKS: usize = 250_000;
 
-impl Graph {
-    /// Compiles a structure to its graph, whose unit frame is the plane itself.
+impl<F: Bounded> Graph<F> {
+    /// Compiles a structure to its graph, whose unit frame is the plane or space itself.
     ///
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
     /// there is one, under the map that the object applies to itself; each step replaces instances of
     /// objects by the instances of which the objects consist. Shapes are infertile. Without shapes and
     /// initial set, an object is drawn as the bounding box of its limit set.
     #[must_use]
-    pub fn of_structure(structure: &Instancing) -> Self {
+    pub fn of_structure<M: AffineMap<Frame = F>>(structure: &Instancing<M>) -> Self {
         let mut graph = Compiler::new(structure).run();
         if !structure.draws_anything() {
-            graph.draw_boxes();
+            graph.draw_boxes::<M>();
         }
         let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
         if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
@@ -38,21 +37,23 @@ impl Graph {
     }
 
     /// Returns, for every object of the graph of a structure, its canonical object; `None` for shapes.
-    pub(crate) fn canonical_objects(structure: &Instancing) -> Vec<Option<usize>> {
+    pub(crate) fn canonical_objects<M: AffineMap<Frame = F>>(
+        structure: &Instancing<M>,
+    ) -> Vec<Option<usize>> {
         let mut compiler = Compiler::new(structure);
         compiler.reach();
         compiler.of
     }
 
     /// Draws every object as the bounding box of its limit set.
-    fn draw_boxes(&mut self) {
+    fn draw_boxes<M: AffineMap<Frame = F>>(&mut self) {
         // The limit set contains visible objects only.
         self.objects
             .iter_mut()
             .for_each(|object| object.visible = true);
         let most = self.most_boxes();
         let initiators = self.initiators.clone();
-        let mut boxes: Vec<Option<Bounds>> = Vec::new();
+        let mut boxes: Vec<Option<Bounds<F::Point>>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
@@ -63,7 +64,7 @@ impl Graph {
         }
         self.initiators = initiators;
         let first = self.base_elements.len();
-        let boxes = boxes.into_iter().map(DAffine2::filling);
+        let boxes = boxes.into_iter().map(M::filling);
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
@@ -75,16 +76,22 @@ impl Graph {
     }
 
     /// Returns the bounding box of the subtree of an object. Overwrites the initiator.
-    fn box_of(&mut self, object: usize) -> Option<Bounds> {
-        self.initiators[0].instances = vec![instance(object, &DAffine2::IDENTITY, 0)];
+    fn box_of(&mut self, object: usize) -> Option<Bounds<F::Point>> {
+        self.initiators[0].instances = vec![Instance {
+            length: F::UNIT.stretch(),
+            ..Instance::new(object, F::UNIT, 0)
+        }];
         self.limit_bounds()
     }
 
     /// Returns the bounding boxes of the subtrees of some objects of a structure, in their own
     /// coordinates; `None` where one is unknown.
-    pub(crate) fn boxes_of(structure: &Instancing, objects: &[usize]) -> Vec<Option<Bounds>> {
+    pub(crate) fn boxes_of<M: AffineMap<Frame = F>>(
+        structure: &Instancing<M>,
+        objects: &[usize],
+    ) -> Vec<Option<Bounds<PointOf<M>>>> {
         let scene = objects.iter().map(|&number| instancing::ObjectInstance {
-            map: DAffine2::IDENTITY,
+            map: M::IDENTITY,
             master: Master::Object(number),
             tint: None,
             transforms: Arc::default(),
@@ -132,10 +139,10 @@ enum Kind {
     Shape(usize),
 }
 
-struct Compiler<'s> {
-    structure: &'s Instancing,
-    base_elements: Vec<BaseElement>,
-    objects: Vec<Object>,
+struct Compiler<'s, M: AffineMap> {
+    structure: &'s Instancing<M>,
+    base_elements: Vec<OutlineOf<M>>,
+    objects: Vec<Object<M::Frame>>,
     /// Numbers of base elements, by their outlines.
     outlines: BTreeMap<Vec<u64>, usize>,
     /// Numbers of objects, by canonical object or shape, and by tint.
@@ -144,12 +151,12 @@ struct Compiler<'s> {
     of: Vec<Option<usize>>,
 }
 
-impl<'s> Compiler<'s> {
-    fn new(structure: &'s Instancing) -> Self {
-        let initial = structure.initial.as_ref().map(outline);
+impl<'s, M: AffineMap> Compiler<'s, M> {
+    fn new(structure: &'s Instancing<M>) -> Self {
+        let initial = { structure.initial.as_ref() }.map(|set| M::outlines(set).swap_remove(0));
         Self {
             structure,
-            base_elements: vec![initial.unwrap_or_else(BaseElement::line)],
+            base_elements: vec![initial.unwrap_or_else(M::unseen)],
             objects: Vec::new(),
             outlines: BTreeMap::new(),
             numbers: BTreeMap::new(),
@@ -158,10 +165,10 @@ impl<'s> Compiler<'s> {
     }
 
     /// Creates the objects that the scene reaches, and returns the scene as the initiator.
-    fn reach(&mut self) -> Chain {
+    fn reach(&mut self) -> Chain<M::Frame> {
         let initiator = self.chain(&self.structure.scene);
         // Graph objects of one canonical object share its successor.
-        let mut made: BTreeMap<usize, Arc<Successor>> = BTreeMap::new();
+        let mut made: BTreeMap<usize, Arc<Successor<M::Frame>>> = BTreeMap::new();
         let mut behaviours: BTreeMap<Option<usize>, usize> = BTreeMap::new();
         let mut done = 0;
         while done < self.objects.len() {
@@ -185,7 +192,7 @@ impl<'s> Compiler<'s> {
         initiator
     }
 
-    fn run(mut self) -> Graph {
+    fn run(mut self) -> Graph<M::Frame> {
         let initiator = self.reach();
         let tints = self.objects.iter().any(|object| object.tint.is_some());
         Graph {
@@ -195,7 +202,7 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn chain(&mut self, instances: &[instancing::ObjectInstance]) -> Chain {
+    fn chain(&mut self, instances: &[instancing::ObjectInstance<M>]) -> Chain<M::Frame> {
         let numbered = instances.iter().enumerate();
         let placed = numbered.map(|(position, of)| {
             let map = self.structure.map_of(of);
@@ -205,7 +212,7 @@ impl<'s> Compiler<'s> {
     }
 
     /// Returns the graph object of an instance, which is created if it is new.
-    fn object(&mut self, instance: &instancing::ObjectInstance) -> usize {
+    fn object(&mut self, instance: &instancing::ObjectInstance<M>) -> usize {
         let kind = match &instance.master {
             Master::Object(number) => Kind::Canonical(*number),
             Master::Shape(shape) => Kind::Shape(self.base_element(shape)),
@@ -229,10 +236,10 @@ impl<'s> Compiler<'s> {
     }
 
     /// Returns the base element of a shape, which is never that of the initial set.
-    fn base_element(&mut self, shape: &Shape) -> usize {
-        let made = outline(shape);
+    fn base_element(&mut self, shape: &M::Set) -> usize {
+        let made = M::outlines(shape).swap_remove(0);
         let next = self.base_elements.len();
-        let number = *self.outlines.entry(outline_bits(&made)).or_insert(next);
+        let number = *self.outlines.entry(M::key(&made)).or_insert(next);
         if number == next {
             self.base_elements.push(made);
         }
@@ -247,22 +254,4 @@ fn tint_bits(tint: Option<Tint>) -> [u64; 2] {
         let colour = u32::from_be_bytes([1, red, green, blue]);
         [u64::from(colour), tint.alpha.to_bits()]
     })
-}
-
-/// Returns a key of an outline.
-fn outline_bits(outline: &BaseElement) -> Vec<u64> {
-    let mut bits = vec![u64::from(outline.is_closed())];
-    let mut add = |point: DVec2| bits.extend([point.x, point.y].map(f64::to_bits));
-    add(outline.start());
-    for piece in outline.pieces() {
-        match *piece {
-            Piece::Line(end) => add(end),
-            Piece::Cubic(a, b, end) => {
-                // NaN marks a curve: no line ends there.
-                add(DVec2::NAN);
-                [a, b, end].into_iter().for_each(&mut add);
-            }
-        }
-    }
-    bits
 }

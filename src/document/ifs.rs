@@ -5,7 +5,9 @@
 
 use crate::diagnostic::Place;
 
-use super::read::EllipseDocument;
+use super::read::{
+    CuboidDocument, EllipseDocument, EllipsoidDocument, ShaftDocument, SphereDocument,
+};
 use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An iterated function system as written.
@@ -184,6 +186,25 @@ pub enum FormDocument {
     Ellipse(Box<EllipseDocument>),
     /// An approximant of another fractal.
     Fractal(Box<FractalDocument>),
+    /// A solid in space.
+    Solid(Box<SolidDocument>),
+}
+
+/// A solid as written.
+#[derive(Clone, Debug)]
+pub enum SolidDocument {
+    /// A ball.
+    Sphere(SphereDocument),
+    /// An ellipsoid.
+    Ellipsoid(EllipsoidDocument),
+    /// A cylinder.
+    Cylinder(ShaftDocument),
+    /// A cone.
+    Cone(ShaftDocument),
+    /// A box along the axes.
+    Cuboid(CuboidDocument),
+    /// The convex hull of points.
+    Hull(Vec<WrittenPoint>),
 }
 
 /// An approximant of another fractal, as written.

@@ -6,13 +6,15 @@
 use crate::diagnostic::Place;
 
 use super::read::TintDocument;
-use super::{MetadataDocument, ShapeDocument, Written, WrittenNumber, WrittenPoint};
+use super::{MetadataDocument, ShapeDocument, TurnDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An instancing structure as written.
 #[derive(Clone, Debug)]
 pub struct InstancingDocument {
     /// Metadata of the file.
     pub heading: MetadataDocument,
+    /// Whether the structure lies in space.
+    pub is_in_space: bool,
     /// The objects, in the order of the file.
     pub objects: Vec<ObjectDocument>,
     /// The scene: the union that is drawn; `None` if it is missing.
@@ -90,4 +92,10 @@ pub enum TransformDocument {
     Translate(WrittenPoint),
     /// Linear map by the rows of its matrix.
     Matrix([WrittenPoint; 2]),
+    /// Scaling of space about the origin by factors along x, y and z.
+    ScaleInSpace([WrittenNumber; 3]),
+    /// Turns of space about axes through the origin, of which the first is done first.
+    Turns(Vec<TurnDocument>),
+    /// Linear map of space by the rows of its matrix.
+    MatrixInSpace([WrittenPoint; 3]),
 }

@@ -28,7 +28,7 @@ mod yaml;
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
     InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ScatterDocument,
-    ShapeDocument, TurnDocument, VerticesDocument,
+    ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
@@ -40,8 +40,9 @@ pub use lsystem::{
 };
 pub use metadata::{MetadataDocument, ParameterDocument};
 pub use read::{
-    BaseElementDocument, CaseDocument, DiskDocument, EllipseDocument, InitiatorDocument, Listed,
-    MoveDocument, TintDocument,
+    BaseElementDocument, CaseDocument, CuboidDocument, DiskDocument, EllipseDocument,
+    EllipsoidDocument, InitiatorDocument, Listed, MoveDocument, ShaftDocument, SphereDocument,
+    TintDocument,
 };
 pub use rule::{
     Entry, GeneratorDocument, PartDocument, PieceDocument, RuleDocument, SelectDocument,

@@ -12,6 +12,7 @@ mod parameters;
 mod rule;
 mod select;
 mod set;
+mod solid;
 mod space;
 mod transform;
 mod turtle;
@@ -30,6 +31,7 @@ pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 pub use select::CaseDocument;
 pub use set::{DiskDocument, EllipseDocument};
+pub use solid::{CuboidDocument, EllipsoidDocument, ShaftDocument, SphereDocument};
 
 use super::MetadataDocument;
 use super::reader::{Fields, Reader};

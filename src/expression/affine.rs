@@ -171,17 +171,26 @@ impl Affine<Program> {
         let [right, up] = constant.axes.map(pair);
         Some(DAffine2::from_cols(right?, up?, pair(constant.origin)?))
     }
+}
 
+impl<const D: usize> Affine<Program, D> {
     /// Evaluates the product of maps, of which the first one is applied first, with constants as written.
     pub(crate) fn product<A: Evaluation>(
         of: &mut A,
         maps: &[Self],
         slots: &[A::Number],
-    ) -> Affine<A::Number> {
+    ) -> Affine<A::Number, D> {
         maps.iter().fold(Affine::identity(of), |before, map| {
             let map = map.map(|program| program.evaluate(of, slots));
             map.after(of, &before)
         })
+    }
+}
+
+impl From<Affine<f64, 3>> for DAffine3 {
+    fn from(Affine { axes, origin }: Affine<f64, 3>) -> Self {
+        let [x, y, z] = axes.map(DVec3::from);
+        Self::from_cols(x, y, z, origin.into())
     }
 }
 

@@ -21,6 +21,7 @@ mod homothety;
 mod hull;
 mod linear;
 mod point;
+mod round;
 mod solid;
 
 pub use affine::Affine;
@@ -36,6 +37,7 @@ pub use homothety::Homothety;
 pub(crate) use linear::eigen;
 pub use linear::{Linear, rotation};
 pub use point::Point;
+pub use round::Round;
 pub use solid::{HalfSpace, Solid};
 
 pub(crate) use clip::clip;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::linear::eigen;
-use super::{Bounds, Frame, Frame3, Outline, convex_hull};
+use super::{Bounds, Frame, Frame3, Outline, Round, convex_hull};
 
 /// Largest number of points of which a convex hull is computed; more are enclosed by a box.
 const MAX_POINTS: usize = 100;
@@ -22,22 +22,36 @@ pub struct HalfSpace {
     pub distance: f64,
 }
 
-/// A convex polyhedron, which may be flat: a polygon, a segment or a point.
+/// A convex solid: a polyhedron, or an affine image of a [`Round`] primitive. It may be flat: a polygon, a disk, a
+/// segment or a point.
 ///
-/// A flat solid is the image of a polyhedron with an inside under a singular map, which is kept apart: see
+/// A flat solid is the image of one with an inside under a singular map, which is kept apart: see
 /// [`place`](Self::place).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     place: DAffine3,
-    /// Half-spaces whose intersection is the solid before it is placed.
+    /// Half-spaces whose intersection, with the round body if there is one, is the solid before it is placed.
     faces: Arc<[HalfSpace]>,
-    /// Corners of the solid in its place.
+    round: Option<Round>,
+    /// Corners of the solid in its place, other than those of round bodies.
     corners: Arc<[DVec3]>,
     /// Surface in its place; of a flat solid, both sides.
     surface: f64,
 }
 
 impl Solid {
+    /// Returns the image of a round primitive under a map, which may be singular.
+    #[must_use]
+    pub fn round(primitive: Round, place: DAffine3) -> Self {
+        Self {
+            place,
+            faces: primitive.caps().into(),
+            round: Some(primitive),
+            corners: Arc::default(),
+            surface: primitive.surface(&place.matrix3),
+        }
+    }
+
     /// Returns the box between two opposite corners, which may be flat.
     #[must_use]
     pub fn cuboid(bounds: &Bounds<DVec3>) -> Self {
@@ -60,6 +74,7 @@ impl Solid {
         Self {
             place,
             faces: faces.collect(),
+            round: None,
             corners: corners.collect(),
             surface: 2.0 * (sides.x * sides.y + sides.y * sides.z + sides.z * sides.x),
         }
@@ -100,6 +115,7 @@ impl Solid {
             corners: corners.collect(),
             surface: solid.surface * size * size,
             faces: solid.faces,
+            round: None,
         }
     }
 
@@ -143,6 +159,7 @@ impl Solid {
         Self {
             place: DAffine3::IDENTITY,
             faces: faces.into(),
+            round: None,
             corners: corners.into(),
             surface,
         }
@@ -179,6 +196,7 @@ impl Solid {
         Self {
             place: DAffine3::from_mat3_translation(linear, origin),
             faces: faces.into(),
+            round: None,
             corners: around.iter().map(|point| place(*point)).collect(),
             surface: 2.0 * area,
         }
@@ -197,29 +215,59 @@ impl Solid {
         Self {
             place: DAffine3::from_mat3_translation(linear, (from + to) / 2.0),
             faces: unit.faces,
+            round: None,
             corners: vec![from, to].into(),
             surface: 0.0,
         }
     }
 
-    /// Returns the map that places the intersection of the [faces](Self::faces); it is singular for a flat
-    /// solid.
+    /// Returns the map that places the intersection of the [faces](Self::faces) and the [round
+    /// primitive](Self::primitive); it is singular for a flat solid.
     #[must_use]
     pub fn place(&self) -> &DAffine3 {
         &self.place
     }
 
-    /// Returns half-spaces whose intersection, which is bounded and has an inside, is the solid before it is
-    /// [placed](Self::place).
+    /// Returns half-spaces whose intersection is the solid before it is [placed](Self::place): together with the
+    /// [round primitive](Self::primitive), if there is one. It is bounded and has an inside.
     #[must_use]
     pub fn faces(&self) -> &[HalfSpace] {
         &self.faces
     }
 
-    /// Returns the corners.
+    /// Returns the primitive that is [placed](Self::place); `None` for a polyhedron.
+    #[must_use]
+    pub fn primitive(&self) -> Option<Round> {
+        self.round
+    }
+
+    /// Returns the corners of a polyhedron; a round solid has none.
     #[must_use]
     pub fn corners(&self) -> &[DVec3] {
         &self.corners
+    }
+
+    /// Returns whether all numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.place.is_finite() && self.corners.iter().all(|corner| corner.is_finite())
+    }
+
+    /// Returns the bounding box of the image under a map.
+    #[must_use]
+    pub fn bounds(&self, map: &DAffine3) -> Bounds<DVec3> {
+        let mut bounds = Bounds::EMPTY;
+        match self.round {
+            None => { self.corners.iter() }.for_each(|it| bounds.add(map.transform_point3(*it))),
+            Some(round) => {
+                let place = *map * self.place;
+                let rows = place.matrix3.transpose();
+                let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
+                bounds.add(place.translation + DVec3::from(rows.map(|row| round.support(row))));
+                bounds.add(place.translation - DVec3::from(rows.map(|row| round.support(-row))));
+            }
+        }
+        bounds
     }
 
     /// Returns the faces: the corners of each, counter-clockwise from outside. A solid in a plane has one face, and
@@ -319,20 +367,25 @@ impl Outline<Frame3> for Solid {
     }
 
     fn support(&self, direction: DVec3) -> f64 {
+        if let Some(round) = self.round {
+            let inside = self.place.matrix3.transpose() * direction;
+            return self.place.translation.dot(direction) + round.support(inside);
+        }
         let along = self.corners.iter().map(|corner| corner.dot(direction));
         along.fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn add_to(&self, bounds: &mut Bounds<DVec3>, frame: &Frame3, pad: f64) {
-        for corner in self.corners.iter().map(|corner| frame.apply(*corner)) {
-            bounds.add(corner - pad);
-            bounds.add(corner + pad);
+        let own = self.bounds(frame.map());
+        if !own.is_empty() {
+            bounds.add(own.min() - pad);
+            bounds.add(own.max() + pad);
         }
     }
 
     fn add_corners(&self, corners: &mut Vec<DVec3>, frame: &Frame3) -> bool {
         corners.extend(self.corners.iter().map(|corner| frame.apply(*corner)));
-        true
+        self.round.is_none()
     }
 }
 

@@ -46,6 +46,18 @@ pub trait AffineMap: Affine {
     #[must_use]
     fn outlines(set: &Self::Set) -> Vec<OutlineOf<Self>>;
 
+    /// Returns the sets, each of one shape, of which a set is the union.
+    #[must_use]
+    fn parts(set: &Self::Set) -> Vec<Self::Set>;
+
+    /// Returns a shape for objects that are not drawn.
+    #[must_use]
+    fn unseen() -> OutlineOf<Self>;
+
+    /// Returns a key that equal shapes share.
+    #[must_use]
+    fn key(shape: &OutlineOf<Self>) -> Vec<u64>;
+
     /// Returns the shape that fills a box; the unit box if there is none.
     #[must_use]
     fn filling(bounds: Option<Bounds<PointOf<Self>>>) -> OutlineOf<Self>;
@@ -101,6 +113,34 @@ impl AffineMap for DAffine2 {
             Shape::Union(outlines) => outlines.to_vec(),
             one => vec![outline(one)],
         }
+    }
+
+    fn parts(set: &Shape) -> Vec<Shape> {
+        match set {
+            Shape::Union(outlines) => outlines.iter().cloned().map(Shape::Outline).collect(),
+            one => vec![one.clone()],
+        }
+    }
+
+    fn unseen() -> BaseElement {
+        BaseElement::line()
+    }
+
+    fn key(shape: &BaseElement) -> Vec<u64> {
+        let mut bits = vec![u64::from(shape.is_closed())];
+        let mut add = |point: DVec2| bits.extend([point.x, point.y].map(f64::to_bits));
+        add(shape.start());
+        for piece in shape.pieces() {
+            match *piece {
+                Piece::Line(end) => add(end),
+                Piece::Cubic(a, b, end) => {
+                    // NaN marks a curve: no line ends there.
+                    add(DVec2::NAN);
+                    [a, b, end].into_iter().for_each(&mut add);
+                }
+            }
+        }
+        bits
     }
 
     /// Returns the filled rectangle of a box; the unit square if it is `None`.
@@ -176,12 +216,27 @@ impl AffineMap for DAffine3 {
     }
 
     fn is_bounded(set: &Arc<[Solid]>) -> bool {
-        let mut corners = set.iter().flat_map(Solid::corners);
-        corners.all(|corner| corner.is_finite())
+        set.iter().all(Solid::is_finite)
     }
 
     fn outlines(set: &Arc<[Solid]>) -> Vec<Solid> {
         set.to_vec()
+    }
+
+    fn parts(set: &Arc<[Solid]>) -> Vec<Arc<[Solid]>> {
+        set.iter().map(|solid| [solid.clone()].into()).collect()
+    }
+
+    fn unseen() -> Solid {
+        Solid::hull(&[DVec3::ZERO])
+    }
+
+    fn key(shape: &Solid) -> Vec<u64> {
+        let place = shape.place().to_cols_array();
+        let corners = shape.corners().iter().flat_map(DVec3::to_array);
+        let numbers = place.into_iter().chain(corners).map(f64::to_bits);
+        let round = shape.primitive().map_or(0, |round| 1 + round as u64);
+        std::iter::once(round).chain(numbers).collect()
     }
 
     fn filling(bounds: Option<Bounds<DVec3>>) -> Solid {

@@ -1,13 +1,14 @@
-//! Systems in space as a kind of model.
+//! Models in space: systems and structures.
 
 use std::sync::Arc;
 
-use crate::geometry::DAffine3;
+use crate::geometry::{DAffine3, Frame3};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::{System, Verdict};
+use crate::instancing::Instancing;
 use crate::metadata::Metadata;
 
-use super::OfKind;
+use super::{Model, OfKind};
 
 impl OfKind for Arc<System<DAffine3>> {
     fn metadata(&self) -> &Metadata {
@@ -20,5 +21,46 @@ impl OfKind for Arc<System<DAffine3>> {
 
     fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {
         self.contraction().verdict == Verdict::Contracts
+    }
+}
+
+impl OfKind for Arc<Instancing<DAffine3>> {
+    fn metadata(&self) -> &Metadata {
+        &self.heading
+    }
+
+    fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
+        Err(CompileError::InSpace)
+    }
+
+    fn ends(&self) -> Option<u32> {
+        self.depth()
+    }
+
+    fn is_drawn_to_limit(&self, has_limit: &dyn Fn() -> bool) -> bool {
+        self.depth().is_none() && has_limit()
+    }
+}
+
+impl Model {
+    /// Returns whether the model lies in space; [`compile_in_space`](Self::compile_in_space) compiles it then.
+    #[must_use]
+    pub fn is_in_space(&self) -> bool {
+        matches!(self, Self::IfsInSpace(_) | Self::InstancingInSpace(_))
+    }
+
+    /// Compiles a model in space to its graph; `None` for a model of the plane. Objects of a system record the map
+    /// that is applied last if `records_last`, unless there are too many for it.
+    #[must_use]
+    pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {
+        match self {
+            Self::IfsInSpace(system) => {
+                let recorded = records_last.then(|| Graph::with_last_maps(system));
+                let recorded = recorded.flatten();
+                Some(recorded.unwrap_or_else(|| Graph::of_system(system)))
+            }
+            Self::InstancingInSpace(structure) => Some(Graph::of_structure(structure)),
+            _ => None,
+        }
     }
 }

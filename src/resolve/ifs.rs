@@ -4,7 +4,9 @@ mod scatter;
 mod space;
 
 use crate::diagnostic::did_you_mean;
-use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
+use crate::document::{
+    EdgeDocument, IfsDocument, MapDocument, MapsDocument, ShapeDocument, Written,
+};
 use crate::expression::{Affine, Program, Symbols};
 use crate::geometry::DAffine2;
 use crate::ifs::{
@@ -45,25 +47,30 @@ impl Resolver<OfIfs> {
     /// Resolves the system. Reports mistakes and returns `None`.
     pub(super) fn system(&mut self, document: &IfsDocument, heading: Metadata) -> Option<System> {
         let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
-        let condensation: Vec<_> = document
-            .condensation
-            .iter()
-            .map(|set| {
-                let weight = self.optional(set.weight.as_ref());
-                let shape = self.set(&set.shape);
-                Some(Condensation {
-                    weight: weight?,
-                    shape: shape?,
-                })
-            })
-            .collect();
-        let initial = document.initial.as_ref().map(|set| self.set(set));
-        let parts = Parts {
-            maps,
-            condensation,
-            initial,
-        };
+        let parts = self.parts(document, maps, Self::set);
         self.assembled(document, heading, parts)
+    }
+
+    /// Resolves the sets of a system, each by `set`.
+    fn parts<M: AffineMap>(
+        &mut self,
+        document: &IfsDocument,
+        maps: Option<Maps<M>>,
+        mut set: impl FnMut(&mut Self, &ShapeDocument) -> Option<M::Set>,
+    ) -> Parts<M> {
+        let condensation = document.condensation.iter().map(|own| {
+            let weight = self.optional(own.weight.as_ref());
+            let shape = set(self, &own.shape);
+            Some(Condensation {
+                weight: weight?,
+                shape: shape?,
+            })
+        });
+        Parts {
+            maps,
+            condensation: condensation.collect(),
+            initial: document.initial.as_ref().map(|own| set(self, own)),
+        }
     }
 
     /// Resolves the edges and puts the parts of a system together.

@@ -2,6 +2,7 @@
 //! that the scene reaches.
 
 mod loops;
+mod maps;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -9,16 +10,15 @@ use std::sync::Arc;
 use crate::diagnostic::{Place, did_you_mean, listed};
 use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    ShapeDocument, TransformDocument, UnionDocument, WrittenNumber,
+    ShapeDocument, TransformDocument, UnionDocument,
 };
-use crate::expression::{Affine, Arithmetic, Doubles, Program, Scope, Symbols};
-use crate::geometry::DAffine2;
-use crate::ifs::Shape;
+use crate::expression::{Program, Scope};
 use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
 use crate::metadata::Metadata;
 use crate::style::{ColorBy, Colour};
 
 use super::Resolver;
+pub(super) use maps::StructureMap;
 
 /// Maximum number of objects after the expansion of levels.
 const MAX_OBJECTS: usize = 20_000;
@@ -27,10 +27,11 @@ const MAX_OBJECTS: usize = 20_000;
 const MAX_INSTANCES: usize = 250_000;
 
 /// State that is specific to structures.
-#[derive(Default)]
-pub(super) struct OfInstancing {
+pub(super) struct OfInstancing<M: StructureMap> {
     /// The unions of the objects as written.
-    unions: Vec<Union>,
+    unions: Vec<Union<M>>,
+    /// The names of all objects.
+    written: BTreeSet<String>,
     /// The definitions of each name.
     names: BTreeMap<String, Definitions>,
     /// The objects that have been reached: the index of the union, and the level.
@@ -41,6 +42,21 @@ pub(super) struct OfInstancing {
     size: usize,
     /// Parameters of the file.
     constants: Arc<Scope>,
+}
+
+impl<M: StructureMap> Default for OfInstancing<M> {
+    fn default() -> Self {
+        Self {
+            unions: Vec::new(),
+            written: BTreeSet::new(),
+            names: BTreeMap::new(),
+            reached: Vec::new(),
+            numbers: BTreeMap::new(),
+            is_too_many: false,
+            size: 0,
+            constants: Arc::default(),
+        }
+    }
 }
 
 /// The objects that share a name, as indices of their unions.
@@ -59,21 +75,21 @@ impl Definitions {
 }
 
 /// A union with compiled expressions, whose first slot is the level.
-struct Union {
+struct Union<M: StructureMap> {
     name: String,
-    instances: Vec<Prepared>,
-    transforms: Arc<[Affine<Program>]>,
+    instances: Vec<Prepared<M>>,
+    transforms: Arc<[M::Written]>,
 }
 
-struct Prepared {
-    master: Option<PreparedMaster>,
-    transforms: Arc<[Affine<Program>]>,
+struct Prepared<M: StructureMap> {
+    master: Option<PreparedMaster<M>>,
+    transforms: Arc<[M::Written]>,
     tint: Option<(Colour, Program)>,
     place: Place,
 }
 
-enum PreparedMaster {
-    Shape(Shape),
+enum PreparedMaster<M: StructureMap> {
+    Shape(M::Set),
     Object {
         name: String,
         level: Option<Program>,
@@ -86,18 +102,15 @@ fn bits(level: f64) -> u64 {
     (level + 0.0).to_bits()
 }
 
-/// Computes the product of transforms, of which the first one is applied first.
-fn product(transforms: &[Affine<Program>], slots: &[f64]) -> DAffine2 {
-    Affine::product(&mut Doubles, transforms, slots).into()
-}
-
-impl Resolver<OfInstancing> {
+impl<M: StructureMap> Resolver<OfInstancing<M>> {
     /// Resolves the structure. Reports mistakes and returns `None`.
     pub(super) fn structure(
         &mut self,
         document: &InstancingDocument,
         heading: Metadata,
-    ) -> Option<Instancing> {
+    ) -> Option<Instancing<M>> {
+        let names = document.objects.iter().map(|object| &object.name.value);
+        self.kind.written = names.cloned().collect();
         self.kind.constants = Arc::new(self.constants.clone());
         let initial = document.initial.as_ref().map(|set| self.initial(set));
         for object in &document.objects {
@@ -108,7 +121,7 @@ impl Resolver<OfInstancing> {
         if self.diagnostics.has_errors() {
             return None;
         }
-        let whole = product(&scene.transforms, &[]);
+        let whole = M::product(&scene.transforms, &[]);
         let whole_scene = Arc::clone(&scene.transforms);
         let mut scene = self.instances(&scene, None);
         for instance in &mut scene {
@@ -124,7 +137,7 @@ impl Resolver<OfInstancing> {
                     Some(level) => format!("{}({level})", union.name),
                     None => union.name.clone(),
                 },
-                map: product(&union.transforms, level.as_slice()),
+                map: M::product(&union.transforms, level.as_slice()),
                 instances: self.instances(&union, level),
                 transforms: Arc::clone(&union.transforms),
                 slots: level.into_iter().collect(),
@@ -166,20 +179,18 @@ impl Resolver<OfInstancing> {
     }
 
     /// Resolves the initial set, which must be a single outline or shape.
-    fn initial(&mut self, document: &ShapeDocument) -> Option<Shape> {
-        match self.set(document)? {
-            Shape::Union(outlines) if outlines.len() > 1 => {
-                let message = format!(
-                    "an initial set is one line or polygon here, and this fractal draws {}",
-                    outlines.len()
-                );
-                let hint = "draw it as an object, or take fewer steps";
-                self.error_with_hint(&document.place, message, hint);
-                None
-            }
-            Shape::Union(outlines) => outlines.first().cloned().map(Shape::Outline),
-            shape => Some(shape),
+    fn initial(&mut self, document: &ShapeDocument) -> Option<M::Set> {
+        let mut parts = M::parts(&M::set(self, document)?);
+        if parts.len() > 1 {
+            let message = format!(
+                "an initial set is one line or polygon here, and this fractal draws {}",
+                parts.len()
+            );
+            let hint = "draw it as an object, or take fewer steps";
+            self.error_with_hint(&document.place, message, hint);
+            return None;
         }
+        parts.pop()
     }
 
     /// Adds an object to the definitions of its name.
@@ -216,7 +227,12 @@ impl Resolver<OfInstancing> {
         }
     }
 
-    fn union(&mut self, name: String, document: &UnionDocument, variable: Option<&str>) -> Union {
+    fn union(
+        &mut self,
+        name: String,
+        document: &UnionDocument,
+        variable: Option<&str>,
+    ) -> Union<M> {
         let mut scope = Scope::inside(&self.kind.constants);
         if let Some(variable) = variable {
             self.used.insert(variable.to_owned());
@@ -233,14 +249,21 @@ impl Resolver<OfInstancing> {
         }
     }
 
-    fn prepared(&mut self, document: &InstanceDocument, scope: &Scope) -> Prepared {
+    fn prepared(&mut self, document: &InstanceDocument, scope: &Scope) -> Prepared<M> {
         let master = document.master.as_ref().and_then(|master| match master {
-            MasterDocument::Shape(shape) => self.set(shape).map(PreparedMaster::Shape),
-            MasterDocument::Object { name, level } => Some(PreparedMaster::Object {
-                name: name.value.clone(),
-                level: level.as_ref().map(|level| self.program(level, scope)),
-                place: name.place.clone(),
-            }),
+            MasterDocument::Shape(shape) => M::set(self, shape).map(PreparedMaster::Shape),
+            MasterDocument::Object { name, level } => {
+                let is_free = level.is_none() && !self.kind.written.contains(&name.value);
+                let primitive = is_free.then(|| M::primitive(&name.value)).flatten();
+                Some(match primitive {
+                    Some(primitive) => PreparedMaster::Shape(primitive),
+                    None => PreparedMaster::Object {
+                        name: name.value.clone(),
+                        level: level.as_ref().map(|level| self.program(level, scope)),
+                        place: name.place.clone(),
+                    },
+                })
+            }
         });
         let tint = document.tint.as_ref().and_then(|tint| {
             let alpha = match &tint.alpha {
@@ -257,36 +280,14 @@ impl Resolver<OfInstancing> {
         }
     }
 
-    fn transforms(
-        &mut self,
-        documents: &[TransformDocument],
-        scope: &Scope,
-    ) -> Arc<[Affine<Program>]> {
-        let mut two =
-            |x: &WrittenNumber, y: &WrittenNumber| [self.program(x, scope), self.program(y, scope)];
-        let of = &mut Symbols;
-        let transforms = documents.iter().map(|document| match document {
-            TransformDocument::Scale([x, y]) => Affine::scaling(of, two(x, y)),
-            TransformDocument::Translate(shift) => {
-                Affine::identity(of).moved_to(two(&shift.x, &shift.y))
-            }
-            TransformDocument::Matrix([first, second]) => {
-                let [a, c] = two(&first.x, &first.y);
-                let [b, d] = two(&second.x, &second.y);
-                Affine::linear(of, [[a, b], [c, d]])
-            }
-            TransformDocument::Rotate(angle) => {
-                let [angle, _] = two(angle, angle);
-                let turn = of.turn(&angle);
-                Affine::rotation(of, turn)
-            }
-        });
-        transforms.collect()
+    fn transforms(&mut self, documents: &[TransformDocument], scope: &Scope) -> Arc<[M::Written]> {
+        let transforms = documents.iter();
+        { transforms.filter_map(|document| M::transform(self, document, scope)) }.collect()
     }
 
     /// Reports unknown names of objects and missing or superfluous levels, also in objects that are not
     /// reached.
-    fn check_names(&mut self, document: &InstancingDocument, scene: &Union) {
+    fn check_names(&mut self, document: &InstancingDocument, scene: &Union<M>) {
         if self.incomplete {
             return;
         }
@@ -300,11 +301,16 @@ impl Resolver<OfInstancing> {
                 continue;
             };
             let Some(known) = self.kind.names.get(name) else {
+                if M::primitive(name).is_some() {
+                    let message = format!("'{name}' has no level");
+                    self.error_with_hint(place, message, format!("write {name}"));
+                    continue;
+                }
                 let names = document
                     .objects
                     .iter()
                     .map(|object| object.name.value.as_str());
-                let hint = did_you_mean(name, names.clone())
+                let hint = did_you_mean(name, names.clone().chain(M::PRIMITIVES.iter().copied()))
                     .unwrap_or_else(|| format!("the objects are: {}", listed(names)));
                 let message = format!("there is no object '{name}'");
                 self.error_with_hint(place, message, hint);
@@ -326,12 +332,12 @@ impl Resolver<OfInstancing> {
     }
 
     /// Returns the instances of a union at a level. New objects among them are marked as reached.
-    fn instances(&mut self, union: &Union, level: Option<f64>) -> Vec<ObjectInstance> {
+    fn instances(&mut self, union: &Union<M>, level: Option<f64>) -> Vec<ObjectInstance<M>> {
         let slots: Vec<f64> = level.into_iter().collect();
-        let whole = product(&union.transforms, &slots);
+        let whole = M::product(&union.transforms, &slots);
         let mut instances = Vec::new();
         for prepared in &union.instances {
-            let map = product(&prepared.transforms, &slots);
+            let map = M::product(&prepared.transforms, &slots);
             if !(whole * map).is_finite() {
                 let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
                 let message = format!("the transform of this instance is not finite{at}");
@@ -349,13 +355,9 @@ impl Resolver<OfInstancing> {
                 continue;
             }
             let masters = match &prepared.master {
-                Some(PreparedMaster::Shape(Shape::Union(outlines))) => {
-                    let outlines = outlines.iter().cloned();
-                    outlines
-                        .map(|one| Master::Shape(Shape::Outline(one)))
-                        .collect()
+                Some(PreparedMaster::Shape(shape)) => {
+                    M::parts(shape).into_iter().map(Master::Shape).collect()
                 }
-                Some(PreparedMaster::Shape(shape)) => vec![Master::Shape(shape.clone())],
                 Some(PreparedMaster::Object { name, level, place }) => {
                     let level = level.as_ref().map(|level| level.eval(&slots));
                     let object = self.object(name, level, place).map(Master::Object);
@@ -365,8 +367,8 @@ impl Resolver<OfInstancing> {
             };
             for master in masters {
                 self.kind.size += match &master {
-                    Master::Shape(Shape::Outline(outline)) => 1 + outline.pieces().len(),
-                    _ => 1,
+                    Master::Shape(shape) => M::sides(shape) + 1,
+                    Master::Object(_) => 1,
                 };
                 let transforms = Arc::clone(&prepared.transforms);
                 instances.push(ObjectInstance {
@@ -432,7 +434,7 @@ impl Resolver<OfInstancing> {
     }
 }
 
-impl Union {
+impl<M: StructureMap> Union<M> {
     fn nothing() -> Self {
         Self {
             name: String::new(),

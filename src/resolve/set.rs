@@ -56,6 +56,8 @@ impl<K> Resolver<K> {
                 Shape::ellipse(centre?, lengths, angle?)
             }
             FormDocument::Fractal(fractal) => Some(self.fractal(fractal)?),
+            // Solids were reported when the file was read.
+            FormDocument::Solid(_) => None,
         };
         // The moments of a closed shape without area are not defined.
         let shape = shape.filter(|shape| shape.moments().is_some());

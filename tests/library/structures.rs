@@ -16,6 +16,8 @@ use super::{check_paths, entries};
 /// Returns all structures with their names and the numbers of steps that they are drawn with.
 fn structures() -> Vec<(String, Arc<Instancing>, u32)> {
     let names = entries(Shelf::INSTANCING).into_iter();
+    let is_in_plane = |name: &str| !document(name).resolve(&[]).unwrap().0.is_in_space();
+    let names = names.filter(|entry| is_in_plane(&entry.name));
     let structures = names.map(|entry| {
         let structure = structure(&document(&entry.name).to_yaml());
         let steps = structure.metadata().steps.or_else(|| structure.depth());

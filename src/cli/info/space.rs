@@ -8,6 +8,7 @@ use crate::measure::similarity_dimension;
 use crate::model::Model;
 
 use super::super::rule::Loaded;
+use super::super::structure::StructureInfo;
 use super::super::system::SystemInfo;
 use super::{Dimension, Info, corners, hausdorff, number};
 
@@ -60,7 +61,7 @@ pub(super) fn info<'a>(loaded: &'a Loaded, graph: &Graph<Frame3>, steps: u32) ->
             Model::IfsInSpace(system) => Some(SystemInfo::in_space(system)),
             _ => None,
         },
-        structure: None,
+        structure: StructureInfo::of(&loaded.model),
     }
 }
 

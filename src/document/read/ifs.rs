@@ -16,7 +16,7 @@ use crate::kind::Kind;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, read_initial, read_set};
-use super::space::{self, TURN};
+use super::space::{self, SPACE, TURN};
 use super::vertices::{VERTICES, read_vertices};
 use super::{KindTable, OfKind};
 
@@ -35,8 +35,7 @@ const IFS: Shape = Shape {
 /// Keys that only an iterated function system has.
 const IFS_ALONE: [Member; 10] = keys![
     needed kind: Form::Words(&[Kind::Ifs.name()]), "The kind of file.";
-    space: Form::Whole(2, Some(3)),
-        "3 for a system in space, whose points have three coordinates; 2, the plane, if left out.";
+    =SPACE;
     extends: Form::File(Shelf::IFS),
         "Another system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
@@ -142,8 +141,13 @@ impl OfKind for IfsDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
-        let is_in_space = read_space(reader, fields);
+        let is_in_space = space::read_space(reader, fields);
         reader.is_in_space = is_in_space;
+        if is_in_space && fields.take("interpolate").is_some() {
+            let message = "`interpolate` is known in the plane only";
+            let hint = "in space, a system has `maps` or `vertices`";
+            reader.error_with_hint(fields.place_of("interpolate"), message, hint);
+        }
         let condensation = fields.take("condensation").map_or(&[][..], |node| {
             let what = "a list of condensation sets";
             reader.filled(node, what, "condensation set", CONDENSATION.hint)
@@ -168,30 +172,6 @@ impl OfKind for IfsDocument {
         reader.is_in_space = false;
         document
     }
-}
-
-/// Reads whether a file lies in space. Reports keys that only files of the plane have.
-fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
-    let Some(node) = fields.take("space") else {
-        return false;
-    };
-    match node.value {
-        Value::Number(2.0) => return false,
-        Value::Number(3.0) => {}
-        _ => {
-            let message = format!("there is no space of dimension {}", node.place.text());
-            let hint = "space: 3, or space: 2 for the plane";
-            reader.error_with_hint(&node.place, message, hint);
-        }
-    }
-    for key in ["interpolate", "condensation", "initial"] {
-        if fields.take(key).is_some() {
-            let message = format!("`{key}` is known in the plane only");
-            let hint = "in space, a system has `maps` or `vertices`, and `edges`";
-            reader.error_with_hint(fields.place_of(key), message, hint);
-        }
-    }
-    true
 }
 
 /// Reads the maps of the one way in which they are given.

@@ -19,6 +19,7 @@ use crate::style::Colour;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_initial, read_set};
+use super::space::{SPACE, read_space};
 use super::transform::{TRANSFORMS, read_transforms};
 use super::{KindTable, OfKind};
 
@@ -31,8 +32,9 @@ const INSTANCING: Shape = Shape {
 };
 
 /// Keys that only an instancing structure has.
-const INSTANCING_ALONE: [Member; 6] = keys![
+const INSTANCING_ALONE: [Member; 7] = keys![
     needed kind: Form::Words(&[Kind::Instancing.name()]), "The kind of file.";
+    =SPACE;
     extends: Form::File(Shelf::INSTANCING),
         "Another structure to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
@@ -75,7 +77,8 @@ const INSTANCE: Shape = Shape {
     keys: &[
         &keys![
             object: Form::Text,
-                "The object that it is one of; with its level in brackets, if it has one.";
+                "The object that it is one of; with its level in brackets, if it has one. In space, sphere, \
+                 plane, cylinder and cone are objects unless the file has others of these names.";
             tint: Form::Mapping(&TINT), "What it colours all that is in it with.";
         ],
         &FORMS,
@@ -103,18 +106,23 @@ impl OfKind for InstancingDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let is_in_space = read_space(reader, fields);
+        reader.is_in_space = is_in_space;
         let objects = { fields.take("objects") }
             .and_then(|node| reader.entries(node, "a mapping of names to objects", UNION.hint));
         let objects = objects.unwrap_or_default().iter();
         let objects = objects.filter_map(|(key, node)| read_object(reader, key, node));
         let objects = objects.collect();
         let scene = fields.take("scene");
-        Self {
+        let document = Self {
             heading,
+            is_in_space,
             objects,
             scene: scene.and_then(|node| read_union(reader, node)),
             initial: read_initial(reader, fields),
-        }
+        };
+        reader.is_in_space = false;
+        document
     }
 }
 

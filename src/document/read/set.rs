@@ -1,4 +1,4 @@
-//! Reading of plane sets: condensation sets, initial sets and primitives.
+//! Reading of sets: condensation sets, initial sets and primitives.
 
 use crate::document::ifs::{FormDocument, FractalDocument, ShapeDocument};
 use crate::document::mapping::{FromNode, mapping};
@@ -12,6 +12,8 @@ use crate::metadata::MAX_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
+use super::solid::{CUBOID, ELLIPSOID, SHAFT, SPHERE, read_solid_set};
+use super::space::SOLIDS;
 
 /// Keys of an initial set.
 pub(super) const SET: Shape = Shape {
@@ -40,15 +42,24 @@ pub(super) const CONDENSATION: Shape = Shape {
 const HINT: &str = "{segment: [[0, 0], [0, 1]]}, {polygon: [...]}, \
                     {disk: {centre: [0, 0], radius: 1}}, ...";
 
+const HINT_IN_SPACE: &str = "{sphere: {centre: [0, 0, 0], radius: 1}}, \
+                             {cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 1}}, {polygon: [...]}, ...";
+
 /// Alternative keys for the geometry of a set.
-pub(super) const FORMS: [Member; 7] = keys![
+pub(super) const FORMS: [Member; 13] = keys![
     point: Form::Point, "A point: a dot as wide as a line.";
     segment: Form::List(&Form::Point, 2, Some(2)), "A line from one point to another.";
     polyline: Form::List(&Form::Point, 2, None), "A line through points.";
-    polygon: Form::List(&Form::Point, 3, None),
+    polygon: Form::List(&Form::Place, 3, None),
         "What a line through points and back to the first encloses.";
     disk: Form::Mapping(&DISK), "A disk.";
     ellipse: Form::Mapping(&ELLIPSE), "An ellipse.";
+    sphere: Form::Mapping(&SPHERE), "In space, a ball.";
+    ellipsoid: Form::Mapping(&ELLIPSOID), "In space, a ball that is stretched along its axes.";
+    cylinder: Form::Mapping(&SHAFT), "In space, a solid cylinder.";
+    cone: Form::Mapping(&SHAFT), "In space, a solid cone; `to` is its apex.";
+    box: Form::Mapping(&CUBOID), "In space, a box along the axes.";
+    solid: Form::Words(&SOLIDS), "In space, the solid whose corners are those of `vertices`.";
     fractal: Form::Grown,
         "Another fractal, as it is after some steps: the name of its file, or what that says.";
 ];
@@ -63,14 +74,18 @@ pub(super) const OF_FRACTAL: [Member; 4] = keys![
     map: Form::Mapping(&PLACE), "Where the fractal stands, if not where its file has it.";
 ];
 
+/// Number of keys for the geometry of a set, of which `fractal` is the last.
+const COUNT: usize = FORMS.len();
+
 /// Names of the keys of a set: those of [`FORMS`], then those of [`OF_FRACTAL`].
-const NAMES: [&str; 11] = {
-    let mut names = [""; 11];
+const NAMES: [&str; COUNT + OF_FRACTAL.len()] = {
+    let mut names = [""; COUNT + OF_FRACTAL.len()];
     let mut number = 0;
     while number < names.len() {
-        names[number] = match number {
-            0..7 => FORMS[number].name,
-            _ => OF_FRACTAL[number - 7].name,
+        names[number] = if number < COUNT {
+            FORMS[number].name
+        } else {
+            OF_FRACTAL[number - COUNT].name
         };
         number += 1;
     }
@@ -88,15 +103,24 @@ const fn others<const N: usize>(one: usize) -> [&'static str; N] {
     names
 }
 
-const WAYS: [Way; 7] = [
-    way(&[NAMES[0]], &others::<10>(0)),
-    way(&[NAMES[1]], &others::<10>(1)),
-    way(&[NAMES[2]], &others::<10>(2)),
-    way(&[NAMES[3]], &others::<10>(3)),
-    way(&[NAMES[4]], &others::<10>(4)),
-    way(&[NAMES[5]], &others::<10>(5)),
-    way(&[NAMES[6]], &others::<6>(6)),
+const WAYS: [Way; COUNT] = [
+    way(&[NAMES[0]], &others::<OTHERS>(0)),
+    way(&[NAMES[1]], &others::<OTHERS>(1)),
+    way(&[NAMES[2]], &others::<OTHERS>(2)),
+    way(&[NAMES[3]], &others::<OTHERS>(3)),
+    way(&[NAMES[4]], &others::<OTHERS>(4)),
+    way(&[NAMES[5]], &others::<OTHERS>(5)),
+    way(&[NAMES[6]], &others::<OTHERS>(6)),
+    way(&[NAMES[7]], &others::<OTHERS>(7)),
+    way(&[NAMES[8]], &others::<OTHERS>(8)),
+    way(&[NAMES[9]], &others::<OTHERS>(9)),
+    way(&[NAMES[10]], &others::<OTHERS>(10)),
+    way(&[NAMES[11]], &others::<OTHERS>(11)),
+    way(&[NAMES[12]], &others::<{ COUNT - 1 }>(12)),
 ];
+
+/// Number of keys that exclude each other, but for `fractal` and those that accompany it.
+const OTHERS: usize = NAMES.len() - 1;
 
 mapping! {
     /// A disk as written.
@@ -130,9 +154,10 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
     let mut there = FORMS
         .iter()
         .filter_map(|form| Some((form.name, fields.take(form.name)?)));
+    let hint = hint(reader);
     let Some((name, node)) = there.next() else {
         let message = "this set does not say what it is";
-        reader.error_with_hint(&place.first_line(), message, HINT);
+        reader.error_with_hint(&place.first_line(), message, hint);
         return ShapeDocument { form: None, place };
     };
     for (other, _) in there {
@@ -142,8 +167,12 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
     for key in OF_FRACTAL.iter().map(|key| key.name) {
         if name != "fractal" && fields.take(key).is_some() {
             let message = format!("`{key}` goes with `fractal`, and this set is a {name}");
-            reader.error_with_hint(fields.place_of(key), message, HINT);
+            reader.error_with_hint(fields.place_of(key), message, hint);
         }
+    }
+    if let Some((message, hint)) = misplaced(name, reader.is_in_space) {
+        reader.error_with_hint(fields.place_of(name), message, hint);
+        return ShapeDocument { form: None, place };
     }
     let form = match name {
         "point" => Some(FormDocument::Point(reader.point(node))),
@@ -158,9 +187,42 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
         "ellipse" => EllipseDocument::from_node(reader, node)
             .map(|ellipse| FormDocument::Ellipse(Box::new(ellipse))),
         "fractal" => read_fractal(reader, fields, node),
-        _ => read_outline(reader, name, node),
+        "segment" | "polyline" | "polygon" => read_outline(reader, name, node),
+        _ => read_solid_set(reader, name, node).map(|solid| FormDocument::Solid(Box::new(solid))),
     };
     ShapeDocument { form, place }
+}
+
+/// Returns a help text with the notation of sets.
+fn hint(reader: &Reader) -> &'static str {
+    match reader.is_in_space {
+        true => HINT_IN_SPACE,
+        false => HINT,
+    }
+}
+
+/// Returns a message and a help text for a set of the plane in a file of space, and for one of space in a file of
+/// the plane.
+fn misplaced(name: &str, is_in_space: bool) -> Option<(String, &'static str)> {
+    let hint = match (name, is_in_space) {
+        ("polygon", _) => return None,
+        ("point", true) => "in space, a small ball: {sphere: {centre: [0, 0, 0], radius: 0.01}}",
+        ("segment" | "polyline", true) => {
+            "in space, a thin cylinder: {cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 0.01}}"
+        }
+        ("disk" | "ellipse", true) => "in space, a polygon, or an ellipsoid that is flattened",
+        ("fractal", true) => "in space, sets are solids and polygons",
+        ("point" | "segment" | "polyline" | "disk" | "ellipse" | "fractal", false) => return None,
+        (_, true) => return None,
+        (_, false) => {
+            let article = if name.starts_with('e') { "an" } else { "a" };
+            return Some((
+                format!("{article} {name} lies in space"),
+                "write `space: 3` at the top",
+            ));
+        }
+    };
+    Some((format!("the set `{name}` is known in the plane only"), hint))
 }
 
 fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocument> {
@@ -169,7 +231,8 @@ fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocu
         "polyline" => (2, usize::MAX),
         _ => (3, usize::MAX),
     };
-    let points = reader.list(node, "a list of points", HINT);
+    let hint = hint(reader);
+    let points = reader.list(node, "a list of points", hint);
     if !(least..=most).contains(&points.len()) {
         if matches!(node.value, Value::Sequence(_)) {
             let needs = match name {
@@ -178,7 +241,7 @@ fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocu
                 _ => "three points or more",
             };
             let message = format!("a {name} has {needs}, not {}", points.len());
-            reader.error_with_hint(&node.place, message, HINT);
+            reader.error_with_hint(&node.place, message, hint);
         }
         return None;
     }

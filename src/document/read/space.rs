@@ -3,9 +3,33 @@
 use crate::document::ifs::{LinearDocument, TurnDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Shape, keys, way};
+use crate::document::shape::{Form, Member, Shape, key, keys, way};
 use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::expression::Expression;
+
+/// Key that puts a file into space.
+pub(super) const SPACE: Member = key(
+    "space",
+    Form::Whole(2, Some(3)),
+    "3 for a file in space, whose points have three coordinates; 2, the plane, if left out.",
+);
+
+/// Reads whether a file lies in space.
+pub(super) fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
+    let Some(node) = fields.take("space") else {
+        return false;
+    };
+    match node.value {
+        Value::Number(2.0) => false,
+        Value::Number(3.0) => true,
+        _ => {
+            let message = format!("there is no space of dimension {}", node.place.text());
+            let hint = "space: 3, or space: 2 for the plane";
+            reader.error_with_hint(&node.place, message, hint);
+            true
+        }
+    }
+}
 
 /// Keys of a turn of space.
 pub(super) const TURN: Shape = Shape {
@@ -67,7 +91,7 @@ pub(super) fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<Li
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
         return None;
     };
-    let scale = read_factors(reader, scale);
+    let scale = read_factors(reader, scale, "factors", FACTORS_HINT);
     let turns = rotate.map(|node| read_turns(reader, node));
     Some(LinearDocument::AxesInSpace {
         scale: scale?,
@@ -76,7 +100,7 @@ pub(super) fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<Li
 }
 
 /// Reads the rows of a matrix.
-fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPoint; 3]> {
+pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPoint; 3]> {
     let hint = "matrix: [[a, b, c], [d, e, f], [g, h, i]]";
     let rows = reader.list(node, "a list of three rows", hint);
     if let [first, second, third] = rows {
@@ -100,8 +124,15 @@ fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPoint; 3]> {
     None
 }
 
-/// Reads three factors, or one that stands for all.
-fn read_factors(reader: &mut Reader, node: &Node) -> Option<[WrittenNumber; 3]> {
+pub(super) const FACTORS_HINT: &str = "scale: 1/2, or scale: [sx, sy, sz]";
+
+/// Reads three numbers, or one that stands for all.
+pub(super) fn read_factors(
+    reader: &mut Reader,
+    node: &Node,
+    what: &str,
+    hint: &str,
+) -> Option<[WrittenNumber; 3]> {
     let Value::Sequence(entries) = &node.value else {
         let number = reader.number(node);
         return Some([number.clone(), number.clone(), number]);
@@ -111,13 +142,13 @@ fn read_factors(reader: &mut Reader, node: &Node) -> Option<[WrittenNumber; 3]> 
         let WrittenPoint { x, y, z, .. } = point;
         return Some([x, y, *z?]);
     }
-    let message = format!("there are three factors in space, not {}", entries.len());
-    reader.error_with_hint(&node.place, message, "scale: 1/2, or scale: [sx, sy, sz]");
+    let message = format!("there are three {what} in space, not {}", entries.len());
+    reader.error_with_hint(&node.place, message, hint);
     None
 }
 
 /// Reads a turn, or a list of them in order.
-fn read_turns(reader: &mut Reader, node: &Node) -> Option<Vec<TurnDocument>> {
+pub(super) fn read_turns(reader: &mut Reader, node: &Node) -> Option<Vec<TurnDocument>> {
     match &node.value {
         Value::Sequence(turns)
             if !turns.is_empty()

@@ -6,6 +6,7 @@ use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys};
 
 use super::ifs::read_matrix;
+use super::space::{self, FACTORS_HINT, TURN};
 
 /// Keys that transform.
 pub(super) const TRANSFORMS: [Member; 5] = keys![
@@ -19,23 +20,28 @@ pub(super) const TRANSFORMS: [Member; 5] = keys![
 
 const SCALE: Member = key(
     "scale",
-    Form::Either(&[Form::Number, Form::Point]),
-    "A factor, or one along x and one along y. Transforms are done in the order in which they are \
-     written.",
+    Form::Either(&[Form::Number, Form::Place]),
+    "A factor, or one along each axis. Transforms are done in the order in which they are written.",
 );
 
 const ROTATE: Member = key(
     "rotate",
-    Form::Number,
-    "An angle about [0, 0] in degrees, counter-clockwise.",
+    Form::Either(&[
+        Form::Number,
+        Form::Mapping(&TURN),
+        Form::List(&Form::Mapping(&TURN), 1, None),
+    ]),
+    "An angle about [0, 0] in degrees, counter-clockwise; in space a turn about an axis, {y: 30} or \
+     {axis: [1, 1, 0], angle: 30}, or a list of turns in order.",
 );
 
-const TRANSLATE: Member = key("translate", Form::Point, "A shift: [x, y].");
+const TRANSLATE: Member = key("translate", Form::Place, "A shift: [x, y].");
 
 const MATRIX: Member = key(
     "matrix",
-    Form::List(&Form::Point, 2, Some(2)),
-    "The rows of a matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y].",
+    Form::List(&Form::Place, 2, Some(3)),
+    "The rows of a matrix: [[a, b], [c, d]] maps [x, y] to [a x + b y, c x + d y]; in space there are \
+     three rows of three numbers.",
 );
 
 const TRANSFORM: Shape = Shape {
@@ -54,23 +60,41 @@ const TRANSFORM: Shape = Shape {
 pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<TransformDocument> {
     let mut transforms = Vec::new();
     for (name, node) in fields.in_order() {
-        let transform = match name {
-            "scale" => TransformDocument::Scale(reader.pair(node)),
-            "rotate" => TransformDocument::Rotate(reader.number(node)),
-            "translate" => TransformDocument::Translate(reader.point(node)),
-            "matrix" => match read_matrix(reader, node) {
-                Some(matrix) => TransformDocument::Matrix(matrix),
-                None => continue,
-            },
-            "transform" => {
-                transforms.extend(read_list(reader, node));
-                continue;
-            }
-            _ => continue,
-        };
-        transforms.push(transform);
+        match name {
+            "transform" => transforms.extend(read_list(reader, node)),
+            "translate" => transforms.push(TransformDocument::Translate(reader.point(node))),
+            _ if reader.is_in_space => transforms.extend(read_in_space(reader, name, node)),
+            _ => transforms.extend(read_in_plane(reader, name, node)),
+        }
     }
     transforms
+}
+
+fn read_in_plane(reader: &mut Reader, name: &str, node: &Node) -> Option<TransformDocument> {
+    Some(match name {
+        "scale" => TransformDocument::Scale(reader.pair(node)),
+        "rotate" if space::is_turn(node) => {
+            let message = "a turn about an axis lies in space";
+            let hint = "write an angle in the plane, or `space: 3` at the top";
+            reader.error_with_hint(&node.place, message, hint);
+            return None;
+        }
+        "rotate" => TransformDocument::Rotate(reader.number(node)),
+        "matrix" => TransformDocument::Matrix(read_matrix(reader, node)?),
+        _ => return None,
+    })
+}
+
+fn read_in_space(reader: &mut Reader, name: &str, node: &Node) -> Option<TransformDocument> {
+    Some(match name {
+        "scale" => {
+            let factors = space::read_factors(reader, node, "factors", FACTORS_HINT)?;
+            TransformDocument::ScaleInSpace(factors)
+        }
+        "rotate" => TransformDocument::Turns(space::read_turns(reader, node)?),
+        "matrix" => TransformDocument::MatrixInSpace(space::read_matrix(reader, node)?),
+        _ => return None,
+    })
 }
 
 fn read_list(reader: &mut Reader, node: &Node) -> Vec<TransformDocument> {

@@ -8,6 +8,16 @@ use super::forms::{Form, Forms, class};
 use super::scene::{ClassBy, End, Part, ends};
 use super::solid::{Pencil, View};
 use super::stamp::Stamp;
+use super::tints::Tints;
+use crate::style::Colour;
+
+/// What the colour of an instance depends on.
+#[derive(Clone, Copy, Default)]
+struct Paint {
+    class: u16,
+    /// Number of its appearance, where colours are by tints.
+    look: u32,
+}
 
 /// An instance that may be seen on the tile.
 #[derive(Clone, Copy)]
@@ -16,7 +26,7 @@ struct Node {
     at: DVec3,
     /// Number of its form; those of the descent follow the known ones.
     form: usize,
-    class: u16,
+    paint: Paint,
     /// Depth of its nearest point.
     nearest: u32,
     /// The samples of the tile that it may meet.
@@ -30,9 +40,10 @@ pub(super) struct Descent {
     /// Forms that are not known before: those of nodes on the stack, in their order.
     own: Vec<Form>,
     /// Instances in a form, with their middles and classes.
-    inner: Vec<(Form, DVec3, u16)>,
+    inner: Vec<(Form, DVec3, Paint)>,
     pencil: Pencil,
     copies: Option<Copies>,
+    pub(super) tints: Tints,
     /// Number of solids that were drawn.
     pub(super) drawn: u64,
     /// Greatest number of steps of a solid that was drawn.
@@ -45,6 +56,8 @@ pub(super) struct Roots<'a> {
     pub(super) forms: &'a Forms,
     pub(super) end: End,
     pub(super) class_by: ClassBy,
+    /// Colour of what has no tint.
+    pub(super) ink: Colour,
     /// Samples by which flat solids may exceed the hulls of their objects.
     pub(super) pad: f64,
     /// Whether instances may lie in equal positions.
@@ -57,7 +70,7 @@ impl Roots<'_> {
         let class = match self.class_by {
             ClassBy::Step => u16::try_from(form.level).unwrap_or(MAX_CLASS),
             ClassBy::FirstMap => class(self.parts[form.object].origin),
-            ClassBy::LastMap | ClassBy::Nothing => outer,
+            ClassBy::LastMap | ClassBy::Nothing | ClassBy::Tint => outer,
         };
         class.min(MAX_CLASS)
     }
@@ -68,19 +81,16 @@ impl Descent {
     pub(super) fn run(&mut self, roots: &Roots<'_>, view: &View<'_>, buffer: &mut Buffer) {
         self.stack.clear();
         self.own.clear();
+        self.tints.clear();
         if roots.overlap {
             self.copies.get_or_insert_with(Copies::new).clear();
         }
         let forms = roots.forms;
         for step in &forms.start {
-            let node = node(
-                roots,
-                view,
-                buffer,
-                (&forms.known[step.form], step.form),
-                step.offset,
-                0,
-            );
+            let form = &forms.known[step.form];
+            let paint = self.paint(roots, Paint::default(), form.object, None);
+            let form = (form, step.form);
+            let node = node(roots, view, buffer, form, step.offset, paint);
             self.stack.extend(node);
         }
         while let Some(node) = self.stack.pop() {
@@ -113,11 +123,12 @@ impl Descent {
         node: &Node,
     ) {
         let copies = self.copies.as_mut();
-        if copies.is_some_and(|copies| copies.knows(node.at, node.form, form.level, node.class)) {
+        let class = node.paint.class;
+        if copies.is_some_and(|copies| copies.knows(node.at, node.form, form.level, class)) {
             return;
         }
         if !view.cuts_through(node.at, form.half)
-            && let Some(stamp) = Stamp::draw(roots, view, buffer, (form, node.at, node.class))
+            && let Some(stamp) = Stamp::draw(roots, view, buffer, (form, node.at, class))
         {
             self.drawn += stamp.elements;
             self.deepest = self.deepest.max(stamp.deepest);
@@ -130,16 +141,12 @@ impl Descent {
             return self.draw(roots, view, buffer, form, node);
         }
         for step in steps {
-            let inner = (&roots.forms.known[step.form], step.form);
+            let inner = &roots.forms.known[step.form];
+            let paint = self.paint(roots, node.paint, inner.object, step.class);
             let at = node.at + step.offset;
-            self.stack.extend(self::node(
-                roots,
-                view,
-                buffer,
-                inner,
-                at,
-                step.class.unwrap_or(node.class),
-            ));
+            let inner = (inner, step.form);
+            self.stack
+                .extend(self::node(roots, view, buffer, inner, at, paint));
         }
     }
 
@@ -161,20 +168,39 @@ impl Descent {
             let inner = form.inner(roots.parts, child);
             let at = node.at + form.offset(child, &inner);
             let class = match (roots.class_by, form.level) {
-                (ClassBy::LastMap, 0) => class(roots.parts[child.object].origin),
-                _ => node.class,
+                (ClassBy::LastMap, 0) => Some(class(roots.parts[child.object].origin)),
+                _ => None,
             };
-            self.inner.push((inner, at, class));
+            let paint = self.paint(roots, node.paint, child.object, class);
+            self.inner.push((inner, at, paint));
         }
         self.inner.reverse();
-        let near = |(form, at, _): &(Form, DVec3, u16)| at.z + form.half.z;
+        let near = |(form, at, _): &(Form, DVec3, Paint)| at.z + form.half.z;
         self.inner.sort_by(|a, b| near(a).total_cmp(&near(b)));
-        for (form, at, class) in self.inner.drain(..) {
+        for (form, at, paint) in self.inner.drain(..) {
             let number = roots.forms.known.len() + self.own.len();
-            if let Some(node) = self::node(roots, view, buffer, (&form, number), at, class) {
+            if let Some(node) = self::node(roots, view, buffer, (&form, number), at, paint) {
                 self.stack.push(node);
                 self.own.push(form);
             }
+        }
+    }
+
+    /// Returns what the colour of an instance of an object in another depends on; `class` is its class if it has
+    /// one of its own.
+    fn paint(
+        &mut self,
+        roots: &Roots<'_>,
+        outer: Paint,
+        object: usize,
+        class: Option<u16>,
+    ) -> Paint {
+        Paint {
+            class: class.unwrap_or(outer.class),
+            look: match roots.class_by {
+                ClassBy::Tint => self.tints.inside(outer.look, roots.parts[object].look),
+                _ => outer.look,
+            },
         }
     }
 
@@ -187,9 +213,12 @@ impl Descent {
         form: &Form,
         node: &Node,
     ) {
-        if let Some(solid) = &roots.parts[form.object].solid {
+        if let Some(solid) = roots.parts[form.object].drawn(form.level, &roots.end) {
             let map = DAffine3::from_mat3_translation(form.linear, node.at - form.middle);
-            let class = roots.class(form, node.class);
+            let class = match roots.class_by {
+                ClassBy::Tint => self.tints.class(node.paint.look, roots.ink, buffer),
+                _ => roots.class(form, node.paint.class),
+            };
             self.pencil
                 .draw(buffer, view, solid, &map, node.rectangle, class);
             self.drawn += 1;
@@ -205,7 +234,7 @@ fn node(
     buffer: &Buffer,
     (form, number): (&Form, usize),
     at: DVec3,
-    class: u16,
+    paint: Paint,
 ) -> Option<Node> {
     if view.cuts_off(at, form.half) {
         return None;
@@ -218,7 +247,7 @@ fn node(
     (!buffer.hides(rectangle, nearest)).then_some(Node {
         at,
         form: number,
-        class,
+        paint,
         nearest,
         rectangle,
     })

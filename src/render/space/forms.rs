@@ -165,7 +165,10 @@ impl Forms {
         let mut forms = finder.forms;
         if let Projection::Parallel = placement.projection {
             forms.count(parts, end);
-            forms.admit_stamps(pad);
+            // The classes of tints are found tile by tile.
+            if class_by != ClassBy::Tint {
+                forms.admit_stamps(pad);
+            }
         }
         forms
     }
@@ -190,7 +193,13 @@ impl Forms {
                     let sum = sum.checked_add(inner)?;
                     (inner > 0 && sum <= MAX_ELEMENTS).then_some(sum)
                 }),
-                None => (scene::ends(parts, form, end) || form.is_small(end, 1.0)).then_some(1),
+                None if scene::ends(parts, form, end) || form.is_small(end, 1.0) => {
+                    // Stamps consist of planes.
+                    let drawn = parts[form.object].drawn(form.level, end);
+                    let is_round = drawn.is_some_and(|solid| solid.primitive().is_some());
+                    (!is_round).then_some(1)
+                }
+                None => None,
             };
             self.known[number].elements = elements.unwrap_or(0);
         }
@@ -226,7 +235,7 @@ impl Finder<'_> {
     )]
     fn number(&mut self, form: Form) -> usize {
         let kind = match self.class_by {
-            ClassBy::FirstMap => form.object,
+            ClassBy::FirstMap | ClassBy::Tint => form.object,
             _ => self.parts[form.object].kind,
         };
         let numbers = form.linear.to_cols_array();

@@ -16,10 +16,12 @@ mod descent;
 mod forms;
 mod place;
 mod relief;
+mod round;
 mod scene;
 mod shade;
 mod solid;
 mod stamp;
+mod tints;
 
 pub use camera::{Camera, CameraError};
 pub(super) use shade::ink;
@@ -59,7 +61,7 @@ pub enum SpaceError {
     NoRoom(#[from] NoRoom),
     /// Colours in space do not distinguish this property.
     #[error(
-        "colours by {} are for the plane: in space they are by first-map, last-map or step, or none",
+        "colours by {} are for the plane: in space they are by first-map, last-map, step or tint, or none",
         .0.name()
     )]
     ColorBy(ColorBy),
@@ -177,12 +179,19 @@ impl Tile<'_> {
         self.descent.drawn = 0;
         self.descent.deepest = 0;
         self.descent.run(roots, &view, &mut self.buffer);
+        let is_tinted = roots.class_by == ClassBy::Tint;
+        if is_tinted {
+            self.descent.tints.settle(&mut self.buffer);
+        }
         for y in 0..TILE {
+            let tints: Option<[&[Colour]; SAMPLES]> = is_tinted
+                .then(|| std::array::from_fn(|row| self.descent.tints.row(y * SAMPLES + row)));
             let rows: [&[u32]; SAMPLES] =
                 std::array::from_fn(|row| self.buffer.row(y * SAMPLES + row));
             for x in 0..TILE {
                 let samples = rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES]);
-                let (colour, depth) = inks.pixel(samples);
+                let tints = tints.map(|rows| rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES]));
+                let (colour, depth) = inks.pixel(samples, tints);
                 self.colours.push(colour);
                 self.depths.push(depth);
             }
@@ -224,8 +233,10 @@ fn draw(
     };
     let class_by = ClassBy::of(style.color_by)?;
     let classes = match class_by {
-        ClassBy::Nothing => 1,
-        ClassBy::FirstMap | ClassBy::LastMap => graph.origins(),
+        ClassBy::Nothing | ClassBy::Tint => 1,
+        ClassBy::FirstMap | ClassBy::LastMap => {
+            graph.origins() + usize::from(scene::draws_unmade(graph))
+        }
         ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
     };
     let pad = solid::pad(graph);
@@ -236,6 +247,7 @@ fn draw(
             forms: &forms,
             end,
             class_by,
+            ink: ink(style),
             pad,
             overlap: copies::overlap(&parts),
         },

@@ -2,8 +2,9 @@
 
 use crate::extent::{Bounded, bounding_box};
 use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Frame, Frame3, Solid};
-use crate::graph::{Chain, Graph, Instance, Replacement};
+use crate::graph::{Chain, Graph, Instance, Object, Replacement};
 use crate::grow::Growth;
+use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
 use super::SpaceError;
@@ -72,11 +73,23 @@ pub(super) struct Part {
     pub(super) is_replaced: bool,
     /// Solid that is drawn for it, if it is visible.
     pub(super) solid: Option<Solid>,
+    /// Box that stands for its subtree where that is too small to be replaced, if it is not visible itself.
+    pub(super) stand_in: Option<Solid>,
     pub(super) hull: Hull,
-    /// Number of the map that is applied first.
+    /// Tint of its subtree.
+    pub(super) look: Appearance,
+    /// Number of the map that is applied first, from 1 if [`draws_unmade`].
     pub(super) origin: Option<usize>,
     /// Number that objects share which draw the same, but for classes.
     pub(super) kind: usize,
+}
+
+impl Part {
+    /// Returns the solid that is drawn for an object that is not replaced.
+    pub(super) fn drawn(&self, level: u32, end: &End) -> Option<&Solid> {
+        let stand_in = self.stand_in.as_ref().filter(|_| level < end.steps);
+        self.solid.as_ref().or(stand_in)
+    }
 }
 
 /// End of a descent.
@@ -102,6 +115,7 @@ pub(super) enum ClassBy {
     FirstMap,
     LastMap,
     Step,
+    Tint,
 }
 
 impl ClassBy {
@@ -111,6 +125,7 @@ impl ClassBy {
             ColorBy::FirstMap | ColorBy::Generator => Ok(Self::FirstMap),
             ColorBy::LastMap => Ok(Self::LastMap),
             ColorBy::Step => Ok(Self::Step),
+            ColorBy::Tint => Ok(Self::Tint),
             other => Err(SpaceError::ColorBy(other)),
         }
     }
@@ -119,6 +134,7 @@ impl ClassBy {
 /// Prepares the objects of a graph for descents to the limit or to a number of steps.
 pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
     let hulls = hulls(graph, steps);
+    let before = usize::from(draws_unmade(graph));
     let objects = graph.objects().iter().zip(hulls).enumerate();
     let parts = objects.map(|(number, (object, hull))| {
         let children = match &object.replacement {
@@ -128,12 +144,20 @@ pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
             }
             _ => Vec::new(),
         };
+        let stand_in = match &hull {
+            Hull::Cuboid(middle, half) if graph.is_fertile(number) && !object.visible => Some(
+                Solid::cuboid(&Bounds::new(*middle - *half, *middle + *half)),
+            ),
+            _ => None,
+        };
         Part {
             children,
+            stand_in,
             is_replaced: graph.is_fertile(number),
             solid: graph.drawn(number).cloned(),
+            look: graph.appearance(number),
             hull,
-            origin: object.origin,
+            origin: object.origin.map(|map| map + before),
             kind: match graph.is_fertile(number) {
                 true => object.behaviour,
                 false => graph.objects().len() + number,
@@ -141,6 +165,12 @@ pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
         }
     });
     parts.collect()
+}
+
+/// Returns whether a graph draws what no map has moved: a condensation set. Colours by maps begin with it.
+pub(super) fn draws_unmade(graph: &Graph<Frame3>) -> bool {
+    let is_unmade = |object: &Object<Frame3>| object.visible && object.origin.is_none();
+    { graph.objects().iter() }.any(|object| object.is_kept() && is_unmade(object))
 }
 
 pub(super) fn child(instance: &Instance<Frame3>) -> Child {
@@ -174,15 +204,15 @@ fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
             if let Some(solid) = graph.drawn(number)
                 && (steps.is_some() || !graph.is_fertile(number))
             {
-                solid
-                    .corners()
-                    .iter()
-                    .for_each(|corner| bounds.add(*corner));
+                bounds.add_all(&solid.bounds(&DAffine3::IDENTITY));
             }
             Some(bounds)
         })
         .collect();
-    let hold = steps.is_none() || holds(graph, &boxes);
+    // What is kept stays in the limit.
+    let is_kept = |number: usize| !graph.is_fertile(number) || !graph.objects()[number].visible;
+    let all_stays = (0..boxes.len()).all(is_kept);
+    let hold = steps.is_none() || all_stays || holds(graph, &boxes);
     let reaches = match hold && boxes.iter().all(Option::is_some) {
         true => Vec::new(),
         false => graph.reaches(|object| graph.outline_radius(object)),
@@ -191,7 +221,9 @@ fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
         .iter()
         .enumerate()
         .map(|(number, bounds)| match bounds {
-            Some(bounds) if hold && !bounds.is_empty() => Hull::of(bounds),
+            Some(bounds) if (hold || !graph.is_fertile(number)) && !bounds.is_empty() => {
+                Hull::of(bounds)
+            }
             Some(bounds) if bounds.is_empty() => Hull::Ball(graph.middle(), 0.0),
             _ => Hull::Ball(
                 graph.middle(),

@@ -96,7 +96,7 @@ impl Inks {
     /// Returns the colours of a style. `most` is the number of classes.
     pub(super) fn of(style: &Style, by: ClassBy, most: usize, shade: Shade) -> Self {
         let colours: Vec<Colour> = match by {
-            ClassBy::Nothing => vec![ink(style)],
+            ClassBy::Nothing | ClassBy::Tint => vec![ink(style)],
             _ => (0..most.max(1))
                 .map(|class| class_colour(&style.palette, class, most))
                 .collect(),
@@ -111,17 +111,27 @@ impl Inks {
     }
 
     /// Returns the colour of the samples of a pixel together, which is transparent where there are none, and
-    /// the least depth; `rows` are the keys of the rows of samples.
-    pub(super) fn pixel(&self, rows: [&[u32]; SAMPLES]) -> ([f64; 4], Option<u32>) {
+    /// the least depth; `rows` are the keys of the rows of samples, and `tints` their colours where they are
+    /// tinted.
+    pub(super) fn pixel(
+        &self,
+        rows: [&[u32]; SAMPLES],
+        tints: Option<[&[Colour]; SAMPLES]>,
+    ) -> ([f64; 4], Option<u32>) {
         let mut sum = [0.0; 4];
         let mut nearest = EMPTY;
+        let mut tints = tints.into_iter().flatten().flatten();
         for key in rows.into_iter().flatten() {
+            let tint = tints.next();
             let Some(depth) = depth_of(*key) else {
                 continue;
             };
             nearest = nearest.min(*key);
             let class = (*key & ((1 << super::buffer::CLASS_BITS) - 1)) as usize;
-            let ink = self.inks[class % self.inks.len()];
+            let ink = match tint {
+                Some(colour) => colour.rgba().map(f64::from),
+                None => self.inks[class % self.inks.len()],
+            };
             let intensity = match self.shade.cues_depth() {
                 true => 1.0 - f64::from(depth) / STEPS,
                 false => 1.0,

@@ -5,6 +5,7 @@ use crate::graph::Graph;
 
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
 use super::camera::Projection;
+use super::round;
 
 /// Least thickness of a solid, in samples: what is flat would fall between them.
 const THINNEST: f64 = 1.5;
@@ -56,15 +57,22 @@ impl Depths {
     }
 }
 
+/// Returns the map of a solid before it is placed to the coordinates of the projection, at least as thick as a
+/// sample.
+fn placed(solid: &Solid, map: &DAffine3, view: &View<'_>) -> DAffine3 {
+    let place = *map * *solid.place();
+    let least = THINNEST / 2.0 / view.scale(place.translation.z);
+    DAffine3::from_mat3_translation(thickened(&place.matrix3, least), place.translation)
+}
+
 /// Returns the half-spaces n · x ≤ d of a solid under a map to the coordinates of the projection.
 pub(super) fn faces(
     solid: &Solid,
     map: &DAffine3,
     view: &View<'_>,
 ) -> impl Iterator<Item = (DVec3, f64)> {
-    let place = *map * *solid.place();
-    let least = THINNEST / 2.0 / view.scale(place.translation.z);
-    let inverse = thickened(&place.matrix3, least).inverse().transpose();
+    let place = placed(solid, map, view);
+    let inverse = place.matrix3.inverse().transpose();
     solid.faces().iter().map(move |face| {
         let normal = inverse * face.normal;
         (normal, face.distance + normal.dot(place.translation))
@@ -195,6 +203,12 @@ impl Pencil {
         rectangle: [usize; 4],
         class: u16,
     ) {
+        if let Some(primitive) = solid.primitive() {
+            let place = placed(solid, map, view);
+            round::draw(buffer, view, primitive, &place, rectangle, class);
+            buffer.refresh(rectangle);
+            return;
+        }
         let faces = faces(solid, map, view).chain(view.cuts.iter().copied());
         self.planes.set(view.projection, faces);
         let [left, top, right, bottom] = rectangle;

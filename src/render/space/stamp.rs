@@ -221,7 +221,7 @@ impl<'a> Builder<'a> {
     )]
     fn add_solid(&mut self, form: &Form, at: DVec3, class: u16) {
         let roots = self.roots;
-        let Some(solid) = &roots.parts[form.object].solid else {
+        let Some(solid) = roots.parts[form.object].drawn(form.level, &roots.end) else {
             return;
         };
         self.stamp.elements += 1;

@@ -188,6 +188,7 @@ fn a_descent_agrees_with_drawing_everything() {
                 forms: &forms,
                 end,
                 class_by: ClassBy::Nothing,
+                ink: Colour::BLACK,
                 pad,
                 overlap: false,
             };

@@ -1,15 +1,14 @@
 //! Resolution of maps and systems in space.
 
-use crate::document::{
-    IfsDocument, LinearDocument, MapDocument, MapsDocument, TurnDocument, WrittenPoint,
-};
-use crate::expression::{Affine, Arithmetic, Program, Symbols};
-use crate::geometry::{DAffine3, DVec3};
+use crate::document::{IfsDocument, LinearDocument, MapDocument, MapsDocument};
+use crate::expression::{Affine, Program, Symbols};
+use crate::geometry::DAffine3;
 use crate::ifs::{AffineMap, Map, System};
 use crate::metadata::Metadata;
 use crate::resolve::Resolver;
+use crate::resolve::space::value;
 
-use super::{Maps, OfIfs, Parts};
+use super::{Maps, OfIfs};
 
 impl Resolver<OfIfs> {
     /// Resolves a system in space. Reports mistakes and returns `None`.
@@ -19,11 +18,8 @@ impl Resolver<OfIfs> {
         heading: Metadata,
     ) -> Option<System<DAffine3>> {
         let maps = document.maps.as_ref();
-        let parts = Parts {
-            maps: maps.and_then(|maps| self.maps_in_space(maps)),
-            condensation: Vec::new(),
-            initial: None,
-        };
+        let maps = maps.and_then(|maps| self.maps_in_space(maps));
+        let parts = self.parts(document, maps, Self::solids);
         self.assembled(document, heading, parts)
     }
 
@@ -104,7 +100,7 @@ impl Resolver<OfIfs> {
             }
             LinearDocument::AxesInSpace { scale, turns } => {
                 let scale = scale.each_ref().map(|factor| self.constant_program(factor));
-                let turns: Vec<_> = turns.iter().map(|turn| self.turn(turn)).collect();
+                let turns: Vec<_> = turns.iter().map(|turn| self.constant_turn(turn)).collect();
                 let known = scale.iter().all(|it| it.as_constant().is_some());
                 let turns = turns.into_iter().collect::<Option<Vec<_>>>()?;
                 let scaling = known.then(|| Affine::scaling(&mut Symbols, scale))?;
@@ -119,40 +115,4 @@ impl Resolver<OfIfs> {
             | LinearDocument::Complex { .. } => None,
         }
     }
-
-    /// Resolves a turn about an axis of any length above 0.
-    fn turn(&mut self, document: &TurnDocument) -> Option<Affine<Program, 3>> {
-        let axis = self.point_in_space(&document.axis);
-        let angle = self.constant_program(&document.angle);
-        let along = value(&axis?)?;
-        angle.as_constant()?;
-        let unit = along.try_normalize();
-        let Some(unit) = unit.filter(|unit| unit.is_finite()) else {
-            let message = "an axis has a direction, and this one has no length";
-            self.error_with_hint(&document.axis.place, message, "axis: [0, 1, 0]");
-            return None;
-        };
-        let axis = unit.to_array().map(Program::constant);
-        let turn = Symbols.turn(&angle);
-        Some(Affine::rotation_about(&mut Symbols, &axis, &turn))
-    }
-
-    /// Compiles a point in space; a third coordinate that is left out is 0.
-    fn point_in_space(&mut self, point: &WrittenPoint) -> Option<[Program; 3]> {
-        let [x, y] = self.point(point)?;
-        let z = match &point.z {
-            Some(z) => self.constant_program(z),
-            None => Program::constant(0.0),
-        };
-        z.as_constant()?;
-        Some([x, y, z])
-    }
-}
-
-fn value([x, y, z]: &[Program; 3]) -> Option<DVec3> {
-    Some(DVec3::new(
-        x.as_constant()?,
-        y.as_constant()?,
-        z.as_constant()?,
-    ))
 }

@@ -2,12 +2,12 @@
 
 use crate::digraph::{all_loops_shrink, components};
 use crate::document::InstancingDocument;
-use crate::geometry::{DAffine2, DMat2, stretch};
+use crate::geometry::Linear;
 use crate::ifs::{Contraction, Verdict};
 use crate::instancing::{Instancing, Master};
 use crate::resolve::Resolver;
 
-use super::OfInstancing;
+use super::{OfInstancing, StructureMap};
 
 /// Maximum number of pairs of successive instances for which contraction is decided.
 const MAX_WAYS: usize = 1_000_000;
@@ -18,29 +18,29 @@ const MAX_LOOKS: usize = 10_000_000;
 const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
 
 /// An instance that lies on a loop.
-struct Edge {
+struct Edge<L> {
     from: usize,
     to: usize,
-    linear: DMat2,
+    linear: L,
 }
 
-impl Resolver<OfInstancing> {
+impl<M: StructureMap> Resolver<OfInstancing<M>> {
     /// Refuses a structure with a loop that does not contract, and warns if the verdict is undecided.
     pub(super) fn check_loops(
         &mut self,
         document: &InstancingDocument,
-        structure: &Instancing,
+        structure: &Instancing<M>,
     ) -> Option<()> {
         let edges = edges(structure);
         let objects = structure.objects.len();
         let stretches = edges
             .iter()
-            .map(|edge| (edge.from, edge.to, stretch(&edge.linear)));
+            .map(|edge| (edge.from, edge.to, edge.linear.stretch()));
         let rounds = objects.min(MAX_LOOKS / edges.len().max(1));
         if all_loops_shrink(objects, &stretches.collect::<Vec<_>>(), rounds) {
             return Some(());
         }
-        let linear: Vec<DMat2> = edges.iter().map(|edge| edge.linear).collect();
+        let linear: Vec<M::Linear> = edges.iter().map(|edge| edge.linear).collect();
         // The map that is applied after an instance's map is that of an instance of its object.
         let mut outer = vec![Vec::new(); structure.objects.len()];
         for (number, edge) in edges.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Resolver<OfInstancing> {
             return Some(());
         }
         let after = edges.iter().map(|edge| outer[edge.from].clone()).collect();
-        let contraction = Contraction::of::<DAffine2>(&linear, Some(after));
+        let contraction = Contraction::of::<M>(&linear, Some(after));
         let name = |edge: &usize| structure.objects[edges[*edge].from].name.as_str();
         let object = contraction.word.last().map_or("", name);
         let written = document
@@ -85,12 +85,12 @@ impl Resolver<OfInstancing> {
 }
 
 /// Returns the instances of objects in objects that lie on loops.
-fn edges(structure: &Instancing) -> Vec<Edge> {
+fn edges<M: StructureMap>(structure: &Instancing<M>) -> Vec<Edge<M::Linear>> {
     let mut edges = Vec::new();
     for (from, object) in structure.objects.iter().enumerate() {
         for instance in &object.instances {
             if let Master::Object(to) = instance.master {
-                let linear = structure.map_of(instance).matrix2;
+                let linear = structure.map_of(instance).linear();
                 edges.push(Edge { from, to, linear });
             }
         }

@@ -1,0 +1,69 @@
+//! Reading of sets in space: solids.
+
+use crate::document::ifs::{SolidDocument, TurnDocument};
+use crate::document::mapping::{FromNode, mapping};
+use crate::document::node::Node;
+use crate::document::reader::Reader;
+use crate::document::shape::Form;
+use crate::document::{WrittenNumber, WrittenPoint};
+
+use super::space::{TURN, read_factors, read_solid, read_turns};
+
+mapping! {
+    /// A ball as written.
+    struct SphereDocument: SPHERE = "a sphere", "sphere: {centre: [0, 0, 0], radius: 1}";
+    centre: Option<WrittenPoint> = Form::Place, "Its centre; [0, 0, 0] if left out.";
+    radius: Option<WrittenNumber> = Form::Positive, "Its radius, above 0; 1 if left out.";
+}
+
+mapping! {
+    /// An ellipsoid as written.
+    struct EllipsoidDocument: ELLIPSOID = "an ellipsoid",
+        "ellipsoid: {centre: [0, 0, 0], axes: [3, 1, 2], rotate: {y: 30}}";
+    centre: Option<WrittenPoint> = Form::Place, "Its centre; [0, 0, 0] if left out.";
+    needed axes: [WrittenNumber; 3] = Form::Either(&[Form::Number, Form::Place]),
+        "Its half axes, along x, y and z."
+        => "an ellipsoid needs its half axes";
+    rotate: Option<Vec<TurnDocument>> =
+        Form::Either(&[Form::Mapping(&TURN), Form::List(&Form::Mapping(&TURN), 1, None)]),
+        "How it is turned about its centre: a turn, or a list of turns in order.";
+}
+
+mapping! {
+    /// A cylinder or a cone as written.
+    struct ShaftDocument: SHAFT = "a cylinder or a cone", "{from: [0, 0, 0], to: [0, 1, 0], radius: 1}";
+    from: Option<WrittenPoint> = Form::Place, "The centre of its base; [0, 0, 0] if left out.";
+    to: Option<WrittenPoint> = Form::Place, "The other end of its axis; [0, 1, 0] if left out.";
+    radius: Option<WrittenNumber> = Form::Positive, "The radius of its base, above 0; 1 if left out.";
+}
+
+mapping! {
+    /// A box as written.
+    struct CuboidDocument: CUBOID = "a box", "box: {from: [0, 0, 0], to: [1, 1, 1]}";
+    from: Option<WrittenPoint> = Form::Place, "A corner; [0, 0, 0] if left out.";
+    to: Option<WrittenPoint> = Form::Place, "The opposite corner; [1, 1, 1] if left out.";
+}
+
+impl FromNode for [WrittenNumber; 3] {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        read_factors(reader, node, "half axes", "axes: [3, 1, 2]")
+    }
+}
+
+impl FromNode for Vec<TurnDocument> {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        read_turns(reader, node)
+    }
+}
+
+/// Reads a set that is the value of a key.
+pub(super) fn read_solid_set(reader: &mut Reader, key: &str, node: &Node) -> Option<SolidDocument> {
+    Some(match key {
+        "sphere" => SolidDocument::Sphere(SphereDocument::from_node(reader, node)?),
+        "ellipsoid" => SolidDocument::Ellipsoid(EllipsoidDocument::from_node(reader, node)?),
+        "cylinder" => SolidDocument::Cylinder(ShaftDocument::from_node(reader, node)?),
+        "cone" => SolidDocument::Cone(ShaftDocument::from_node(reader, node)?),
+        "box" => SolidDocument::Cuboid(CuboidDocument::from_node(reader, node)?),
+        _ => SolidDocument::Hull(read_solid(reader, node)?),
+    })
+}

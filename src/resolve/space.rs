@@ -1,0 +1,214 @@
+//! Resolution of points, turns and sets in space.
+
+use std::sync::Arc;
+
+use crate::document::{
+    FormDocument, ShaftDocument, ShapeDocument, SolidDocument, TurnDocument, WrittenNumber,
+    WrittenPoint,
+};
+use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Outline, Round, Solid};
+
+use super::Resolver;
+
+/// Largest distance of a polygon's points from a plane, relative to its size.
+const FLAT: f64 = 1e-9;
+
+impl<K> Resolver<K> {
+    /// Compiles a point in space; a third coordinate that is left out is 0.
+    pub(super) fn point_in_space(&mut self, point: &WrittenPoint) -> Option<[Program; 3]> {
+        let [x, y] = self.point(point)?;
+        let z = match &point.z {
+            Some(z) => self.constant_program(z),
+            None => Program::constant(0.0),
+        };
+        z.as_constant()?;
+        Some([x, y, z])
+    }
+
+    /// Compiles a point in a scope; a third coordinate that is left out is 0.
+    pub(super) fn point_in_scope(&mut self, point: &WrittenPoint, scope: &Scope) -> [Program; 3] {
+        let [x, y] = [&point.x, &point.y].map(|number| self.program(number, scope));
+        let z = point.z.as_ref().map(|z| self.program(z, scope));
+        [x, y, z.unwrap_or(Program::constant(0.0))]
+    }
+
+    /// Evaluates a point in space, or takes another where it is left out.
+    fn constant_in_space(&mut self, point: Option<&WrittenPoint>, absent: DVec3) -> Option<DVec3> {
+        point.map_or(Some(absent), |point| value(&self.point_in_space(point)?))
+    }
+
+    /// Resolves a turn about an axis of any length above 0, whose angle is a constant.
+    pub(super) fn constant_turn(&mut self, document: &TurnDocument) -> Option<Affine<Program, 3>> {
+        let angle = self.constant_program(&document.angle);
+        let turn = self.turn(document, &angle);
+        angle.as_constant()?;
+        turn
+    }
+
+    /// Resolves a turn by an angle, in degrees, about an axis of any length above 0.
+    pub(super) fn turn(
+        &mut self,
+        document: &TurnDocument,
+        angle: &Program,
+    ) -> Option<Affine<Program, 3>> {
+        let along = self.constant_in_space(Some(&document.axis), DVec3::ZERO)?;
+        let Some(unit) = { along.try_normalize() }.filter(|unit| unit.is_finite()) else {
+            let message = "an axis has a direction, and this one has no length";
+            self.error_with_hint(&document.axis.place, message, "axis: [0, 1, 0]");
+            return None;
+        };
+        let axis = unit.to_array().map(Program::constant);
+        let turn = Symbols.turn(angle);
+        Some(Affine::rotation_about(&mut Symbols, &axis, &turn))
+    }
+
+    /// Resolves a set in space. Reports mistakes and returns `None`.
+    pub(super) fn solids(&mut self, document: &ShapeDocument) -> Option<Arc<[Solid]>> {
+        let solid = match document.form.as_ref()? {
+            FormDocument::Outline { points, .. } => self.polygon(document, points),
+            FormDocument::Solid(solid) => self.solid(document, solid),
+            // Sets of the plane were reported when the file was read.
+            _ => None,
+        };
+        Some([solid?].into())
+    }
+
+    fn solid(&mut self, shape: &ShapeDocument, document: &SolidDocument) -> Option<Solid> {
+        let place = match document {
+            SolidDocument::Sphere(sphere) => {
+                let centre = self.constant_in_space(sphere.centre.as_ref(), DVec3::ZERO);
+                let radius = self.radius(sphere.radius.as_ref())?;
+                DAffine3::from_mat3_translation(diagonal(DVec3::splat(radius)), centre?)
+            }
+            SolidDocument::Ellipsoid(ellipsoid) => {
+                let centre = self.constant_in_space(ellipsoid.centre.as_ref(), DVec3::ZERO);
+                let axes = ellipsoid
+                    .axes
+                    .each_ref()
+                    .map(|axis| self.radius(Some(axis)));
+                let turns = ellipsoid.rotate.iter().flatten();
+                let turns: Vec<_> = turns.map(|turn| self.constant_turn(turn)).collect();
+                let [x, y, z] = axes;
+                let mut linear = diagonal(DVec3::new(x?, y?, z?));
+                for turn in turns {
+                    linear = turn?.as_constant()?.matrix3 * linear;
+                }
+                DAffine3::from_mat3_translation(linear, centre?)
+            }
+            SolidDocument::Cylinder(shaft) => self.shaft(shape, shaft)?,
+            SolidDocument::Cone(shaft) => self.shaft(shape, shaft)?,
+            SolidDocument::Cuboid(cuboid) => {
+                let from = self.constant_in_space(cuboid.from.as_ref(), DVec3::ZERO);
+                let to = self.constant_in_space(cuboid.to.as_ref(), DVec3::ONE);
+                let bounds = Bounds::new(from?, to?);
+                if bounds.size().max_element() <= 0.0 {
+                    let message = "this box has no extent";
+                    self.error_with_hint(&shape.place, message, "its corners must differ");
+                    return None;
+                }
+                return Some(Solid::cuboid(&bounds));
+            }
+            SolidDocument::Hull(points) => {
+                let points: Vec<_> = points
+                    .iter()
+                    .map(|it| self.constant_in_space(Some(it), DVec3::ZERO))
+                    .collect();
+                let points: Option<Vec<_>> = points.into_iter().collect();
+                return Some(Solid::hull(&points?));
+            }
+        };
+        let round = match document {
+            SolidDocument::Cylinder(_) => Round::Cylinder,
+            SolidDocument::Cone(_) => Round::Cone,
+            _ => Round::Ball,
+        };
+        Some(Solid::round(round, place))
+    }
+
+    /// Evaluates a length, which must be above 0; 1 if it is left out.
+    fn radius(&mut self, number: Option<&WrittenNumber>) -> Option<f64> {
+        let Some(number) = number else {
+            return Some(1.0);
+        };
+        let length = self.constant(number)?;
+        if length > 0.0 {
+            return Some(length);
+        }
+        let message = format!("{length} is no radius: it must be above 0");
+        self.error(&number.place, message);
+        None
+    }
+
+    /// Returns the map of a primitive along the y axis from 0 to 1 to its ends.
+    fn shaft(&mut self, shape: &ShapeDocument, document: &ShaftDocument) -> Option<DAffine3> {
+        let from = self.constant_in_space(document.from.as_ref(), DVec3::ZERO);
+        let to = self.constant_in_space(document.to.as_ref(), DVec3::Y);
+        let radius = self.radius(document.radius.as_ref());
+        let (from, to) = (from?, to?);
+        let Some(along) = (to - from).try_normalize() else {
+            let message = "this set has no axis: `from` and `to` are the same point";
+            let hint = "{from: [0, 0, 0], to: [0, 1, 0], radius: 1}";
+            self.error_with_hint(&shape.place, message, hint);
+            return None;
+        };
+        let (right, back) = along.any_orthonormal_pair();
+        let radius = radius?;
+        let linear = DMat3::from_cols(right * radius, to - from, back * radius);
+        Some(DAffine3::from_mat3_translation(linear, from))
+    }
+
+    fn polygon(&mut self, shape: &ShapeDocument, written: &[WrittenPoint]) -> Option<Solid> {
+        let points: Vec<_> = written
+            .iter()
+            .map(|it| self.constant_in_space(Some(it), DVec3::ZERO))
+            .collect();
+        let points = points.into_iter().collect::<Option<Vec<_>>>()?;
+        let solid = Solid::hull(&points);
+        let mut bounds = Bounds::EMPTY;
+        points.iter().for_each(|point| bounds.add(*point));
+        let size = bounds.size().max_element();
+        let first = points[0];
+        // Newell's normal: the sum of the normals of the triangles from the first point.
+        let spans = points.windows(2);
+        let normal = spans
+            .map(|pair| (pair[0] - first).cross(pair[1] - first))
+            .sum::<DVec3>();
+        let area = normal.length() / 2.0;
+        let Some(normal) = normal.try_normalize().filter(|_| solid.signed_area() > 0.0) else {
+            let hint = "its points must not all be the same, or on one line";
+            self.error_with_hint(&shape.place, "this set has no extent", hint);
+            return None;
+        };
+        let away = points
+            .iter()
+            .map(|point| (*point - first).dot(normal).abs());
+        if let Some((_, point)) = { away.zip(written) }.find(|(away, _)| *away > FLAT * size) {
+            let message = "the points of this polygon do not lie in a plane";
+            let hint = "write several polygons, each in a plane";
+            self.error_with_hint(&point.place, message, hint);
+            return None;
+        }
+        // Of simple polygons, only a convex one is as large as its hull; the surface has two sides.
+        if (solid.signed_area() / 2.0 - area).abs() > 1e-7 * area {
+            let message = "this polygon is not convex";
+            let hint = "write it as several convex ones, with its points in order";
+            self.error_with_hint(&shape.place, message, hint);
+            return None;
+        }
+        Some(solid)
+    }
+}
+
+fn diagonal(factors: DVec3) -> DMat3 {
+    DMat3::from_diagonal(factors)
+}
+
+/// Returns the value of a point if its coordinates are constants.
+pub(super) fn value([x, y, z]: &[Program; 3]) -> Option<DVec3> {
+    Some(DVec3::new(
+        x.as_constant()?,
+        y.as_constant()?,
+        z.as_constant()?,
+    ))
+}
