@@ -1,7 +1,8 @@
 //! Convex hulls of subtrees, as far as frames of a kind have them: the interface of bounds.
 
-use crate::geometry::{Frame, Frame3};
+use crate::geometry::{Affine, Frame, Frame3};
 use crate::graph::{Graph, Instance};
+use crate::ifs::sum_of_products;
 
 /// Precision of polygons as approximations of the convex hulls.
 #[derive(Clone, Copy)]
@@ -57,8 +58,8 @@ pub trait Hulls<F: Frame> {
     fn spared(&self, instances: &[Instance<F>], fineness: Fineness) -> f64;
 }
 
-/// Frames whose graphs are bounded: by ratios of lengths alone, or more closely where the frames of a kind
-/// have hulls of subtrees and bounds of the stretch of products of maps.
+/// Frames whose graphs are bounded: by ratios of lengths and the stretch of products of maps, or more closely where
+/// the frames of a kind have hulls of subtrees.
 pub trait Bounded: Frame {
     /// Returns convex sets that contain the subtrees of objects: at every step, or in the limit if `drawn`
     /// states which objects are drawn there. `None` if there are none.
@@ -71,12 +72,16 @@ pub trait Bounded: Frame {
         None
     }
 
-    /// Returns the sum, over all n, of the largest stretch of products of n maps; `None` if no bound is
-    /// found.
-    fn products(_graph: &Graph<Self>) -> Option<f64> {
-        None
+    /// Returns the sum, over all n, of the largest stretch of products of n linear maps; `None` if no bound is
+    /// found. `linear` lists for every kind of object the linear parts of its instances and the kinds that they
+    /// instance.
+    fn products(linear: &[Vec<(LinearOf<Self>, usize)>]) -> Option<f64> {
+        sum_of_products(linear)
     }
 }
 
-/// Sets in space are bounded by ratios of lengths.
+/// Linear parts of maps between frames.
+pub type LinearOf<F> = <<F as Frame>::Map as Affine>::Linear;
+
+/// Sets in space are bounded by stretches.
 impl Bounded for Frame3 {}

@@ -1,6 +1,6 @@
 //! Contraction of products of maps, for graphs whose single maps do not all contract.
 
-use crate::geometry::Point;
+use crate::geometry::{Affine, Frame, Point};
 
 use super::bounded::Bounded;
 use crate::graph::{Graph, Instance};
@@ -34,7 +34,7 @@ impl<F: Bounded> Graph<F> {
             return Some(even(1.0 / (1.0 - ratio)));
         }
         self.products_by_weights()
-            .or_else(|| F::products(self).map(even))
+            .or_else(|| self.products_of_maps().map(even))
     }
 
     /// Returns the radius about `centre`, in any object's unit frame, that contains the subtree of an
@@ -56,6 +56,19 @@ impl<F: Bounded> Graph<F> {
         let far = far.map(|(object, weight)| away(object) / weight);
         let longest = weights.iter().copied().fold(0.0, f64::max);
         Some(far.fold(0.0, f64::max) * sum * longest)
+    }
+
+    /// Returns the sum, over all n, of the largest stretch of products of n maps; `None` if no bound is found.
+    fn products_of_maps(&self) -> Option<f64> {
+        if !self.affine || !self.is_plain() {
+            return None;
+        }
+        let images = self.images(|_| true);
+        let linear = images.iter().map(|images| {
+            let linear = images.iter().map(|(map, inner)| (map.linear(), *inner));
+            linear.collect()
+        });
+        F::products(&linear.collect::<Vec<_>>())
     }
 
     /// Finds weights such that no instance stretches by more than λ u(o) / u(c), λ < 1. These exist if
@@ -101,5 +114,27 @@ impl<F: Bounded> Graph<F> {
     fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance<F>> {
         let children = self.children(object).map(|(_, instance)| instance);
         children.filter(|instance| self.is_fertile(instance.object))
+    }
+}
+
+impl<F: Frame> Graph<F> {
+    /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
+    pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(F::Map, usize)>> {
+        let mut images = vec![Vec::new(); self.behaviours().count()];
+        for (number, object) in self.behaviours_by_number() {
+            for (_, instance) in self.children(number) {
+                let child = &self.objects[instance.object];
+                let image = (*instance.frame.map(), child.behaviour);
+                let is_new = || !images[object.behaviour].contains(&image);
+                if self.is_replaced(instance.object) && counts(instance.object) && is_new() {
+                    images[object.behaviour].push(image);
+                }
+            }
+        }
+        images
+    }
+
+    pub(super) fn is_replaced(&self, object: usize) -> bool {
+        self.objects[object].successor().is_some()
     }
 }

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Instance, Object, Replacement};
 
@@ -46,8 +47,8 @@ impl<F: Frame> Ord for Node<F> {
 
 impl<F: Bounded> Graph<F> {
     /// Returns the bounding box of the limit set, to within 1e-13 of its distance and extent. An instance is
-    /// replaced only while its ball may reach farther than all points that are known (Land & Doig 1960). `None`
-    /// if a subtree is not bounded, or if that takes too long.
+    /// replaced only while its ball may reach farther than all points that are known (Land & Doig 1960), and of several
+    /// that differ by a translation, only the farthest. `None` if a subtree is not bounded, or if that takes too long.
     pub(super) fn limit_bounds_by_balls(&self) -> Option<Bounds<F::Point>> {
         let alive = self.alive(true);
         let own = |object: &Object<F>| match object.replacement {
@@ -69,11 +70,13 @@ impl<F: Bounded> Graph<F> {
         let mut heap: BinaryHeap<Node<F>> = BinaryHeap::new();
         // The greatest value that is certain to be reached.
         let mut surely = f64::NEG_INFINITY;
-        let add = |heap: &mut BinaryHeap<Node<F>>,
-                   surely: &mut f64,
-                   instance: &Instance<F>,
-                   outer: F::Point,
-                   offset: f64| {
+        // The greatest offset of each behaviour and functional: many tie where the set touches a plane along a part.
+        let mut known: FastMap<(usize, [u64; 3]), f64> = FastMap::default();
+        let mut add = |heap: &mut BinaryHeap<Node<F>>,
+                       surely: &mut f64,
+                       instance: &Instance<F>,
+                       outer: F::Point,
+                       offset: f64| {
             if !alive[instance.object] {
                 return Some(());
             }
@@ -94,6 +97,14 @@ impl<F: Bounded> Graph<F> {
                 return None;
             }
             *surely = surely.max(middle - radius);
+            let behaviour = self.objects()[instance.object].behaviour;
+            // Negative zero is zero.
+            let key = vector.coordinates().map(|it| (it + 0.0).to_bits());
+            let best = known.entry((behaviour, key)).or_insert(f64::NEG_INFINITY);
+            if offset <= *best {
+                return Some(());
+            }
+            *best = offset;
             heap.push(Node {
                 object: instance.object,
                 vector,

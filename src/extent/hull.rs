@@ -1,7 +1,7 @@
 //! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
 //! in products.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame2, convex_hull, distance_to_hull, thinned};
+use crate::geometry::{Bounds, DMat2, DVec2, Frame2, convex_hull, distance_to_hull, thinned};
 use crate::ifs::Shrinking;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
@@ -91,16 +91,8 @@ impl Bounded for Frame2 {
         Some(Box::new(polygons))
     }
 
-    fn products(graph: &Graph) -> Option<f64> {
-        if !graph.affine || !graph.is_plain() {
-            return None;
-        }
-        let images = graph.images(|_| true);
-        let linear = images.iter().map(|images| {
-            let linear = images.iter().map(|(map, inner)| (map.matrix2, *inner));
-            linear.collect()
-        });
-        let shrinking = Shrinking::found(&linear.collect::<Vec<_>>())?;
+    fn products(linear: &[Vec<(DMat2, usize)>]) -> Option<f64> {
+        let shrinking = Shrinking::found(linear)?;
         Some(shrinking.sum)
     }
 }
@@ -252,22 +244,6 @@ impl Graph {
         (hulls, points.collect())
     }
 
-    /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
-    fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(DAffine2, usize)>> {
-        let mut images = vec![Vec::new(); self.behaviours().count()];
-        for (number, object) in self.behaviours_by_number() {
-            for (_, instance) in self.children(number) {
-                let child = &self.objects[instance.object];
-                let image = (*instance.frame.map(), child.behaviour);
-                let is_new = || !images[object.behaviour].contains(&image);
-                if self.is_replaced(instance.object) && counts(instance.object) && is_new() {
-                    images[object.behaviour].push(image);
-                }
-            }
-        }
-        images
-    }
-
     /// Returns points whose convex hull contains an object's outline with padding.
     fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
         let points = self.base_elements()[self.objects[object].base_element].control_points();
@@ -276,10 +252,6 @@ impl Graph {
         } else {
             points.collect()
         }
-    }
-
-    fn is_replaced(&self, object: usize) -> bool {
-        self.objects[object].successor().is_some()
     }
 }
 

@@ -20,7 +20,7 @@ mod probable_reach;
 mod reach;
 mod search;
 
-pub use bounded::{Bounded, Fineness, Hulls, Own};
+pub use bounded::{Bounded, Fineness, Hulls, LinearOf, Own};
 pub use bounding_box::bounding_box;
 pub use bounds::ApproximantBounds;
 pub(crate) use bounds::settled;

@@ -54,7 +54,7 @@ pub use map::{Map, about, axes, complex, complex_conjugate, toward};
 pub use measure::{MapMeasure, Measure};
 pub use moments::Moments;
 pub use shape::Shape;
-pub(crate) use shrinking::Shrinking;
+pub(crate) use shrinking::{Shrinking, sum_of_products};
 pub use system::System;
 pub use walk::{Choice, Step, Walk};
 

@@ -1,6 +1,9 @@
 //! Bounds of systems that contract little, or by their products only, against other methods.
 
-use kfrac::geometry::{DAffine2, DMat2, DVec2};
+use kfrac::catalogue::Catalogue;
+use kfrac::diagnostic::Source;
+use kfrac::document::Document;
+use kfrac::geometry::{Bounds, DAffine2, DMat2, DVec2, DVec3};
 use kfrac::graph::Graph;
 use kfrac::ifs::{Definition, Ifs, Map};
 
@@ -152,4 +155,56 @@ fn boxes_hold_what_products_contract() {
 
 fn scaled(map: DAffine2, factor: f64) -> DAffine2 {
     DAffine2::from_mat2_translation(factor * map.matrix2, map.translation)
+}
+
+/// Maps of space that act on z apart from x and y, whose boxes are those of the plane.
+#[test]
+fn boxes_in_space_are_those_of_the_plane_beside_the_depth() {
+    let plane = "maps:
+  - {matrix: [[0, 1.5], [0.2, 0]], shift: [0, 0.3]}
+  - {matrix: [[0.3, 0.9], [0, 0.4]], shift: [1, -1]}
+";
+    let space = "space: 3
+maps:
+  - {matrix: [[0, 1.5, 0], [0.2, 0, 0], [0, 0, 0.5]], shift: [0, 0.3, 1]}
+  - {matrix: [[0.3, 0.9, 0], [0, 0.4, 0], [0, 0, 0.5]], shift: [1, -1, 0]}
+";
+    let flat = Graph::of_system(&*system(plane)).limit_bounds().unwrap();
+    let solid = box_in_space(space);
+    for (found, flat, depth) in [
+        (solid.min(), flat.min(), 0.0),
+        (solid.max(), flat.max(), 2.0),
+    ] {
+        assert_near(found.x, flat.x, 1e-9);
+        assert_near(found.y, flat.y, 1e-9);
+        assert_near(found.z, depth, 1e-9);
+    }
+}
+
+/// Fractint's fern in space: all of it that its longest map has not moved lies in one plane, which bounds it.
+#[test]
+fn ties_along_a_plane_do_not_multiply() {
+    let fern = "space: 3
+maps:
+  - {matrix: [[0, 0, 0], [0, 0.18, 0], [0, 0, 0]]}
+  - {matrix: [[0.85, 0, 0], [0, 0.85, 0.1], [0, -0.1, 0.85]], shift: [0, 1.6, 0]}
+  - {matrix: [[0.2, -0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], shift: [0, 0.8, 0]}
+  - {matrix: [[-0.2, 0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], shift: [0, 0.8, 0]}
+";
+    let found = box_in_space(fern);
+    assert_near(found.max().z, 0.0, 1e-12);
+    assert_near(found.min().y, 0.0, 1e-12);
+    assert_near(found.max().x, -found.min().x, 1e-11);
+}
+
+fn box_in_space(text: &str) -> Bounds<DVec3> {
+    let source = Source::new("test.yaml", format!("kind: ifs\n{text}"));
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    let (model, doubts) = document.resolve(&[]).unwrap();
+    assert!(doubts.is_empty(), "{doubts}");
+    model
+        .compile_in_space(false)
+        .unwrap()
+        .limit_bounds()
+        .unwrap()
 }
