@@ -2,8 +2,8 @@
 //! as a table.
 //!
 //! Checks that nothing panics; that every mistake has a message, and messages are of bounded length; that a
-//! printed file is equivalent; that forecast and bounding box agree with the walk; and that pictures are XML
-//! with finite numbers.
+//! printed file is equivalent; that forecast and bounding box agree with the walk, in the plane and in space; and that
+//! pictures are XML with finite numbers, or PNGs.
 
 #![no_main]
 
@@ -16,13 +16,15 @@ use std::sync::Arc;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::export;
-use kfrac::geometry::{Bounds, DVec2};
+use kfrac::export::{self, TableFormat};
+use kfrac::geometry::{Bounds, Frame, Frame3, Point};
 use kfrac::Count;
 use kfrac::graph::{Graph, Level};
 use kfrac::extent::bounding_box;
-use kfrac::grow::{Growth, WalkError, Walked};
+use kfrac::grow::{Elements, Growth, WalkError, Walked};
 use kfrac::measure::similarity_dimension;
+use kfrac::model::Model;
+use kfrac::render::space::{SpaceOptions, write_space};
 use kfrac::render::{self, Format, Labels, Options, Size};
 use kfrac::rule::Rule;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
@@ -42,18 +44,18 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(source) = Source::read("fuzz.yaml", bytes.to_vec()) else {
         return;
     };
-    let Some((document, rule)) = read(&source) else {
+    let Some((document, model)) = read(&source) else {
         return;
     };
     let yaml = document.to_yaml();
-    let grown = grow(&rule);
+    let grown = grow(&model);
     // Expanded aliases may exceed the maximum size of a file.
     if yaml.len() <= Source::MAX_BYTES {
-        let (again, rule) = read(&Source::new("fuzz.yaml", yaml.as_str()))
+        let (again, model) = read(&Source::new("fuzz.yaml", yaml.as_str()))
             .unwrap_or_else(|| panic!("what was printed cannot be read:\n{yaml}"));
         assert_eq!(again.to_yaml(), yaml);
         assert_eq!(
-            grow(&rule),
+            grow(&model),
             grown,
             "what was printed grows otherwise:\n{yaml}"
         );
@@ -73,14 +75,14 @@ fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
     }
 });
 
-fn read(source: &Arc<Source>) -> Option<(Document, Arc<Rule>)> {
+fn read(source: &Arc<Source>) -> Option<(Document, Model)> {
     let read = Document::read(source, &Catalogue::embedded())
         .and_then(|document| document.resolve(&[]).map(|resolved| (document, resolved)));
     match read {
         Ok((document, (model, warnings))) => {
             assert!(!warnings.has_errors(), "{warnings}");
             said(&warnings);
-            Some((document, model.into_rule()?))
+            Some((document, model))
         }
         Err(errors) => {
             assert!(errors.has_errors(), "refused without an error");
@@ -94,8 +96,45 @@ fn said(found: &Diagnostics) {
     assert!(found.to_string().len() < MAX_SAID, "too much is said");
 }
 
+/// Returns the table and the picture of a rule, or the numbers and the picture of a set in space; or the reason why it
+/// does not grow. Other models are not grown.
+fn grow(model: &Model) -> Result<[Vec<u8>; 2], String> {
+    if let Some(graph) = model.compile_in_space(false) {
+        return grow_in_space(model, &graph);
+    }
+    match model.rule() {
+        Some(rule) => grow_rule(rule).map(|texts| texts.map(String::into_bytes)),
+        None => Ok([Vec::new(), Vec::new()]),
+    }
+}
+
+fn grow_in_space(model: &Model, graph: &Graph<Frame3>) -> Result<[Vec<u8>; 2], String> {
+    let steps = model.metadata().steps.unwrap_or(2).min(MAX_STEPS);
+    let limit = graph.limit_bounds();
+    let bounds = graph.bounds(steps);
+    if graph.check_size(steps, MAX_ELEMENTS).is_ok() {
+        let growth = Growth::steps(steps).max_elements(MAX_ELEMENTS);
+        let counted = Elements::of(graph, &growth).filter(Result::is_ok).count();
+        if let Some(level) = forecast(graph, steps) {
+            assert_eq!(level.elements, Count::from(counted as u64));
+        }
+        if let (Some(bounds), Ok(extent)) = (&bounds, bounding_box(graph, &growth)) {
+            near(bounds, &extent);
+        }
+    }
+    let options = Options::of(model.metadata())
+        .size(Size::Long(24))
+        .threads(NonZero::<usize>::MIN);
+    let mut png = Vec::new();
+    // The limit of maps that hardly contract has very many elements of a pixel.
+    let drawn = write_space(graph, Some(steps.min(4)), &options, &SpaceOptions::default(), None, &mut png);
+    drawn.map_err(|error| error.to_string())?;
+    assert!(png.starts_with(b"\x89PNG") && png.ends_with(b"IEND\xaeB`\x82"));
+    Ok([format!("{limit:?} {bounds:?}").into_bytes(), png])
+}
+
 /// Returns the table and the picture of a rule, or the reason why it does not grow.
-fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
+fn grow_rule(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let steps = rule.steps().unwrap_or(3).min(MAX_STEPS);
     let graph = Graph::compile(rule, steps).map_err(|error| {
         said(&error.diagnostic(rule).into());
@@ -108,7 +147,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let allowed = graph.check_size(steps, MAX_ELEMENTS).is_ok();
     let growth = Growth::steps(steps).max_elements(MAX_ELEMENTS);
     let mut table = Vec::new();
-    let walked = export::write(&graph, &growth, export::Format::Csv, NonZero::<usize>::MIN, &mut table);
+    let walked = export::write(&graph, &growth, TableFormat::Csv, NonZero::<usize>::MIN, &mut table);
     if let Ok(walked) = walked {
         assert!(allowed, "refused, but grown");
         if let Some(level) = level {
@@ -125,7 +164,7 @@ fn grow(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     Ok([table, text(picture(rule, &graph, &growth))?])
 }
 
-fn forecast(graph: &Graph, steps: u32) -> Option<Level> {
+fn forecast<F: Frame>(graph: &Graph<F>, steps: u32) -> Option<Level> {
     let mut forecast = graph.forecast()?;
     (0..steps)
         .all(|_| forecast.advance())
@@ -138,8 +177,8 @@ fn agree(level: &Level, walked: Walked) {
     assert!(level.fertile <= level.elements);
 }
 
-fn near(bounds: &Bounds, extent: &Bounds) {
-    let near = |a: DVec2, b: DVec2| a.distance(b) <= TOLERANCE * (1.0 + a.length());
+fn near<P: Point>(bounds: &Bounds<P>, extent: &Bounds<P>) {
+    let near = |a: P, b: P| (a - b).length() <= TOLERANCE * (1.0 + a.length());
     assert!(
         near(bounds.min(), extent.min()) && near(bounds.max(), extent.max()),
         "the graph says {bounds:?}, the walk {extent:?}"

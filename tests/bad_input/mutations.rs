@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 /// Fragments that mistakes are made of, which have a meaning in rule files.
-const PIECES: [&str; 48] = [
+const PIECES: [&str; 58] = [
     "",
     " ",
     "\n",
@@ -58,6 +58,16 @@ const PIECES: [&str; 48] = [
     "from",
     "to",
     "closed",
+    "space: 3",
+    "space: 2",
+    ", 1/2",
+    "[0, 0, 1]",
+    "maps",
+    "vertices",
+    "solid",
+    "scale",
+    "rotate",
+    "matrix",
     "true",
     "null",
 ];
@@ -110,7 +120,8 @@ fn mistake() -> impl Strategy<Value = Mistake> {
 }
 
 fn rules() -> Vec<String> {
-    let folders = ["library/rules", "library/lsystems"];
+    let folders =
+        ["rules", "lsystems", "ifs", "instancing"].map(|shelf| format!("library/{shelf}"));
     let files = folders.map(|folder| fs::read_dir(folder).unwrap());
     let mut paths: Vec<_> = { files.into_iter().flatten() }
         .map(|file| file.unwrap().path())
@@ -155,6 +166,12 @@ fn digest(text: &str) -> Result<(), Diagnostics> {
     let catalogue = Catalogue::embedded();
     let source = Source::new("mutated.yaml", text);
     let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
+    if let Some(graph) = model.compile_in_space(true) {
+        // Neither the limit nor a step of a set in space panics or hangs.
+        let bounds = [graph.limit_bounds(), graph.bounds(2)];
+        assert!(bounds.iter().flatten().all(|it| !it.min().is_nan()));
+        return Ok(());
+    }
     match (model.compile(2), &model) {
         // An L-system that grows too long has no place in the file.
         (Ok(_), _) | (Err(_), Model::LSystem(_)) => Ok(()),
