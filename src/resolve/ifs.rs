@@ -261,9 +261,11 @@ impl Resolver<OfIfs> {
         contraction: &Contraction,
     ) -> Option<()> {
         let first = contraction.word.first().copied();
-        let place = first
-            .and_then(|map| listed(document, map))
-            .map_or(&document.heading.place, |map| &map.place);
+        let map = first.and_then(|map| listed(document, map));
+        let place = match &document.maps {
+            Some(MapsDocument::Vertices { shrink, .. }) => &shrink.place,
+            _ => map.map_or(&document.heading.place, |map| &map.place),
+        };
         let place = place.first_line();
         match contraction.verdict {
             Verdict::Contracts => Some(()),
