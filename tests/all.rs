@@ -25,6 +25,7 @@ mod laws;
 mod library;
 mod lsystem;
 mod manual;
+mod meshes;
 mod pictures;
 mod png;
 mod random_iteration;

@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     let steps = steps::choose(arguments.steps, &loaded)?;
     let graph = loaded.compile(steps)?;
-    growth.check(steps, &graph, &loaded, None)?;
+    growth.check(steps, &graph, &loaded)?;
     arguments.count(&loaded, &graph, steps)
 }
 

@@ -4,6 +4,7 @@ mod chaos;
 mod drawing;
 mod plan;
 mod plot;
+mod scene;
 mod space;
 mod svg;
 mod zoom;
@@ -17,6 +18,7 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::fractal::Goal;
 use crate::render::RenderError;
+use crate::style::Named;
 
 use super::camera::SpaceArguments;
 use super::growth::GrowthArguments;
@@ -28,6 +30,7 @@ use chaos::ChaosArguments;
 use drawing::Drawing;
 use plan::{Format, Plan};
 use plot::PlotArguments;
+use scene::SceneArguments;
 use svg::SvgArguments;
 use zoom::ZoomArguments;
 
@@ -83,6 +86,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     space: SpaceArguments,
     #[command(flatten)]
+    scene: SceneArguments,
+    #[command(flatten)]
     chaos: ChaosArguments,
 }
 
@@ -126,6 +131,8 @@ Examples:
       Draws a set in space, to the pixel
   kfrac grow menger --steps 60 -o menger.usda
       Writes 20^60 cubes as a small scene of nested instances for other programs
+  kfrac grow menger --steps 3 --mesh shell -o menger.stl
+      Writes the surface of 8,000 cubes for a printer
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
@@ -133,7 +140,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let plan = Plan::of(arguments)?;
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     if loaded.model.is_in_space() {
-        let (path, summary, bytes) = space::draw(arguments, &loaded)?;
+        let (path, summary, bytes) = match plan {
+            Plan::Scene(format) => scene::write(arguments, &loaded, format)?,
+            _ => space::draw(arguments, &loaded)?,
+        };
         arguments.report(&path, &summary, bytes, start);
         return Ok(());
     }
@@ -154,11 +164,13 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 None => game.draw(progress, out, path),
             })?
         }
-        Plan::Scene => {
-            return Err(Failure::Usage(format!(
-                "a .usda holds instances in space, and {} lies in the plane: --svg instanced nests them in a .svg",
+        Plan::Scene(format) => {
+            let message = format!(
+                "a .{} holds elements in space, and {} lies in the plane: write a .svg, .png, .pdf or .dxf",
+                Format::Scene(format).name(),
                 loaded.name
-            )));
+            );
+            return Err(Failure::Usage(message));
         }
     };
     arguments.report(path, &summary, bytes, start);
@@ -190,7 +202,7 @@ impl Arguments {
         let color_by = self.picture.style(loaded.model.metadata()).color_by;
         let graph = loaded.compile_for(steps, color_by)?;
         if let Goal::Steps(..) = goal {
-            self.growth.check(steps, &graph, loaded, None)?;
+            self.growth.check(steps, &graph, loaded)?;
         }
         let (walked, bytes) = output::write(path, self.growth.quiet, |out, progress| {
             let growth = self.growth.to(steps, progress);

@@ -9,6 +9,7 @@ use super::readable::{counted, duration, grouped, rough_bytes};
 use crate::estimate::{Estimator, SizeEstimate};
 use crate::extent::bounding_box;
 use crate::geometry::Bounds;
+use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError};
 use crate::model::Model;
@@ -92,22 +93,41 @@ impl GrowthArguments {
     }
 
     /// Returns an error if a step has too many elements, where the number is known in advance.
-    ///
-    /// `picture` holds the options of the picture, if there is one.
-    pub(super) fn check(
+    pub(super) fn check<F: Frame>(
+        &self,
+        steps: u32,
+        graph: &Graph<F>,
+        loaded: &Loaded,
+    ) -> Result<(), Failure> {
+        let most = self.max_elements();
+        let checked = graph.check_size(steps, most);
+        checked.map_err(|error| anyhow!(too_large(&error, most, &loaded.name, steps, "")))?;
+        Ok(())
+    }
+
+    /// Returns an error if a picture of a step has too many elements, where the number is known in advance.
+    pub(super) fn check_picture(
         &self,
         steps: u32,
         graph: &Graph,
         loaded: &Loaded,
-        picture: Option<&render::Options>,
+        picture: &render::Options,
     ) -> Result<(), Failure> {
-        let most = match picture {
-            Some(picture) => self.most_elements_of(picture),
-            None => self.max_elements(),
-        };
+        let most = self.most_elements_of(picture);
         let checked = graph.check_size(steps, most);
         checked.map_err(|error| {
-            anyhow!(too_large(&error, most, &loaded.name, steps, graph, picture))
+            let svg = Some(picture).filter(|options| options.format == render::Format::Svg);
+            let estimate = svg.and_then(|options| estimate(graph, steps, options));
+            let size = estimate.map_or_else(String::new, |estimate| {
+                let bytes = rough_bytes(estimate.svg_bytes);
+                let time = duration(estimate.seconds);
+                format!(", about {bytes} of SVG and {time} of drawing")
+            });
+            let detail = match shrinks(graph) {
+                true => "; --detail 0.5 draws it to half a pixel",
+                false => "",
+            };
+            anyhow!(too_large(&error, most, &loaded.name, steps, &size) + detail)
         })?;
         Ok(())
     }
@@ -178,37 +198,18 @@ impl GrowthArguments {
     }
 }
 
-/// Returns the message for a step that has too many elements.
-fn too_large(
-    error: &TooLarge,
-    most: u64,
-    name: &str,
-    steps: u32,
-    graph: &Graph,
-    picture: Option<&render::Options>,
-) -> String {
+/// Returns the message for a step that has too many elements, followed by its size.
+fn too_large(error: &TooLarge, most: u64, name: &str, steps: u32, size: &str) -> String {
     let limit = grouped(&most.into());
     let count = error.elements.as_ref().map_or_else(
         || "more elements than can be counted".into(),
         |elements| counted(elements, "element"),
     );
-    let svg = picture.filter(|options| options.format == render::Format::Svg);
-    let estimate = svg.and_then(|options| estimate(graph, steps, options));
-    let size = estimate.map_or_else(String::new, |estimate| {
-        let bytes = rough_bytes(estimate.svg_bytes);
-        let time = duration(estimate.seconds);
-        format!(", about {bytes} of SVG and {time} of drawing")
-    });
     let deepest = match error.deepest {
         Some(step) => format!("{step} is the deepest step within --max-elements {limit}"),
         None => format!("no step is within --max-elements {limit}"),
     };
-    let detail = if picture.is_some() && shrinks(graph) {
-        "; --detail 0.5 draws it to half a pixel"
-    } else {
-        ""
-    };
-    format!("step {steps} of {name} has {count}{size}; {deepest}{detail}")
+    format!("step {steps} of {name} has {count}{size}; {deepest}")
 }
 
 /// Estimates the SVG of a step without growing it.

@@ -221,7 +221,7 @@ impl Arguments {
                 }
                 let sheet = sheet_to(last)?;
                 for (_, graph, step) in &sheet.cells {
-                    growth.check(*step, &sheet.graphs[*graph], loaded, None)?;
+                    growth.check(*step, &sheet.graphs[*graph], loaded)?;
                 }
                 let cells = sheet.cells(growth, None, progress);
                 let written = sheet::write(&cells, *columns, &sheet.options, out);

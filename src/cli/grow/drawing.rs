@@ -87,7 +87,7 @@ impl<'a> Drawing<'a> {
             && options.view.window.is_none()
             && matches!(self.shown, Shown::Window)
         {
-            (arguments.growth).check(steps, &graph, loaded, Some(&options))?;
+            (arguments.growth).check_picture(steps, &graph, loaded, &options)?;
         }
         if !quiet {
             self.note_beforehand(&graph, &options);

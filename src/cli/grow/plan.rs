@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::export;
-use crate::render::{self, Unit, ZoomTarget};
+use crate::render::{self, MeshFormat, Unit, ZoomTarget};
 use crate::style::Named;
 
 use super::super::{Failure, format};
@@ -23,8 +23,8 @@ pub(super) enum Plan {
     },
     /// Points of random iteration: a PNG of their numbers, or a table of them.
     Chaos(Option<export::TableFormat>),
-    /// Scene of nested instances in space, in Universal Scene Description.
-    Scene,
+    /// Elements in space for other programs.
+    Scene(SceneFormat),
 }
 
 /// Part of a set that a picture of elements shows.
@@ -42,7 +42,16 @@ pub(super) enum Shown {
 pub(super) enum Format {
     Picture(render::Format),
     Table(export::TableFormat),
+    Scene(SceneFormat),
+}
+
+/// Format of elements in space for other programs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum SceneFormat {
+    /// Nested instances in Universal Scene Description.
     Usda,
+    /// Mesh of the elements of a step.
+    Mesh(MeshFormat),
 }
 
 impl Named for Format {
@@ -55,7 +64,10 @@ impl Named for Format {
         ("json", Self::Table(export::TableFormat::JsonLines)),
         ("jsonl", Self::Table(export::TableFormat::JsonLines)),
         ("ndjson", Self::Table(export::TableFormat::JsonLines)),
-        ("usda", Self::Usda),
+        ("usda", Self::Scene(SceneFormat::Usda)),
+        ("stl", Self::Scene(SceneFormat::Mesh(MeshFormat::Stl))),
+        ("obj", Self::Scene(SceneFormat::Mesh(MeshFormat::Obj))),
+        ("ply", Self::Scene(SceneFormat::Mesh(MeshFormat::Ply))),
     ];
 }
 
@@ -104,7 +116,7 @@ impl Plan {
         };
         let drawn = match format {
             Format::Picture(format) => Some(format),
-            Format::Table(_) | Format::Usda => None,
+            Format::Table(_) | Format::Scene(_) => None,
         };
         let is_table = drawn.is_none();
         if is_chaos
@@ -140,12 +152,12 @@ impl Plan {
         )?;
         if is_chaos {
             refuse(
-                format == Format::Usda,
-                "--method chaos draws points, and a .usda holds instances: write a .png, or a .csv of the points",
+                matches!(format, Format::Scene(_)),
+                "--method chaos draws points, not elements: write a .png, or a .csv of the points",
             )?;
             return Ok(Self::Chaos(match format {
                 Format::Table(format) => Some(format),
-                Format::Picture(_) | Format::Usda => None,
+                Format::Picture(_) | Format::Scene(_) => None,
             }));
         }
         let is_nested = svg.is_instanced();
@@ -179,7 +191,7 @@ impl Plan {
             arguments.steps.is_some() || has_detail || arguments.growth.says_most_elements();
         Ok(match format {
             Format::Table(format) => Self::Table(format),
-            Format::Usda => Self::Scene,
+            Format::Scene(format) => Self::Scene(format),
             Format::Picture(format) => Self::Picture {
                 format,
                 is_light: format == render::Format::Svg && !gives_depth && !is_nested,
@@ -198,7 +210,7 @@ impl Plan {
             Self::Table(format) | Self::Chaos(Some(format)) => Format::Table(*format).name(),
             Self::Picture { format, .. } => format.name(),
             Self::Chaos(None) => render::Format::Png.name(),
-            Self::Scene => Format::Usda.name(),
+            Self::Scene(format) => Format::Scene(*format).name(),
         }
     }
 }

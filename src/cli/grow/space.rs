@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 
 use crate::render::space::write_space;
-use crate::render::{self, Detail, Unit, write_usda};
-use crate::style::{ColorBy, Named};
+use crate::render::{self, Detail, Unit};
+use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
@@ -18,16 +18,15 @@ pub(super) fn draw(
     arguments: &Arguments,
     loaded: &Loaded,
 ) -> Result<(PathBuf, String, u64), Failure> {
-    let format = check(arguments, loaded)?;
-    let default = arguments.rule.file("", format.name());
+    check(arguments, loaded)?;
+    let default = arguments.rule.file("", "png");
     let path = arguments.output.as_ref().unwrap_or(&default);
     let heading = loaded.model.metadata();
     let style = arguments.picture.style(heading);
     let steps = arguments
         .steps
         .or(heading.steps.filter(|_| arguments.detail.is_none()));
-    let records_last = format == Format::Usda && style.color_by == ColorBy::LastMap;
-    let graph = loaded.model.compile_in_space(records_last);
+    let graph = loaded.model.compile_in_space(false);
     let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
     let options = render::Options {
         format: render::Format::Png,
@@ -48,22 +47,6 @@ pub(super) fn draw(
         ..render::Options::default()
     };
     let quiet = arguments.growth.quiet;
-    if format == Format::Usda {
-        let Some(steps) = steps else {
-            let message = "nested instances have a number of steps: give --steps, of any size";
-            return Err(Failure::Usage(message.into()));
-        };
-        let (scene, bytes) = output::write(path, quiet, |mut out, _| {
-            write_usda(&graph, steps, &options, None, &mut out)
-                .map_err(|error| output::explain(error, path))
-        })?;
-        let prims = readable::counted(&scene.symbols.into(), "object");
-        let summary = format!(
-            "step {steps} of {}, {prims} in nested instances",
-            loaded.name
-        );
-        return Ok((path.clone(), summary, bytes));
-    }
     let space = arguments.space.to_options()?;
     let (picture, bytes) = output::write(path, quiet, |mut out, _| {
         write_space(&graph, steps, &options, &space, None, &mut out)
@@ -111,8 +94,8 @@ fn told(arguments: &Arguments) -> Vec<(&'static str, String)> {
     options
 }
 
-/// Returns the format of the file, and refuses options and formats that sets in space do not have.
-fn check(arguments: &Arguments, loaded: &Loaded) -> Result<Format, Failure> {
+/// Refuses options and formats that pictures of sets in space do not have.
+fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     let path = arguments
         .output
         .as_deref()
@@ -123,9 +106,9 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<Format, Failure> {
         (asked, path) => format::choose(asked, path)?,
     };
     let name = &loaded.name;
-    if asked != png && asked != Format::Usda {
+    if asked != png {
         let message = format!(
-            "{name} lies in space, and is written as .png or .usda, not as .{}",
+            "{name} lies in space, and is drawn as .png, not as .{}",
             asked.name()
         );
         return Err(Failure::Usage(message));
@@ -145,6 +128,5 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<Format, Failure> {
             return Err(Failure::Usage(message));
         }
     }
-    arguments.picture.refuse_hits()?;
-    Ok(asked)
+    arguments.picture.refuse_hits()
 }

@@ -10,17 +10,16 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::geometry::{DAffine3, DVec3, Frame3, Solid};
+use crate::geometry::{DAffine3, DVec3, Frame3, Mesh, Round, Solid};
 use crate::graph::{Chain, Graph};
 use crate::grow::WalkError;
 use crate::instancing::Appearance;
-use crate::style::{ColorProperty, Colour};
+use crate::style::Colour;
 
-use super::super::classes::Classes;
+use super::super::colours::Colours;
 use super::super::error::RenderError;
 use super::super::options::Options;
 use super::super::picture::Instanced;
-use super::super::space::{SpaceError, ink};
 use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
 use super::{MAX_SYMBOLS, NotInstanced, refusal};
 
@@ -39,17 +38,14 @@ pub fn write_usda(
 ) -> Result<Instanced, RenderError> {
     let style = &options.style;
     refusal::check(graph, style, steps)?;
-    if style.color_by.property() == ColorProperty::Direction {
-        return Err(SpaceError::ColorBy(style.color_by).into());
-    }
-    let classes = Classes::before_survey(style.color_by, graph, steps);
+    let colours = Colours::of(style, graph, steps)?;
     let start = Aspect {
         // The initiator replaces a virtual object that has one more step.
         steps: steps + 1,
         part: Part::All,
         dress: Dress(Appearance::NONE),
     };
-    let symbols = Symbols::new(graph, style.color_by, classes);
+    let symbols = Symbols::new(graph, style.color_by, colours.classes());
     let initiator = graph.initiator(steps);
     let all = symbols.collect(initiator, [start].into_iter(), MAX_SYMBOLS);
     let all = all.ok_or(NotInstanced::TooManySymbols)?;
@@ -57,7 +53,7 @@ pub fn write_usda(
         graph,
         steps,
         options,
-        classes,
+        colours,
         symbols,
         written: BTreeMap::new(),
         shapes: BTreeMap::new(),
@@ -93,7 +89,7 @@ struct Scene<'a> {
     graph: &'a Graph<Frame3>,
     steps: u32,
     options: &'a Options,
-    classes: Classes,
+    colours: Colours<'a>,
     symbols: Symbols<'a, Frame3>,
     /// Prims of symbols that are not empty.
     written: BTreeMap<Symbol, Prim>,
@@ -171,8 +167,10 @@ impl Scene<'_> {
 
     /// Returns the number of the prim of an element that is born in a step, and writes it if it is new.
     fn shape(&mut self, symbol: &Symbol, born: u32) -> usize {
-        let colour = self.colour(symbol, born);
-        let element = self.graph.objects()[symbol.object].base_element;
+        let object = &self.graph.objects()[symbol.object];
+        let Dress(appearance) = symbol.aspect.dress;
+        let colour = self.colours.at(object, born, appearance);
+        let element = object.base_element;
         let next = self.shapes.len();
         let number = *self.shapes.entry((element, colour.rgba())).or_insert(next);
         if number == next {
@@ -182,51 +180,68 @@ impl Scene<'_> {
         }
         number
     }
-
-    fn colour(&self, symbol: &Symbol, born: u32) -> Colour {
-        let style = &self.options.style;
-        let Dress(appearance) = symbol.aspect.dress;
-        let of_class = |class| self.classes.colour(class, style);
-        let class = match style.color_by.property() {
-            ColorProperty::Tint => return appearance.on(ink(style)),
-            ColorProperty::Step => Some(self.classes.of_value(born.into())),
-            ColorProperty::Object => self.classes.of_object(&self.graph.objects()[symbol.object]),
-            _ => None,
-        };
-        class.and_then(of_class).unwrap_or(ink(style))
-    }
 }
 
 /// Returns the prim of a convex solid.
 fn shape(solid: &Solid, colour: Colour) -> String {
-    let faces = solid.polygons();
-    let mut corners: Vec<DVec3> = match faces.is_empty() {
-        true => Solid::hull(solid.corners()).corners().to_vec(),
-        false => Vec::new(),
+    let mut text = match solid.primitive() {
+        Some(primitive) => round(primitive, solid.place()),
+        None => polyhedron(solid),
     };
-    let mut indices = Vec::new();
-    for corner in faces.iter().flatten() {
-        let known = corners.iter().position(|known| known == corner);
-        indices.push(known.unwrap_or(corners.len()).to_string());
-        if known.is_none() {
-            corners.push(*corner);
-        }
+    let [red, green, blue, alpha] = colour.rgba().map(|part| f64::from(part) / 255.0);
+    let _ = writeln!(
+        text,
+        "color3f[] primvars:displayColor=[({red:.4},{green:.4},{blue:.4})]"
+    );
+    if alpha < 1.0 {
+        let _ = writeln!(text, "float[] primvars:displayOpacity=[{alpha:.4}]");
     }
+    text + "}\n"
+}
+
+/// Returns the beginning of the prim of a round primitive. Cylinders and cones of the format have their origins in
+/// the middle of their height.
+fn round(primitive: Round, place: &DAffine3) -> String {
+    let (shape, low) = match primitive {
+        Round::Cylinder => ("Cylinder", -0.5),
+        Round::Cone => ("Cone", -0.5),
+        _ => ("Sphere", -1.0),
+    };
+    let middle = DVec3::Y * if shape == "Sphere" { 0.0 } else { 0.5 };
+    let place = *place * DAffine3::from_translation(middle);
+    let axis = match shape {
+        "Sphere" => "",
+        _ => "uniform token axis=\"Y\"\ndouble height=1\n",
+    };
+    let (low, high) = (DVec3::new(-1.0, low, -1.0), DVec3::new(1.0, -low, 1.0));
+    format!(
+        "def {shape} \"shape\"\n{{\n{axis}double radius=1\nfloat3[] extent=[{},{}]\n\
+         matrix4d xformOp:transform={}\nuniform token[] xformOpOrder=[\"xformOp:transform\"]\n",
+        point(low),
+        point(high),
+        matrix(&place)
+    )
+}
+
+/// Returns the beginning of the prim of a polyhedron, or of a segment or a point.
+fn polyhedron(solid: &Solid) -> String {
+    let Mesh { corners, faces } = solid.into();
+    let corners = match faces.is_empty() {
+        true => Solid::hull(solid.corners()).corners().to_vec(),
+        false => corners,
+    };
+    let indices: Vec<String> = faces.iter().flatten().map(usize::to_string).collect();
     let points: Vec<String> = corners.iter().map(|corner| point(*corner)).collect();
     let points = points.join(",");
-    let [red, green, blue, alpha] = colour.rgba().map(|part| f64::from(part) / 255.0);
-    let mut text = match corners.len() {
-        1 => format!("def Points \"shape\"\n{{\npoint3f[] points=[{points}]\n"),
-        2 => format!(
-            "def BasisCurves \"shape\"\n{{\nint[] curveVertexCounts=[2]\npoint3f[] points=[{points}]\n\
-             uniform token type=\"linear\"\n"
-        ),
+    let shape = match corners.len() {
+        1 => "def Points \"shape\"\n{\n".into(),
+        2 => "def BasisCurves \"shape\"\n{\nint[] curveVertexCounts=[2]\nuniform token type=\"linear\"\n"
+            .into(),
         _ => {
             let counts: Vec<String> = faces.iter().map(|face| face.len().to_string()).collect();
             format!(
                 "def Mesh \"shape\"\n{{\nuniform bool doubleSided={}\nint[] faceVertexCounts=[{}]\n\
-                 int[] faceVertexIndices=[{}]\npoint3f[] points=[{points}]\n\
-                 uniform token subdivisionScheme=\"none\"\n",
+                 int[] faceVertexIndices=[{}]\nuniform token subdivisionScheme=\"none\"\n",
                 u8::from(faces.len() == 1),
                 counts.join(","),
                 indices.join(","),
@@ -237,14 +252,7 @@ fn shape(solid: &Solid, colour: Colour) -> String {
         let corners = corners.iter().copied();
         point(corners.reduce(pick).unwrap_or_default())
     });
-    let _ = write!(
-        text,
-        "float3[] extent=[{low},{high}]\ncolor3f[] primvars:displayColor=[({red:.4},{green:.4},{blue:.4})]\n"
-    );
-    if alpha < 1.0 {
-        let _ = writeln!(text, "float[] primvars:displayOpacity=[{alpha:.4}]");
-    }
-    text + "}\n"
+    format!("{shape}point3f[] points=[{points}]\nfloat3[] extent=[{low},{high}]\n")
 }
 
 fn point(point: DVec3) -> String {

@@ -68,6 +68,14 @@ pub enum SpaceError {
     /// The graph does not determine the extent of the set.
     #[error("the extent of the set is not known: no bound is found by which its maps contract")]
     NoBounds,
+    /// There are more faces than a format can count, or than are held in memory.
+    #[error("there are more than {limit} {what}")]
+    TooManyFaces {
+        /// Name of what is counted.
+        what: &'static str,
+        /// The limit.
+        limit: u64,
+    },
 }
 
 /// Options of pictures in space, beside those of all pictures.

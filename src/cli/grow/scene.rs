@@ -1,0 +1,104 @@
+//! Sets in space as files for other programs: nested instances and meshes.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+
+use crate::render::{self, MeshOptions, write_mesh, write_usda};
+use crate::style::{ColorBy, Named};
+
+use super::super::labels::labels;
+use super::super::picture::named;
+use super::super::rule::Loaded;
+use super::super::{Failure, output, readable};
+use super::Arguments;
+use super::plan::{Format, SceneFormat};
+
+/// Options of meshes.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Space")]
+pub(super) struct SceneArguments {
+    /// Faces of a mesh: those of all elements, or the shell that remains where faces that cancel are left out
+    #[arg(long, value_name = "FACES", value_parser = named::<Faces>())]
+    mesh: Option<Faces>,
+}
+
+/// Faces of a mesh.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Faces {
+    Elements,
+    Shell,
+}
+
+impl Named for Faces {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("elements", Self::Elements), ("shell", Self::Shell)];
+}
+
+impl SceneArguments {
+    /// Returns whether an option of meshes is given.
+    pub(super) fn is_asked(&self) -> bool {
+        self.mesh.is_some()
+    }
+}
+
+/// Writes a step of a set in space; returns the path, a summary and the number of bytes.
+pub(super) fn write(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    format: SceneFormat,
+) -> Result<(PathBuf, String, u64), Failure> {
+    let Arguments {
+        growth, picture, ..
+    } = arguments;
+    let name = &loaded.name;
+    let extension = Format::Scene(format).name();
+    let heading = loaded.model.metadata();
+    let Some(steps) = arguments.steps.or(heading.steps) else {
+        let message = format!("a .{extension} holds the elements of a step: give --steps");
+        return Err(Failure::Usage(message));
+    };
+    let style = picture.style(heading);
+    let graph = (loaded.model).compile_in_space(style.color_by == ColorBy::LastMap);
+    let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
+    let own = [("steps", steps.to_string())];
+    let all = own.into_iter().chain(picture.options());
+    let options = render::Options {
+        style,
+        threads: growth.threads(),
+        labels: labels(loaded, &format!("Step {steps}"), "grow", all),
+        ..render::Options::default()
+    };
+    let default = arguments.rule.file("", extension);
+    let path = arguments.output.as_ref().unwrap_or(&default);
+    let step = format!("step {steps} of {name}");
+    let (summary, bytes) = match format {
+        SceneFormat::Usda => {
+            if arguments.scene.is_asked() {
+                let message = "--mesh applies to meshes: write a .stl, .obj or .ply";
+                return Err(Failure::Usage(message.into()));
+            }
+            let (scene, bytes) = output::write(path, growth.quiet, |mut out, _| {
+                write_usda(&graph, steps, &options, None, &mut out)
+                    .map_err(|error| output::explain(error, path))
+            })?;
+            let objects = readable::counted(&scene.symbols.into(), "object");
+            (format!("{step}, {objects} in nested instances"), bytes)
+        }
+        SceneFormat::Mesh(format) => {
+            growth.check(steps, &graph, loaded)?;
+            let mesh = MeshOptions::default()
+                .format(format)
+                .shell(arguments.scene.mesh == Some(Faces::Shell));
+            let (mesh, bytes) = output::write(path, growth.quiet, |mut out, progress| {
+                let growth = growth.to(steps, progress);
+                write_mesh(&graph, &growth, &options, mesh, &mut out)
+                    .map_err(|error| output::explain(error, path))
+            })?;
+            let elements = readable::counted(&mesh.elements.into(), "element");
+            let faces = readable::counted(&mesh.faces.into(), "face");
+            (format!("{step}, {elements}, {faces}"), bytes)
+        }
+    };
+    Ok((path.clone(), summary, bytes))
+}

@@ -1,0 +1,221 @@
+//! Elements in space as meshes of polygons, for modelling, printing and rendering.
+//!
+//! Coordinates are in single precision, and faces are counter-clockwise from outside. Elements are written in the
+//! order of traversal, each with corners of its own, in memory that does not depend on their number; a
+//! [shell](MeshOptions::shell) is collected first.
+
+mod encode;
+mod shell;
+
+use std::io::{self, Write};
+
+use crate::geometry::{BEYOND, Frame3};
+use crate::graph::Graph;
+use crate::grow::{Element, Growth, Visitor, WalkError, walk_in_spans};
+use crate::style::Named;
+
+use super::colours::Colours;
+use super::error::RenderError;
+use super::options::Options;
+use encode::{Encoder, Pass, Shape};
+use shell::Shell;
+
+/// Format of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// Binary STL: triangles. z points up, as printers expect: (x, y, z) becomes (x, −z, y).
+    Stl,
+    /// Wavefront OBJ: polygons as text. y points up.
+    Obj,
+    /// Binary PLY: polygons with colours. y points up.
+    Ply,
+}
+
+impl Named for MeshFormat {
+    const NAMES: &'static [(&'static str, Self)] =
+        &[("stl", Self::Stl), ("obj", Self::Obj), ("ply", Self::Ply)];
+}
+
+/// Options of a mesh, beside those of all pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct MeshOptions {
+    /// Format; STL by default.
+    pub format: MeshFormat,
+    /// Whether faces of two elements that cancel are left out, and corners are shared: the mesh is the boundary
+    /// of the union of elements that meet in whole faces. All faces are held in memory, some 200 bytes each.
+    pub shell: bool,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self {
+            format: MeshFormat::Stl,
+            shell: false,
+        }
+    }
+}
+
+setters!(MeshOptions {
+    format: MeshFormat,
+    shell: bool,
+});
+
+/// Size of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Meshed {
+    /// Number of elements.
+    pub elements: u64,
+    /// Number of corners; those that several elements have in common are counted once for each, except in a
+    /// shell.
+    pub corners: u64,
+    /// Number of faces; in STL, of triangles.
+    pub faces: u64,
+}
+
+/// Approximate number of elements that are encoded at once.
+const MANY: u64 = 1 << 10;
+
+/// Grows a graph in space and writes the visible elements of the approximant as a mesh. Of the options, the style's
+/// colours, the labels and the number of threads apply; the bytes do not depend on the threads.
+///
+/// # Errors
+///
+/// If growing ends early, if coordinates exceed single precision, if there are more faces than the format can
+/// count, if colours depend on more than an element itself, or if `out` fails.
+pub fn write_mesh(
+    graph: &Graph<Frame3>,
+    growth: &Growth<'_>,
+    options: &Options,
+    mesh: MeshOptions,
+    out: &mut impl Write,
+) -> Result<Meshed, RenderError> {
+    let colours = Colours::of(&options.style, graph, growth.steps)?;
+    let format = mesh.format;
+    let shapes = graph.base_elements().iter().map(|solid| {
+        // Faces of a shell are compared whole, and only then divided for the format.
+        let format = if mesh.shell { MeshFormat::Obj } else { format };
+        Shape::new(&solid.into(), format)
+    });
+    let shapes: Vec<Shape> = shapes.collect();
+    let walk = Walk {
+        graph,
+        growth,
+        options,
+        shapes: &shapes,
+        colours: &colours,
+    };
+    if mesh.shell {
+        let (shell, elements) = Shell::of(&walk)?;
+        return shell.write(format, options, elements, out);
+    }
+    let mut size = Meshed::default();
+    walk.each(
+        || Sizes(Meshed::default(), &walk),
+        |Sizes(of_span, _)| {
+            let one = std::mem::take(of_span);
+            size.elements += one.elements;
+            size.corners += one.corners;
+            size.faces += one.faces;
+            Ok(())
+        },
+    )?;
+    out.write_all(&encode::head(format, &options.labels.title, &size)?)?;
+    for &pass in Pass::of(format) {
+        // Corners of the elements before a span.
+        let mut before = 0;
+        let fresh = || Collector {
+            walk: &walk,
+            encoder: Encoder::new(format, pass),
+        };
+        walk.each(fresh, |collector| {
+            before = collector.encoder.give(before, out)?;
+            Ok(())
+        })?;
+    }
+    Ok(size)
+}
+
+/// A walk over the visible elements.
+struct Walk<'a> {
+    graph: &'a Graph<Frame3>,
+    growth: &'a Growth<'a>,
+    options: &'a Options,
+    shapes: &'a [Shape],
+    colours: &'a Colours<'a>,
+}
+
+impl Walk<'_> {
+    /// Walks with visitors that `take` receives in order.
+    fn each<V: Visitor<Frame3, Error = io::Error> + Send>(
+        &self,
+        fresh: impl FnMut() -> V,
+        mut take: impl FnMut(&mut V) -> io::Result<()>,
+    ) -> Result<(), WalkError<io::Error>> {
+        let threads = self.options.threads;
+        let take = |visitor: &mut V, _| take(visitor);
+        walk_in_spans(self.graph, self.growth, threads, Some(MANY), fresh, take)?;
+        Ok(())
+    }
+
+    /// Returns the shape of an element and its colour, if it is visible.
+    fn shape(&self, element: &Element<Frame3>) -> Option<(&Shape, [u8; 3])> {
+        let object = &self.graph.objects()[element.object];
+        object.visible.then(|| {
+            let [red, green, blue, _] = self
+                .colours
+                .at(object, element.born, element.appearance)
+                .rgba();
+            (&self.shapes[object.base_element], [red, green, blue])
+        })
+    }
+}
+
+/// Counts the faces of a span.
+struct Sizes<'a>(Meshed, &'a Walk<'a>);
+
+impl Visitor<Frame3> for Sizes<'_> {
+    type Error = io::Error;
+
+    fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
+        let Self(size, walk) = self;
+        let object = &walk.graph.objects()[element.object];
+        if object.visible {
+            let shape = &walk.shapes[object.base_element];
+            size.elements += 1;
+            size.corners += shape.corners().len() as u64;
+            size.faces += shape.faces() as u64;
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Encodes the elements of a span.
+struct Collector<'a> {
+    walk: &'a Walk<'a>,
+    encoder: Encoder,
+}
+
+impl Visitor<Frame3> for Collector<'_> {
+    type Error = io::Error;
+
+    fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
+        if let Some((shape, colour)) = self.walk.shape(element) {
+            let is_finite = self.encoder.add(shape, element.frame.map(), |_| colour);
+            if !is_finite {
+                return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
+            }
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, _: bool) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,260 @@
+//! Bytes of meshes in their formats.
+
+use std::io::{self, Write};
+
+use crate::geometry::{DAffine3, DVec3, Mesh};
+
+use super::super::space::SpaceError;
+use super::{MeshFormat, Meshed};
+
+/// Largest number of corners of a polygon: lists of PLY count them in a byte.
+const MAX_CORNERS: usize = 255;
+
+/// Mesh of a base element, prepared for a format.
+pub(super) struct Shape {
+    mesh: Mesh,
+}
+
+impl Shape {
+    pub(super) fn new(mesh: &Mesh, format: MeshFormat) -> Self {
+        let is_long = |face: &Vec<usize>| face.len() > MAX_CORNERS;
+        let mut mesh = mesh.clone();
+        if format == MeshFormat::Stl || mesh.faces.iter().any(is_long) {
+            mesh.faces = mesh.triangles().into_iter().map(Vec::from).collect();
+        }
+        Self { mesh }
+    }
+
+    pub(super) fn corners(&self) -> &[DVec3] {
+        &self.mesh.corners
+    }
+
+    /// Returns the number of faces.
+    pub(super) fn faces(&self) -> usize {
+        self.mesh.faces.len()
+    }
+
+    pub(super) fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+}
+
+/// Part of a file that is encoded by one walk.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Triangles, without corners and faces apart.
+    Triangles,
+    Corners,
+    Faces,
+}
+
+impl Pass {
+    pub(super) fn of(format: MeshFormat) -> &'static [Self] {
+        match format {
+            MeshFormat::Stl => &[Self::Triangles],
+            MeshFormat::Obj | MeshFormat::Ply => &[Self::Corners, Self::Faces],
+        }
+    }
+}
+
+/// Returns the beginning of a file.
+pub(super) fn head(format: MeshFormat, title: &str, size: &Meshed) -> Result<Vec<u8>, SpaceError> {
+    let title: String = title
+        .chars()
+        .filter(|letter| !letter.is_control())
+        .collect();
+    let Meshed { corners, faces, .. } = size;
+    let few = |number: &u64, what| {
+        let limit = u64::from(u32::MAX);
+        let count = u32::try_from(*number);
+        count.map_err(|_| SpaceError::TooManyFaces { what, limit })
+    };
+    Ok(match format {
+        MeshFormat::Stl => {
+            let mut head = format!("kfrac {title}").into_bytes();
+            head.resize(80, b' ');
+            head.extend(few(faces, "triangles")?.to_le_bytes());
+            head
+        }
+        MeshFormat::Obj => {
+            few(corners, "corners")?;
+            format!("# kfrac {title}\n").into_bytes()
+        }
+        MeshFormat::Ply => {
+            few(corners, "corners")?;
+            format!(
+                "ply\nformat binary_little_endian 1.0\ncomment kfrac {title}\nelement vertex {corners}\n\
+                 property float x\nproperty float y\nproperty float z\nelement face {faces}\n\
+                 property list uchar uint vertex_indices\nproperty uchar red\nproperty uchar green\n\
+                 property uchar blue\nend_header\n"
+            )
+            .into_bytes()
+        }
+    })
+}
+
+/// Encodes elements for a part of a file.
+pub(super) struct Encoder {
+    format: MeshFormat,
+    pass: Pass,
+    /// Bytes of the file; for [`Pass::Faces`], lists as in PLY.
+    bytes: Vec<u8>,
+    /// Number of corners that faces may refer to.
+    corners: u32,
+    /// Images of the corners of an element.
+    images: Vec<DVec3>,
+}
+
+impl Encoder {
+    pub(super) fn new(format: MeshFormat, pass: Pass) -> Self {
+        Self {
+            format,
+            pass,
+            bytes: Vec::new(),
+            corners: 0,
+            images: Vec::new(),
+        }
+    }
+
+    /// Adds a shape in its place, with a colour for every face; returns whether its coordinates are finite.
+    pub(super) fn add(
+        &mut self,
+        shape: &Shape,
+        map: &DAffine3,
+        colour: impl Fn(usize) -> [u8; 3],
+    ) -> bool {
+        let Mesh { corners, faces } = &shape.mesh;
+        if self.pass != Pass::Faces {
+            let images = corners.iter().map(|corner| map.transform_point3(*corner));
+            self.images.clear();
+            self.images.extend(images);
+            if !self.images.iter().all(|image| image.as_vec3().is_finite()) {
+                return false;
+            }
+        }
+        let is_mirrored = map.matrix3.determinant() < 0.0;
+        match self.pass {
+            Pass::Triangles => {
+                for face in faces {
+                    self.triangle(face, is_mirrored);
+                }
+            }
+            Pass::Corners => {
+                for image in &self.images {
+                    match self.format {
+                        MeshFormat::Obj => push_line(&mut self.bytes, *image),
+                        _ => push(&mut self.bytes, *image),
+                    }
+                }
+            }
+            Pass::Faces => {
+                for (number, face) in faces.iter().enumerate() {
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        reason = "no more than 255 corners"
+                    )]
+                    self.bytes.push(face.len() as u8);
+                    let bytes = &mut self.bytes;
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        reason = "the number of all corners fits into 32 bits"
+                    )]
+                    let mut index = |corner: &usize| {
+                        bytes.extend((self.corners + *corner as u32).to_le_bytes());
+                    };
+                    match is_mirrored {
+                        false => face.iter().for_each(&mut index),
+                        true => face.iter().rev().for_each(&mut index),
+                    }
+                    self.bytes.extend(colour(number));
+                }
+            }
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "a shape has few corners")]
+        let own = corners.len() as u32;
+        self.corners += own;
+        true
+    }
+
+    /// Adds a triangle of STL, with its normal.
+    fn triangle(&mut self, face: &[usize], is_mirrored: bool) {
+        let turn = |point: DVec3| DVec3::new(point.x, -point.z, point.y);
+        let [a, b, c] = [0, 1, 2].map(|corner: usize| turn(self.images[face[corner]]));
+        let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        for vector in [normal, a, b, c] {
+            push(&mut self.bytes, vector);
+        }
+        self.bytes.extend([0, 0]);
+    }
+
+    /// Writes the bytes of a span, behind `before` corners of earlier ones, and starts another; returns the number
+    /// of corners with those of the span.
+    pub(super) fn give(&mut self, before: u32, out: &mut impl Write) -> io::Result<u32> {
+        if self.pass == Pass::Faces {
+            self.refer(before);
+        }
+        out.write_all(&self.bytes)?;
+        self.bytes.clear();
+        // STL, which has no corners apart, may have more than are counted here.
+        Ok(before.wrapping_add(std::mem::take(&mut self.corners)))
+    }
+
+    /// Lets faces refer to corners behind `before` others, in the way of the format.
+    fn refer(&mut self, before: u32) {
+        let mut text = Vec::new();
+        let mut number = itoa::Buffer::new();
+        let mut at = 0;
+        while let Some(&corners) = self.bytes.get(at) {
+            let end = at + 1 + 4 * usize::from(corners);
+            if self.format == MeshFormat::Obj {
+                text.push(b'f');
+            }
+            for index in self.bytes[at + 1..end].chunks_exact_mut(4) {
+                let own = index
+                    .iter()
+                    .rev()
+                    .fold(0, |sum, byte| sum << 8 | u32::from(*byte));
+                match self.format {
+                    MeshFormat::Obj => {
+                        // Corners are counted from 1.
+                        text.push(b' ');
+                        let corner = u64::from(before) + u64::from(own) + 1;
+                        text.extend_from_slice(number.format(corner).as_bytes());
+                    }
+                    _ => index.copy_from_slice(&(before + own).to_le_bytes()),
+                }
+            }
+            if self.format == MeshFormat::Obj {
+                text.push(b'\n');
+            }
+            at = end + 3;
+        }
+        if self.format == MeshFormat::Obj {
+            self.bytes = text;
+        }
+    }
+}
+
+/// Writes a corner as a line of OBJ.
+fn push_line(bytes: &mut Vec<u8>, point: DVec3) {
+    let mut buffer = zmij::Buffer::new();
+    bytes.push(b'v');
+    for number in point.as_vec3().to_array() {
+        bytes.push(b' ');
+        // Adding zero turns −0 into 0.
+        let text = buffer.format_finite(number + 0.0);
+        bytes.extend_from_slice(text.strip_suffix(".0").unwrap_or(text).as_bytes());
+    }
+    bytes.push(b'\n');
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounded to single precision"
+)]
+fn push(bytes: &mut Vec<u8>, point: DVec3) {
+    for number in point.to_array() {
+        bytes.extend((number as f32 + 0.0).to_le_bytes());
+    }
+}
