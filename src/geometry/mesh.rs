@@ -62,7 +62,9 @@ impl Mesh {
         let circles: Vec<[f64; 2]> = match primitive {
             Round::Ball => {
                 let angles = (0..=SIDES / 2).map(|part| 360.0 * f64::from(part) / f64::from(SIDES));
-                angles.map(|angle| [-degrees::cos(angle), degrees::sin(angle)]).collect()
+                angles
+                    .map(|angle| [-degrees::cos(angle), degrees::sin(angle)])
+                    .collect()
             }
             Round::Cylinder => vec![[0.0, 1.0], [1.0, 1.0]],
             Round::Cone => vec![[0.0, 1.0], [1.0, 0.0]],
@@ -73,7 +75,13 @@ impl Mesh {
             let circle: Vec<usize> = if radius == 0.0 {
                 vec![mesh.push(DVec3::Y * height)]
             } else {
-                let at = |angle| DVec3::new(radius * degrees::cos(angle), height, -radius * degrees::sin(angle));
+                let at = |angle| {
+                    DVec3::new(
+                        radius * degrees::cos(angle),
+                        height,
+                        -radius * degrees::sin(angle),
+                    )
+                };
                 angles.map(|angle| mesh.push(at(angle))).collect()
             };
             let sides = circle.len().max(below.len());
@@ -127,7 +135,11 @@ mod tests {
 
     #[test]
     fn round_meshes_are_closed_turn_outwards_and_have_the_volume() {
-        let linear = DMat3::from_cols(DVec3::new(-2.0, 0.5, 0.0), DVec3::Y, DVec3::new(0.0, 0.3, 1.0));
+        let linear = DMat3::from_cols(
+            DVec3::new(-2.0, 0.5, 0.0),
+            DVec3::Y,
+            DVec3::new(0.0, 0.3, 1.0),
+        );
         let place = DAffine3::from_mat3_translation(linear, DVec3::new(1.0, 2.0, 3.0));
         let pi = std::f64::consts::PI;
         let all = [
@@ -144,7 +156,10 @@ mod tests {
             let mut edges = std::collections::BTreeSet::new();
             for face in &mesh.faces {
                 for (number, &from) in face.iter().enumerate() {
-                    assert!(edges.insert([from, face[(number + 1) % face.len()]]), "{primitive:?}");
+                    assert!(
+                        edges.insert([from, face[(number + 1) % face.len()]]),
+                        "{primitive:?}"
+                    );
                 }
             }
             assert!(edges.iter().all(|[from, to]| edges.contains(&[*to, *from])));
