@@ -13,6 +13,7 @@ use crate::diagnostic::{Diagnostic, Severity, Source};
 use crate::document::{Document, Setting};
 use crate::geometry::Homothety;
 use crate::graph::{CompileError, Graph};
+use crate::ifs::{AffineMap, System};
 use crate::lsystem::RewriteError;
 use crate::model::Model;
 use crate::style::{ColorBy, Named};
@@ -276,12 +277,18 @@ impl RuleArguments {
         if self.omit.is_empty() {
             return Ok(model);
         }
-        let usage = |message: String| Failure::Usage(message);
-        let Model::Ifs(system) = &model else {
-            return Err(usage(format!(
+        match &model {
+            Model::Ifs(system) => Ok(Model::Ifs(self.omitting(system, name)?.into())),
+            Model::IfsInSpace(system) => Ok(Model::IfsInSpace(self.omitting(system, name)?.into())),
+            _ => Err(Failure::Usage(format!(
                 "--omit leaves maps out, and {name} has none"
-            )));
-        };
+            ))),
+        }
+    }
+
+    /// Returns a system without the omitted maps.
+    fn omitting<M: AffineMap>(&self, system: &System<M>, name: &str) -> Result<System<M>, Failure> {
+        let usage = |message: String| Failure::Usage(message);
         let count = system.ifs().maps().len();
         let mut maps = Vec::new();
         for &number in &self.omit {
@@ -293,14 +300,13 @@ impl RuleArguments {
                 }
             }
         }
-        let left = system.omitting(&maps).map_err(|errors| {
+        system.omitting(&maps).map_err(|errors| {
             let messages: Vec<_> = errors.iter().map(ToString::to_string).collect();
             usage(format!(
                 "--omit: of the remaining maps, {}",
                 messages.join("; ")
             ))
-        })?;
-        Ok(Model::Ifs(left.into()))
+        })
     }
 }
 

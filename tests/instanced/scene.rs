@@ -31,14 +31,17 @@ struct Reference {
 fn read(text: &str) -> (BTreeMap<String, Vec<Reference>>, BTreeMap<String, String>) {
     let (mut prims, mut colours) = (BTreeMap::new(), BTreeMap::new());
     let mut prim = String::new();
-    let mut name = String::new();
+    let mut name = None;
     for line in text.lines() {
         if line.starts_with("class") || line.starts_with("def Xform") {
             prim = line.split('"').nth(1).unwrap().to_owned();
             prims.insert(prim.clone(), Vec::new());
         } else if let Some((_, rest)) = line.split_once("references=</") {
-            name = rest.split('>').next().unwrap().to_owned();
-        } else if let Some((_, map)) = line.split_once("xformOp:transform=") {
+            name = Some(rest.split('>').next().unwrap().to_owned());
+        } else if let Some((_, map)) = line.split_once("xformOp:transform=")
+            // Round elements have a transform, too, and are no references.
+            && let Some(name) = name.take()
+        {
             let numbers = map.split(['(', ')', ',']).filter(|it| !it.is_empty());
             let numbers: Vec<f64> = numbers.map(|it| it.parse().unwrap()).collect();
             let row = |row: usize| DVec3::from_slice(&numbers[4 * row..]);
@@ -48,7 +51,6 @@ fn read(text: &str) -> (BTreeMap<String, Vec<Reference>>, BTreeMap<String, Strin
             );
             let linear = DMat3::from_cols(row(0), row(1), row(2));
             let map = DAffine3::from_mat3_translation(linear, row(3));
-            let name = name.clone();
             prims.get_mut(&prim).unwrap().push(Reference { name, map });
         } else if line.starts_with("color3f") {
             colours.insert(prim.clone(), line.to_owned());
@@ -92,6 +94,8 @@ fn a_scene_has_the_elements_of_the_walk() {
         ("menger", 2),
         ("icosahedron-flake", 2),
         ("solid-tetrahedron", 3),
+        ("pound-sign-in-space", 2),
+        ("hart-tree", 25),
     ] {
         let (options, graph) = graph(name, true);
         let scene = expand(&scene(&graph, steps, &options));
