@@ -253,6 +253,34 @@ impl Catalogue {
         )
     }
 
+    /// Reads the bytes of a file, at most `most`, relative to the folder of the file that contains `named`.
+    pub(crate) fn bytes(
+        &self,
+        name: &str,
+        named: &Place,
+        most: u64,
+    ) -> Result<(PathBuf, Vec<u8>), Diagnostic> {
+        let folder = named.source().path().parent();
+        let path = folder.unwrap_or(Path::new("")).join(name);
+        // Reading data must not block on a pipe or a terminal.
+        if !path.is_file() {
+            let message = format!("there is no file '{}'", path.display());
+            let hint = "the name of a file, relative to the folder of this one";
+            return Err(Diagnostic::error(message).hint(hint));
+        }
+        let size = fs::metadata(&path).map_err(|error| cannot_be_read(&path, &error))?;
+        if size.len() > most {
+            let (size, most) = (size.len() >> 20, most >> 20);
+            let message = format!(
+                "'{}' has {size} MiB, and at most {most} are read",
+                path.display()
+            );
+            return Err(Diagnostic::error(message));
+        }
+        let bytes = fs::read(&path).map_err(|error| cannot_be_read(&path, &error))?;
+        Ok((path, bytes))
+    }
+
     /// Reads a library file by name.
     ///
     /// # Errors

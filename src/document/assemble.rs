@@ -12,6 +12,7 @@ use crate::kind::Kind;
 use super::KindDocument;
 use super::data;
 use super::merge::{Entries, merge};
+use super::mesh;
 use super::node::{Key, Node, Value};
 use super::read::{DESCRIPTION, check_description};
 use super::shape::{Form, Shape};
@@ -277,6 +278,21 @@ impl Assembly<'_> {
                 self.component(node, *shelf);
             }
             (Form::Grown, Value::Text(_) | Value::Mapping(_)) => self.inline_fractal(node),
+            (Form::MeshFile, Value::Text(name)) => {
+                let read = self.catalogue.bytes(name, &node.place, mesh::MAX_BYTES);
+                let read = read.and_then(|(path, bytes)| {
+                    let place = Place::new(&Source::new(path.to_string_lossy(), ""), 0..0);
+                    mesh::read(&path, &bytes, &place)
+                });
+                match read {
+                    Ok(mesh) => *node = mesh,
+                    Err(error) => {
+                        self.diagnostics.push(error.at(&node.place));
+                        self.complete = false;
+                        node.value = Value::Text(String::new());
+                    }
+                }
+            }
             (Form::Either(forms), _) => forms.iter().for_each(|form| self.inline(node, form)),
             (Form::List(form, ..), Value::Sequence(entries)) => {
                 entries.iter_mut().for_each(|node| self.inline(node, form));

@@ -205,6 +205,17 @@ pub enum SolidDocument {
     Cuboid(CuboidDocument),
     /// The convex hull of points.
     Hull(Vec<WrittenPoint>),
+    /// A mesh.
+    Mesh(MeshDocument),
+}
+
+/// A mesh as written.
+#[derive(Clone, Debug)]
+pub struct MeshDocument {
+    /// The points.
+    pub points: Vec<WrittenPoint>,
+    /// Numbers of the points of every face, from 0.
+    pub faces: Vec<Vec<WrittenNumber>>,
 }
 
 /// An approximant of another fractal, as written.

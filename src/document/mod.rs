@@ -15,6 +15,7 @@ mod instancing;
 mod lsystem;
 mod mapping;
 mod merge;
+mod mesh;
 mod metadata;
 pub mod node;
 mod read;
@@ -27,8 +28,8 @@ mod yaml;
 
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
-    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, ScatterDocument,
-    ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
+    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument, Scales,
+    ScatterDocument, ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
 };
 pub use instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,

@@ -161,6 +161,7 @@ impl Definitions {
     /// Returns the schema of a value.
     fn form(&mut self, form: &Form) -> Object {
         match form {
+            Form::MeshFile => of_type("string"),
             Form::Text => of_types(["string", "number"]),
             Form::Flag(default) => of_type("boolean").with("default", *default),
             Form::Number => of_types(["number", "string"]),

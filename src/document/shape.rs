@@ -73,6 +73,8 @@ pub(super) enum Form {
     File(Shelf),
     /// Name of a file of any kind that can be grown, or its content.
     Grown,
+    /// Name of a file with a mesh.
+    MeshFile,
     /// A list of two numbers.
     Point,
     /// A list of two numbers, or of three in a file of space.

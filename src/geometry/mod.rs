@@ -22,6 +22,7 @@ mod hull;
 mod linear;
 mod mesh;
 mod point;
+mod polygon;
 mod round;
 mod solid;
 
@@ -39,6 +40,7 @@ pub(crate) use linear::eigen;
 pub use linear::{Linear, rotation};
 pub use mesh::Mesh;
 pub use point::Point;
+pub use polygon::{MAX_POINTS, PolygonError, polygon};
 pub use round::Round;
 pub use solid::{HalfSpace, Solid};
 

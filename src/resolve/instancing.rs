@@ -183,7 +183,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let mut parts = M::parts(&M::set(self, document)?);
         if parts.len() > 1 {
             let message = format!(
-                "an initial set is one line or polygon here, and this fractal draws {}",
+                "an initial set is one shape here, and this one consists of {}",
                 parts.len()
             );
             let hint = "draw it as an object, or take fewer steps";

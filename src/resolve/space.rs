@@ -3,16 +3,15 @@
 use std::sync::Arc;
 
 use crate::document::{
-    FormDocument, ShaftDocument, ShapeDocument, SolidDocument, TurnDocument, WrittenNumber,
-    WrittenPoint,
+    FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument, TurnDocument,
+    WrittenNumber, WrittenPoint,
 };
 use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
-use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Outline, Round, Solid};
+use crate::geometry::{
+    Bounds, DAffine3, DMat3, DVec3, MAX_POINTS, PolygonError, Round, Solid, polygon,
+};
 
-use super::Resolver;
-
-/// Largest distance of a polygon's points from a plane, relative to its size.
-const FLAT: f64 = 1e-9;
+use super::{Resolver, whole_number};
 
 impl<K> Resolver<K> {
     /// Compiles a point in space; a third coordinate that is left out is 0.
@@ -65,13 +64,16 @@ impl<K> Resolver<K> {
 
     /// Resolves a set in space. Reports mistakes and returns `None`.
     pub(super) fn solids(&mut self, document: &ShapeDocument) -> Option<Arc<[Solid]>> {
-        let solid = match document.form.as_ref()? {
-            FormDocument::Outline { points, .. } => self.polygon(document, points),
-            FormDocument::Solid(solid) => self.solid(document, solid),
+        let solids = match document.form.as_ref()? {
+            FormDocument::Outline { points, .. } => self.polygon(document, points)?,
+            FormDocument::Solid(solid) => match &**solid {
+                SolidDocument::Mesh(mesh) => self.mesh(document, mesh)?,
+                solid => vec![self.solid(document, solid)?],
+            },
             // Sets of the plane were reported when the file was read.
-            _ => None,
+            _ => return None,
         };
-        Some([solid?].into())
+        Some(solids.into())
     }
 
     fn solid(&mut self, shape: &ShapeDocument, document: &SolidDocument) -> Option<Solid> {
@@ -110,13 +112,10 @@ impl<K> Resolver<K> {
                 return Some(Solid::cuboid(&bounds));
             }
             SolidDocument::Hull(points) => {
-                let points: Vec<_> = points
-                    .iter()
-                    .map(|it| self.constant_in_space(Some(it), DVec3::ZERO))
-                    .collect();
-                let points: Option<Vec<_>> = points.into_iter().collect();
-                return Some(Solid::hull(&points?));
+                return Some(Solid::hull(&self.constants_in_space(points)?));
             }
+            // The caller resolves meshes, which are not one solid.
+            SolidDocument::Mesh(_) => return None,
         };
         let round = match document {
             SolidDocument::Cylinder(_) => Round::Cylinder,
@@ -158,45 +157,78 @@ impl<K> Resolver<K> {
         Some(DAffine3::from_mat3_translation(linear, from))
     }
 
-    fn polygon(&mut self, shape: &ShapeDocument, written: &[WrittenPoint]) -> Option<Solid> {
-        let points: Vec<_> = written
-            .iter()
-            .map(|it| self.constant_in_space(Some(it), DVec3::ZERO))
-            .collect();
-        let points = points.into_iter().collect::<Option<Vec<_>>>()?;
-        let solid = Solid::hull(&points);
-        let mut bounds = Bounds::EMPTY;
-        points.iter().for_each(|point| bounds.add(*point));
-        let size = bounds.size().max_element();
-        let first = points[0];
-        // Newell's normal: the sum of the normals of the triangles from the first point.
-        let spans = points.windows(2);
-        let normal = spans
-            .map(|pair| (pair[0] - first).cross(pair[1] - first))
-            .sum::<DVec3>();
-        let area = normal.length() / 2.0;
-        let Some(normal) = normal.try_normalize().filter(|_| solid.signed_area() > 0.0) else {
-            let hint = "its points must not all be the same, or on one line";
+    fn constants_in_space(&mut self, points: &[WrittenPoint]) -> Option<Vec<DVec3>> {
+        let points = points.iter();
+        let points = points.map(|it| self.constant_in_space(Some(it), DVec3::ZERO));
+        // All mistakes are reported.
+        let points: Vec<_> = points.collect();
+        points.into_iter().collect()
+    }
+
+    fn polygon(&mut self, shape: &ShapeDocument, written: &[WrittenPoint]) -> Option<Vec<Solid>> {
+        let error = match polygon(&self.constants_in_space(written)?) {
+            Ok(pieces) => return Some(pieces),
+            Err(error) => error,
+        };
+        let (place, message, hint) = match error {
+            PolygonError::NotFlat(number) => (
+                &written[number].place,
+                error.to_string(),
+                "write several polygons, each in a plane".to_owned(),
+            ),
+            PolygonError::Crosses => (
+                &shape.place,
+                error.to_string(),
+                format!(
+                    "list its points in the order of its sides; a polygon that is not convex has at most \
+                     {MAX_POINTS}"
+                ),
+            ),
+            _ => (
+                &shape.place,
+                "this set has no extent".to_owned(),
+                "its points must not all be the same, or on one line".to_owned(),
+            ),
+        };
+        self.error_with_hint(place, message, hint);
+        None
+    }
+
+    /// Returns the faces of a mesh; those without extent are left out.
+    fn mesh(&mut self, shape: &ShapeDocument, document: &MeshDocument) -> Option<Vec<Solid>> {
+        let points = self.constants_in_space(&document.points)?;
+        let last = u32::try_from(points.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        let mut solids = Vec::new();
+        for face in &document.faces {
+            let mut corners = Vec::new();
+            for number in face {
+                let value = self.constant(number)?;
+                let Some(corner) = whole_number(value, last) else {
+                    let message = format!("there is no point {value} in this mesh");
+                    let hint = format!("its points are numbered from 0 to {last}");
+                    self.error_with_hint(&number.place, message, hint);
+                    return None;
+                };
+                // That there are no points was reported.
+                corners.push(*points.get(corner as usize)?);
+            }
+            match polygon(&corners) {
+                Ok(pieces) => solids.extend(pieces),
+                Err(PolygonError::NoExtent) => {}
+                // A face that is bent is a fan of triangles.
+                Err(_) => {
+                    let others = corners.get(1..).unwrap_or_default().windows(2);
+                    let fan = others.map(|pair| polygon(&[corners[0], pair[0], pair[1]]));
+                    solids.extend(fan.flat_map(Result::unwrap_or_default));
+                }
+            }
+        }
+        if solids.is_empty() {
+            let hint = "its faces must not all be lines or points";
             self.error_with_hint(&shape.place, "this set has no extent", hint);
             return None;
-        };
-        let away = points
-            .iter()
-            .map(|point| (*point - first).dot(normal).abs());
-        if let Some((_, point)) = { away.zip(written) }.find(|(away, _)| *away > FLAT * size) {
-            let message = "the points of this polygon do not lie in a plane";
-            let hint = "write several polygons, each in a plane";
-            self.error_with_hint(&point.place, message, hint);
-            return None;
         }
-        // Of simple polygons, only a convex one is as large as its hull; the surface has two sides.
-        if (solid.signed_area() / 2.0 - area).abs() > 1e-7 * area {
-            let message = "this polygon is not convex";
-            let hint = "write it as several convex ones, with its points in order";
-            self.error_with_hint(&shape.place, message, hint);
-            return None;
-        }
-        Some(solid)
+        Some(solids)
     }
 }
 

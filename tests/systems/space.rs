@@ -222,3 +222,43 @@ maps:
     let boxes = [&made, &system].map(|graph| graph.bounds(4).unwrap());
     assert!((boxes[0].max() - boxes[1].max()).length() < 1e-9);
 }
+
+/// A mesh lies beside the file, and polygons that are not convex become triangles.
+#[test]
+fn meshes_are_read_from_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.yaml");
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 3\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    std::fs::write(folder.path().join("tent.obj"), obj).unwrap();
+    let text = "kind: ifs\nspace: 3\nmaps: [{scale: 1/2}]\ncondensation: [{mesh: tent.obj}]\n";
+    std::fs::write(&path, text).unwrap();
+    let source = Catalogue::embedded().rule(&path).unwrap();
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    assert!(
+        document
+            .paths()
+            .contains(folder.path().join("tent.obj").as_path())
+    );
+    let inlined = Source::new("elsewhere.yaml", document.to_yaml());
+    for source in [source, inlined] {
+        let tent = compiled(&source, &[]);
+        let faces = tent.objects().iter().filter(|object| object.is_kept());
+        // The faces inside the map, and outside.
+        assert_eq!(faces.count(), 10);
+        let limit = tent.limit_bounds().unwrap();
+        assert!((limit.max() - DVec3::new(1.0, 1.0, 3.0)).length() < 1e-12);
+    }
+    let arrow =
+        "objects: {a: [{polygon: [[0, 0, 1], [4, 0, 1], [1, 1, 1], [0, 4, 1]]}]}\nscene: [a]\n";
+    assert_eq!(
+        structure(arrow)
+            .forecast()
+            .unwrap()
+            .level()
+            .elements
+            .to_string(),
+        "1"
+    );
+    let drawn = Elements::of(&structure(arrow), &Growth::steps(1)).count();
+    assert_eq!(drawn, 2);
+}

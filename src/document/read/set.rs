@@ -12,7 +12,7 @@ use crate::metadata::MAX_STEPS;
 
 use super::ifs::{PLACE, read_placing};
 use super::parameters::written;
-use super::solid::{CUBOID, ELLIPSOID, SHAFT, SPHERE, read_solid_set};
+use super::solid::{CUBOID, ELLIPSOID, MESH, SHAFT, SPHERE, read_solid_set};
 use super::space::SOLIDS;
 
 /// Keys of an initial set.
@@ -46,7 +46,7 @@ const HINT_IN_SPACE: &str = "{sphere: {centre: [0, 0, 0], radius: 1}}, \
                              {cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 1}}, {polygon: [...]}, ...";
 
 /// Alternative keys for the geometry of a set.
-pub(super) const FORMS: [Member; 13] = keys![
+pub(super) const FORMS: [Member; 14] = keys![
     point: Form::Point, "A point: a dot as wide as a line.";
     segment: Form::List(&Form::Point, 2, Some(2)), "A line from one point to another.";
     polyline: Form::List(&Form::Point, 2, None), "A line through points.";
@@ -60,6 +60,8 @@ pub(super) const FORMS: [Member; 13] = keys![
     cone: Form::Mapping(&SHAFT), "In space, a solid cone; `to` is its apex.";
     box: Form::Mapping(&CUBOID), "In space, a box along the axes.";
     solid: Form::Words(&SOLIDS), "In space, the solid whose corners are those of `vertices`.";
+    mesh: Form::Either(&[Form::MeshFile, Form::Mapping(&MESH)]),
+        "In space, the faces of a mesh: the name of a file .obj, .stl or .ply, or its points and faces.";
     fractal: Form::Grown,
         "Another fractal, as it is after some steps: the name of its file, or what that says.";
 ];
@@ -116,7 +118,8 @@ const WAYS: [Way; COUNT] = [
     way(&[NAMES[9]], &others::<OTHERS>(9)),
     way(&[NAMES[10]], &others::<OTHERS>(10)),
     way(&[NAMES[11]], &others::<OTHERS>(11)),
-    way(&[NAMES[12]], &others::<{ COUNT - 1 }>(12)),
+    way(&[NAMES[12]], &others::<OTHERS>(12)),
+    way(&[NAMES[13]], &others::<{ COUNT - 1 }>(13)),
 ];
 
 /// Number of keys that exclude each other, but for `fractal` and those that accompany it.

@@ -1,10 +1,10 @@
 //! Reading of sets in space: solids.
 
-use crate::document::ifs::{SolidDocument, TurnDocument};
+use crate::document::ifs::{MeshDocument, SolidDocument, TurnDocument};
 use crate::document::mapping::{FromNode, mapping};
-use crate::document::node::Node;
+use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
-use crate::document::shape::Form;
+use crate::document::shape::{Form, Shape, keys};
 use crate::document::{WrittenNumber, WrittenPoint};
 
 use super::space::{TURN, read_factors, read_solid, read_turns};
@@ -44,6 +44,19 @@ mapping! {
     to: Option<WrittenPoint> = Form::Place, "The opposite corner; [1, 1, 1] if left out.";
 }
 
+pub(super) const MESH: Shape = Shape {
+    what: "a mesh",
+    keys: &[&keys![
+        needed points: Form::List(&Form::Place, 3, None), "The points."
+            => "a mesh needs `points`";
+        needed faces: Form::List(&Form::List(&Form::Whole(0, None), 3, None), 1, None),
+            "The faces: lists of the numbers of their points, from 0, in order."
+            => "a mesh needs `faces`";
+    ]],
+    ways: &[],
+    hint: "mesh: shape.obj, or mesh: {points: [[x, y, z], ...], faces: [[0, 1, 2], ...]}",
+};
+
 impl FromNode for [WrittenNumber; 3] {
     fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
         read_factors(reader, node, "half axes", "axes: [3, 1, 2]")
@@ -56,6 +69,32 @@ impl FromNode for Vec<TurnDocument> {
     }
 }
 
+/// Reads a mesh, whose file has been inlined in place of its name.
+fn read_mesh(reader: &mut Reader, node: &Node) -> Option<MeshDocument> {
+    if let Value::Text(_) = &node.value {
+        // Mistakes in the file have been reported.
+        return None;
+    }
+    let fields = reader.fields(node, &MESH)?;
+    let [points, faces] = ["points", "faces"].map(|key| fields.take(key));
+    let points = reader.filled(points?, "a list of points", "point", MESH.hint);
+    let faces = reader.filled(faces?, "a list of faces", "face", MESH.hint);
+    let points = points.iter().map(|point| reader.point(point)).collect();
+    let mut read = Vec::new();
+    for node in faces {
+        let corners = reader.list(node, "a list of numbers of points", MESH.hint);
+        if corners.len() < 3 && matches!(node.value, Value::Sequence(_)) {
+            let message = format!("a face has three corners or more, not {}", corners.len());
+            reader.error_with_hint(&node.place, message, MESH.hint);
+        }
+        read.push(corners.iter().map(|corner| reader.number(corner)).collect());
+    }
+    Some(MeshDocument {
+        points,
+        faces: read,
+    })
+}
+
 /// Reads a set that is the value of a key.
 pub(super) fn read_solid_set(reader: &mut Reader, key: &str, node: &Node) -> Option<SolidDocument> {
     Some(match key {
@@ -63,6 +102,7 @@ pub(super) fn read_solid_set(reader: &mut Reader, key: &str, node: &Node) -> Opt
         "ellipsoid" => SolidDocument::Ellipsoid(EllipsoidDocument::from_node(reader, node)?),
         "cylinder" => SolidDocument::Cylinder(ShaftDocument::from_node(reader, node)?),
         "cone" => SolidDocument::Cone(ShaftDocument::from_node(reader, node)?),
+        "mesh" => SolidDocument::Mesh(read_mesh(reader, node)?),
         "box" => SolidDocument::Cuboid(CuboidDocument::from_node(reader, node)?),
         _ => SolidDocument::Hull(read_solid(reader, node)?),
     })

@@ -1,0 +1,171 @@
+//! Polygons in space as convex pieces.
+
+use glam::{DVec2, DVec3};
+
+use super::{Bounds, Outline, Solid};
+
+/// Largest distance of a polygon's points from a plane, relative to its size.
+const FLAT: f64 = 1e-9;
+
+/// Relative difference of areas that are equal.
+const EQUAL: f64 = 1e-7;
+
+/// Largest number of points of a polygon that is not convex.
+pub const MAX_POINTS: usize = 2000;
+
+/// Reason why points are not the corners of a polygon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PolygonError {
+    /// All points lie on a line.
+    #[error("the polygon has no extent")]
+    NoExtent,
+    /// A point, by number from 0, lies beside the plane of the others.
+    #[error("the points of this polygon do not lie in a plane")]
+    NotFlat(usize),
+    /// Sides cross, or there are more than [`MAX_POINTS`] points of a polygon that is not convex.
+    #[error("the sides of this polygon cross")]
+    Crosses,
+}
+
+/// Returns the polygon with some corners, in order, as one convex solid, or as triangles if it is not convex.
+///
+/// # Errors
+///
+/// If the points do not lie in a plane, to within 1e-9 of their extent, or are not the corners of a simple polygon.
+pub fn polygon(points: &[DVec3]) -> Result<Vec<Solid>, PolygonError> {
+    let Some(first) = points.first().copied() else {
+        return Err(PolygonError::NoExtent);
+    };
+    let mut bounds = Bounds::EMPTY;
+    points.iter().for_each(|point| bounds.add(*point));
+    let size = bounds.size().max_element();
+    let near: Vec<DVec3> = points.iter().map(|it| (*it - first) / size).collect();
+    // Newell's normal: the sum of those of the triangles at the first point.
+    let normal: DVec3 = near.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
+    let area = normal.length() / 2.0;
+    let hull = Solid::hull(points);
+    let whole = hull.signed_area() / 2.0 / (size * size);
+    let unit = normal
+        .try_normalize()
+        .filter(|_| area > 1e-12 && whole > 0.0);
+    let Some(unit) = unit else {
+        return Err(PolygonError::NoExtent);
+    };
+    let beside = |point: &DVec3| point.dot(unit).abs() > FLAT;
+    if let Some(number) = near.iter().position(beside) {
+        return Err(PolygonError::NotFlat(number));
+    }
+    // Of simple polygons, only a convex one is as large as its hull; the surface of that has two sides.
+    if hull.corners().len() <= points.len() && (whole - area).abs() <= EQUAL * area {
+        return Ok(vec![hull]);
+    }
+    if points.len() > MAX_POINTS {
+        return Err(PolygonError::Crosses);
+    }
+    let right = unit.any_orthonormal_vector();
+    let up = unit.cross(right);
+    let flat: Vec<DVec2> = { near.iter() }
+        .map(|point| DVec2::new(point.dot(right), point.dot(up)))
+        .collect();
+    let ears = ears(&flat).ok_or(PolygonError::Crosses)?;
+    let doubled = ears.iter().map(|ear| turn(ear.map(|corner| flat[corner])));
+    if (doubled.sum::<f64>() / 2.0 - area).abs() > EQUAL * area {
+        return Err(PolygonError::Crosses);
+    }
+    let triangle = |ear: &[usize; 3]| Solid::hull(&ear.map(|corner| points[corner]));
+    Ok(ears.iter().map(triangle).collect())
+}
+
+/// Returns twice the signed area of a triangle.
+fn turn([a, b, c]: [DVec2; 3]) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Cuts a polygon, whose corners run counter-clockwise, into triangles by its ears (Meisters 1975). `None` if there is
+/// none, as where sides cross.
+fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    const FLAT: f64 = 1e-14;
+    let mut rest: Vec<usize> = (0..points.len()).collect();
+    let mut ears = Vec::new();
+    while rest.len() > 2 {
+        let count = rest.len();
+        let around = |at: usize| {
+            [
+                rest[(at + count - 1) % count],
+                rest[at],
+                rest[(at + 1) % count],
+            ]
+        };
+        let is_ear = |at: usize| {
+            let ear = around(at);
+            let corners = ear.map(|corner| points[corner]);
+            let [a, b, c] = corners;
+            if turn(corners).abs() <= FLAT {
+                // A corner on a straight line, or a spike.
+                return true;
+            }
+            let holds = |point: DVec2| {
+                [[a, b], [b, c], [c, a]]
+                    .iter()
+                    .all(|[from, to]| turn([*from, *to, point]) >= -FLAT)
+            };
+            let mut others = rest.iter().map(|&corner| points[corner]);
+            turn(corners) > 0.0 && !others.any(|other| !corners.contains(&other) && holds(other))
+        };
+        let at = (0..count).find(|&at| is_ear(at))?;
+        let ear = around(at);
+        if turn(ear.map(|corner| points[corner])).abs() > FLAT {
+            ears.push(ear);
+        }
+        rest.remove(at);
+    }
+    Some(ears)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_slope(points: &[[f64; 2]]) -> Vec<DVec3> {
+        let place = |[x, y]: &[f64; 2]| DVec3::new(3.0 + x, *y, 2.0 * x - y);
+        points.iter().map(place).collect()
+    }
+
+    fn area(pieces: &[Solid]) -> f64 {
+        pieces.iter().map(|piece| piece.signed_area() / 2.0).sum()
+    }
+
+    #[test]
+    fn polygons_become_convex_pieces() {
+        let slope = 6f64.sqrt();
+        let square = on_slope(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 2.0], [0.0, 2.0]]);
+        let pieces = polygon(&square).unwrap();
+        assert_eq!(pieces.len(), 1);
+        assert!((area(&pieces) - 4.0 * slope).abs() < 1e-9);
+        let mut arrow = on_slope(&[[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]);
+        for _ in 0..2 {
+            let pieces = polygon(&arrow).unwrap();
+            assert_eq!(pieces.len(), 2);
+            assert!((area(&pieces) - slope).abs() < 1e-9);
+            arrow.reverse();
+        }
+        let comb: Vec<[f64; 2]> = (0..40)
+            .map(|at| [f64::from(at), if at % 2 == 0 { 9.0 } else { 1.0 }])
+            .chain([[40.0, 0.0], [-1.0, 0.0]])
+            .collect();
+        let pieces = polygon(&on_slope(&comb)).unwrap();
+        assert_eq!(pieces.len(), 40);
+    }
+
+    #[test]
+    fn what_is_no_polygon_is_refused() {
+        let crossing = on_slope(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]]);
+        assert_eq!(polygon(&crossing), Err(PolygonError::Crosses));
+        let line = on_slope(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]);
+        assert_eq!(polygon(&line), Err(PolygonError::NoExtent));
+        let mut bent = on_slope(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        bent[3].z += 0.1;
+        assert!(matches!(polygon(&bent), Err(PolygonError::NotFlat(_))));
+    }
+}
