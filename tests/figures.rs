@@ -126,8 +126,10 @@ fn every_structure_of_the_library_can_be_read() {
         let document = document(&name);
         let (size, paths) = svg::read(&svg_of(&document));
         assert_can_be_read(&name, size, &paths);
-        let Model::Instancing(structure) = document.resolve(&[]).unwrap().0 else {
-            panic!("{name} is a structure");
+        let structure = match document.resolve(&[]).unwrap().0 {
+            Model::Instancing(structure) => structure,
+            Model::InstancingInSpace(_) => continue,
+            _ => panic!("{name} is a structure"),
         };
         let labels: Vec<_> = labels(&paths)
             .into_iter()
@@ -354,9 +356,9 @@ fn systems_in_space_show_their_maps_as_seen() {
 }
 
 #[test]
-fn every_system_in_space_of_the_library_has_a_figure() {
+fn every_set_in_space_of_the_library_has_a_figure() {
     let mut drawn = 0;
-    for name in names(Shelf::IFS) {
+    for name in names(Shelf::IFS).chain(names(Shelf::INSTANCING)) {
         let document = document(&name);
         if document.resolve(&[]).unwrap().0.is_in_space() {
             let (size, paths) = svg::read(&svg_of(&document));
@@ -367,5 +369,31 @@ fn every_system_in_space_of_the_library_has_a_figure() {
             drawn += 1;
         }
     }
-    assert!(drawn >= 11);
+    assert!(drawn >= 13);
+}
+
+/// From the front: a cone is a triangle, a ball a circle, and a box a square with its edges.
+#[test]
+fn structures_in_space_show_their_instances_as_seen() {
+    let text = "{kind: instancing, space: 3, objects: {pair: [cone, {object: sphere, \
+                translate: [2, 0, 0]}]}, scene: [pair, {box: {to: [1, 2, 1]}, translate: [4, 0, 0]}]}";
+    let document = document_of(text);
+    let model = document.resolve(&[]).unwrap().0;
+    let camera = Camera::default().from([0.0, 0.0]);
+    let options = RuleFigureOptions::default().camera(camera);
+    let mut bytes = Vec::new();
+    rule::write(&model, &document, None, &options, &mut bytes).unwrap();
+    let (_, paths) = svg::read(&String::from_utf8(bytes).unwrap());
+    let labels = labels(&paths);
+    let labels: Vec<_> = labels.iter().filter_map(|it| it.label.as_deref()).collect();
+    for label in ["scene", "object", "pair"] {
+        assert!(labels.contains(&label), "{label}: {labels:?}");
+    }
+    let count = |lines: usize| {
+        let shapes = paths.iter().filter(|path| path.label.is_none());
+        shapes.filter(|path| path.lines.len() == lines).count()
+    };
+    assert_eq!((count(3), count(48)), (1, 1));
+    // The square of the box, and that of the object's box; each has a front face of four edges.
+    assert_eq!(count(4), 4);
 }

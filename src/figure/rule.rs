@@ -96,7 +96,11 @@ pub fn write(
             let view = options.camera.rotation().map_err(SpaceError::from)?;
             space::page(system, view, title)
         }
-        (Model::Instancing(structure), _) => structure::page(structure, title),
+        (Model::Instancing(structure), _) => structure::page(structure, (), title),
+        (Model::InstancingInSpace(structure), _) => {
+            let view = options.camera.rotation().map_err(SpaceError::from)?;
+            structure::page(structure, view, title)
+        }
         _ => return Err(RenderError::NoFigure(model.kind())),
     };
     Figure::write(page, options, out)

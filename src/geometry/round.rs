@@ -34,6 +34,19 @@ impl Round {
         }
     }
 
+    /// Returns a point at which the [support function](Self::support) is attained.
+    #[must_use]
+    pub fn farthest(self, direction: DVec3) -> DVec3 {
+        let around = DVec3::new(direction.x, 0.0, direction.z);
+        let rim = || around.normalize_or_zero();
+        match self {
+            Self::Ball => direction.normalize_or(DVec3::Y),
+            Self::Cylinder if direction.y > 0.0 => rim() + DVec3::Y,
+            Self::Cone if direction.y > around.length() => DVec3::Y,
+            Self::Cylinder | Self::Cone => rim(),
+        }
+    }
+
     /// Returns the numbers a, b and c of the quadratic surface x² + z² + a y² + 2 b y + c = 0. A point with a
     /// value of at most 0 that lies between the [caps](Self::caps) belongs to the primitive.
     #[must_use]
@@ -157,6 +170,9 @@ mod tests {
                     }
                 }
                 let support = solid.support(axis);
+                let inside = map.matrix3.transpose() * axis;
+                let farthest = map.transform_point3(round.farthest(inside));
+                assert!((farthest.dot(axis) - support).abs() < 1e-12, "{round:?}");
                 assert!(
                     support >= most - 1e-12 && support < most + 1e-3,
                     "{round:?}"

@@ -170,7 +170,7 @@ impl AffineMap for DAffine2 {
 
 /// Returns the outline of a shape, the first of a union; for a point, the shortest possible line, which
 /// is stroked as a dot.
-pub(crate) fn outline(shape: &Shape) -> BaseElement {
+fn outline(shape: &Shape) -> BaseElement {
     match shape {
         Shape::Outline(outline) => outline.clone(),
         Shape::Union(outlines) => outlines[0].clone(),

@@ -42,7 +42,6 @@ mod shrinking;
 mod system;
 mod walk;
 
-pub(crate) use affine_map::outline;
 pub use affine_map::{AffineMap, OutlineOf, PointOf};
 pub use contraction::{Contraction, Verdict};
 pub use error::{IfsError, WeightOwner};

@@ -6,8 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::expression::degrees;
 use crate::geometry::{
-    Bounds, DAffine2, DAffine3, DMat3, DVec2, DVec3, Frame3, Outline as _, Solid,
+    Bounds, DAffine2, DAffine3, DMat3, DVec2, DVec3, Frame3, Outline as _, Solid, convex_hull,
 };
 use crate::graph::Graph;
 use crate::ifs::{Ifs, System};
@@ -149,6 +150,49 @@ impl<'a> Plan<'a> {
         }
         block(size, items)
     }
+}
+
+/// Returns the outline of the image of a solid under a map to coordinates of the viewer, the edges within it that
+/// are seen, and the z of its nearest point.
+pub(super) fn seen(solid: &Solid, map: &DAffine3) -> (Outline, Vec<Outline>, f64) {
+    /// Number of corners of round outlines.
+    const CORNERS: u32 = 48;
+    let near = solid.bounds(map).max().z;
+    let (around, edges) = match solid.primitive() {
+        Some(primitive) => {
+            let place = *map * *solid.place();
+            let directions = (0..CORNERS).map(|corner| {
+                let angle = 360.0 * f64::from(corner) / f64::from(CORNERS);
+                DVec3::new(degrees::cos(angle), degrees::sin(angle), 0.0)
+            });
+            let farthest = directions.map(|direction| {
+                let inside = place.matrix3.transpose() * direction;
+                place.transform_point3(primitive.farthest(inside))
+            });
+            (farthest.map(DVec3::truncate).collect(), Vec::new())
+        }
+        None => {
+            let wires = Wires::of(solid);
+            let seen = wires.seen(map);
+            let is_seen = |faces: &[usize]| faces.iter().any(|face| seen.fronts[*face]);
+            let edges = wires.edges.iter().filter(|(_, faces)| is_seen(faces));
+            let edges = edges.map(|([from, to], _)| {
+                let [from, to] = [from, to].map(|end| seen.corners[*end].truncate());
+                Outline::line(from, to)
+            });
+            let corners = seen.corners.iter().map(|corner| corner.truncate());
+            (corners.collect::<Vec<_>>(), edges.collect())
+        }
+    };
+    let around = convex_hull(around, 0.0);
+    let start = around.first().copied().unwrap_or_default();
+    let others = around.iter().skip(1).copied().chain([start]);
+    let outline = Outline {
+        start,
+        pieces: others.map(Piece::Line).collect(),
+        closed: true,
+    };
+    (outline, edges, near)
 }
 
 /// Returns a block of the items that draw something.

@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::extent::Bounded;
+use crate::geometry::{BaseElement, Bounds, DAffine2, DAffine3, DMat3, DVec2, Solid};
 use crate::graph::Graph;
-use crate::ifs::{AffineMap, outline as base_element};
+use crate::ifs::{AffineMap, OutlineOf, PointOf};
 use crate::instancing::{Instancing, Master, ObjectInstance};
 use crate::render::Paint;
 
@@ -15,6 +16,7 @@ use super::ink;
 use super::lines::{flattened, outline};
 use super::onto_panel;
 use super::page::{SMALL, WORDS, lay_out, plural};
+use super::space;
 
 /// Largest side of the scene's panel, in pixels.
 const SCENE: f64 = 300.0;
@@ -41,12 +43,13 @@ const MAX_CHARACTERS: usize = 16;
 const FARTHEST: f64 = 1e100;
 
 /// Lays out an instancing structure under a title.
-pub(super) fn page(structure: &Instancing, title: &str) -> Block {
+pub(super) fn page<M: Shown>(structure: &Instancing<M>, view: M::View, title: &str) -> Block {
     let font = Font::new();
     let shown = shown(structure);
     let plan = Plan {
         font: &font,
         structure,
+        view,
         boxes: boxes(structure, &shown),
     };
     let objects = shown.iter().map(|&number| {
@@ -78,7 +81,7 @@ pub(super) fn page(structure: &Instancing, title: &str) -> Block {
 }
 
 /// Returns the indices of the objects shown; of objects that differ only by their level, the first few.
-fn shown(structure: &Instancing) -> Vec<usize> {
+fn shown<M: AffineMap>(structure: &Instancing<M>) -> Vec<usize> {
     let mut levels: BTreeMap<&str, usize> = BTreeMap::new();
     let mut shown = Vec::new();
     for (number, object) in structure.objects().iter().enumerate() {
@@ -93,7 +96,10 @@ fn shown(structure: &Instancing) -> Vec<usize> {
 }
 
 /// Returns the bounding boxes of all objects that are instanced in a panel.
-fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
+fn boxes<M: Shown>(
+    structure: &Instancing<M>,
+    shown: &[usize],
+) -> BTreeMap<usize, Bounds<PointOf<M>>> {
     let panels = shown
         .iter()
         .map(|&number| &structure.objects()[number].instances);
@@ -115,23 +121,54 @@ fn boxes(structure: &Instancing, shown: &[usize]) -> BTreeMap<usize, Bounds> {
         .collect()
 }
 
-struct Plan<'a> {
+/// Maps of structures that have figures.
+pub(super) trait Shown: AffineMap<Frame: Bounded> {
+    /// Direction of view.
+    type View: Copy;
+
+    /// Returns the outline of the image of a shape, the edges within it, and how near it is to the viewer.
+    fn seen(shape: &OutlineOf<Self>, map: &Self, view: Self::View) -> (Outline, Vec<Outline>, f64);
+}
+
+impl Shown for DAffine2 {
+    type View = ();
+
+    fn seen(shape: &BaseElement, map: &Self, (): ()) -> (Outline, Vec<Outline>, f64) {
+        (outline(shape).transformed(map), Vec::new(), 0.0)
+    }
+}
+
+impl Shown for DAffine3 {
+    /// Rotation to coordinates of the viewer.
+    type View = DMat3;
+
+    fn seen(shape: &Solid, map: &Self, view: DMat3) -> (Outline, Vec<Outline>, f64) {
+        space::seen(shape, &(Self::from_mat3(view) * *map))
+    }
+}
+
+struct Plan<'a, M: Shown> {
     font: &'a Font,
-    structure: &'a Instancing,
-    boxes: BTreeMap<usize, Bounds>,
+    structure: &'a Instancing<M>,
+    view: M::View,
+    boxes: BTreeMap<usize, Bounds<PointOf<M>>>,
 }
 
 /// A drawable instance, in the coordinates of the object that contains it.
-struct Drawn<'a> {
+struct Drawn<'a, M: Shown> {
     outline: Outline,
-    instance: &'a ObjectInstance,
+    edges: Vec<Outline>,
+    /// Place in the order from far to near.
+    near: f64,
+    instance: &'a ObjectInstance<M>,
 }
 
-impl<'a> Plan<'a> {
+impl<'a, M: Shown> Plan<'a, M> {
     /// Returns the panel of a list of instances, with sides of at most `side` pixels.
-    fn panel(&self, instances: &'a [ObjectInstance], side: f64) -> Block {
+    fn panel(&self, instances: &'a [ObjectInstance<M>], side: f64) -> Block {
         let drawn = instances.iter().take(MAX_INSTANCES);
-        let drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
+        let mut drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
+        drawn.sort_by(|a, b| a.near.total_cmp(&b.near));
         let bounds = drawn.iter().fold(Bounds::EMPTY, |mut bounds, drawn| {
             bounds.add_all(&bounds_of(&drawn.outline));
             bounds
@@ -144,9 +181,18 @@ impl<'a> Plan<'a> {
             block.size = size;
             for drawn in &drawn {
                 let line = drawn.outline.transformed(&map);
-                block
-                    .items
-                    .push(Item::Path(vec![line], drawn.paint(), None));
+                let paint = drawn.paint();
+                block.items.push(Item::Path(vec![line], paint, None));
+                let edges: Vec<_> = { drawn.edges.iter() }
+                    .map(|it| it.transformed(&map))
+                    .collect();
+                if !edges.is_empty() {
+                    let paint = Paint {
+                        fill: None,
+                        ..paint
+                    };
+                    block.items.push(Item::Path(edges, paint, None));
+                }
             }
             unnamed = self.put_names(&mut block, &drawn, &map);
         }
@@ -164,23 +210,28 @@ impl<'a> Plan<'a> {
         )
     }
 
-    fn drawn(&self, instance: &'a ObjectInstance) -> Option<Drawn<'a>> {
+    fn drawn(&self, instance: &'a ObjectInstance<M>) -> Option<Drawn<'a, M>> {
         let map = self.structure.map_of(instance);
         let own = match &instance.master {
-            Master::Object(number) => outline(&DAffine2::filling(Some(*self.boxes.get(number)?))),
-            Master::Shape(shape) => outline(&base_element(shape)),
+            Master::Object(number) => M::filling(Some(*self.boxes.get(number)?)),
+            Master::Shape(shape) => M::outlines(shape).swap_remove(0),
         };
-        let outline = own.transformed(&map);
+        let (outline, edges, near) = M::seen(&own, &map, self.view);
         let bounds = bounds_of(&outline);
         let corners = [bounds.min(), bounds.max()].map(DVec2::abs);
         let can_be_drawn =
             bounds.is_finite() && corners.iter().all(|it| it.max_element() < FARTHEST);
-        can_be_drawn.then_some(Drawn { outline, instance })
+        can_be_drawn.then_some(Drawn {
+            outline,
+            edges,
+            near,
+            instance,
+        })
     }
 
     /// Labels instances with the names of their objects where a label covers nothing; returns the names
     /// without room.
-    fn put_names(&self, block: &mut Block, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<String> {
+    fn put_names(&self, block: &mut Block, drawn: &[Drawn<'_, M>], map: &DAffine2) -> Vec<String> {
         let objects = || drawn.iter().filter(|drawn| !drawn.is_shape());
         let lines: Vec<_> = drawn
             .iter()
@@ -226,7 +277,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-impl Drawn<'_> {
+impl<M: Shown> Drawn<'_, M> {
     fn is_shape(&self) -> bool {
         matches!(self.instance.master, Master::Shape(_))
     }
