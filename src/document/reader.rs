@@ -19,6 +19,8 @@ pub(super) struct Reader {
     pub(super) names_are_missing: bool,
     /// Whether points have three coordinates.
     pub(super) is_in_space: bool,
+    /// Whether files of the kind that is read may lie in space.
+    pub(super) may_lie_in_space: bool,
     /// Places of the diagnostics that precede reading, such as repaired mistakes of syntax.
     mended: HashSet<(*const Source, usize, usize)>,
     /// Places of the errors that precede reading.
@@ -291,6 +293,9 @@ impl Reader {
             let message = format!("a point has {few} coordinates, this one has {count} number{s}");
             let hint = match count {
                 _ if self.is_in_space => "a point in space is written [x, y, z]",
+                3 if self.may_lie_in_space => {
+                    "the file lies in the plane, where a point is written [x, y]: `space: 3` puts it into space"
+                }
                 3 => {
                     "the file lies in the plane: a point is written [x, y], decimals with a point: 0.5"
                 }

@@ -169,7 +169,7 @@ impl OfKind for IfsDocument {
             edges: edges
                 .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
         };
-        reader.is_in_space = false;
+        (reader.is_in_space, reader.may_lie_in_space) = (false, false);
         document
     }
 }
@@ -313,6 +313,12 @@ pub(super) fn read_matrix(reader: &mut Reader, node: &Node) -> Option<[WrittenPo
     }
     if matches!(node.value, Value::Sequence(_)) {
         let message = format!("a matrix has two rows, this one has {}", rows.len());
+        let hint = match rows.len() {
+            3 => {
+                "the file lies in the plane: with `space: 3`, a matrix has three rows of three numbers"
+            }
+            _ => hint,
+        };
         reader.error_with_hint(&node.place, message, hint);
     }
     None

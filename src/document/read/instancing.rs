@@ -121,7 +121,7 @@ impl OfKind for InstancingDocument {
             scene: scene.and_then(|node| read_union(reader, node)),
             initial: read_initial(reader, fields),
         };
-        reader.is_in_space = false;
+        (reader.is_in_space, reader.may_lie_in_space) = (false, false);
         document
     }
 }

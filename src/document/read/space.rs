@@ -14,21 +14,28 @@ pub(super) const SPACE: Member = key(
     "3 for a file in space, whose points have three coordinates; 2, the plane, if left out.",
 );
 
-/// Reads whether a file lies in space.
+/// Reads whether a file lies in space. Reports a window, which only files of the plane have.
 pub(super) fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
+    reader.may_lie_in_space = true;
     let Some(node) = fields.take("space") else {
         return false;
     };
     match node.value {
-        Value::Number(2.0) => false,
-        Value::Number(3.0) => true,
+        Value::Number(2.0) => return false,
+        Value::Number(3.0) => {}
         _ => {
             let message = format!("there is no space of dimension {}", node.place.text());
             let hint = "space: 3, or space: 2 for the plane";
             reader.error_with_hint(&node.place, message, hint);
-            true
         }
     }
+    if let Some(Value::Mapping(view)) = fields.take("view").map(|view| &view.value)
+        && let Some((key, _)) = view.iter().find(|(key, _)| key.name == "window")
+    {
+        let hint = "in space, a picture has a camera: `kfrac grow --from 30,25 --look-at 0,0,0`";
+        reader.error_with_hint(&key.place, "a window lies in the plane", hint);
+    }
+    true
 }
 
 /// Keys of a turn of space.
