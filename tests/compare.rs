@@ -388,3 +388,80 @@ fn ferns_are_covered_by_copies() {
         assert!(points.is_ok(), "{name}: {points:?}");
     }
 }
+
+#[test]
+fn sets_in_space_are_as_far_as_their_shapes() {
+    let graph = |text: &str| {
+        let text = format!("kind: ifs\nspace: 3\n{text}");
+        let (model, _) = document_of(&text).resolve(&[]).unwrap();
+        model.compile_in_space(false).unwrap()
+    };
+    let distance = |a: &str, b: &str, set: Subset<'_>, tolerance: f64| {
+        let graphs = [graph(a), graph(b)];
+        let [a, b] = graphs
+            .each_ref()
+            .map(|graph| Subject::new(graph, set).unwrap());
+        let precision = Precision {
+            tolerance,
+            ..Precision::default()
+        };
+        let found = hausdorff([&a, &b], &precision).unwrap();
+        assert!(found.is_reached(), "{found:?}");
+        found
+    };
+    let cube = "vertices: {solid: cube, shrink: 1/2}";
+    let moved = "vertices: {points: [[-1, -1, -1], [2, -1, -1], [-1, 1, -1], [-1, -1, 1], [2, 1, -1], \
+                 [2, -1, 1], [-1, 1, 1], [2, 1, 1]], shrink: 1/2}";
+    let found = distance(cube, moved, Subset::Limit, 0.05);
+    assert_is(&found, 1.0, 0.16);
+    assert!(found.there < found.error);
+    // The corners of the cube and the ball that it holds.
+    let ball = "maps: [{scale: 1/2}]\ninitial: {sphere: {radius: 1}}";
+    let start = Subset::Approximant(Growth::steps(0));
+    assert_is(&distance(cube, ball, start, 0.05), 3f64.sqrt() - 1.0, 0.11);
+    // The tetrahedron and its corners alone, of which the middle of an edge is farthest.
+    let corners = "vertices: {solid: tetrahedron, shrink: 0}";
+    let gasket = "vertices: {solid: tetrahedron, shrink: 1/2}";
+    let found = distance(gasket, corners, Subset::Limit, 0.02);
+    assert_is(&found, 2f64.sqrt(), 0.045);
+    assert!(found.back < found.error);
+}
+
+#[test]
+fn the_command_compares_sets_in_space() {
+    let output = kfrac(&[
+        "compare",
+        "sierpinski-tetrahedron",
+        "octahedron-flake",
+        "--tolerance",
+        "0.05",
+    ]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success() && said.contains("different"),
+        "{said}"
+    );
+    assert!(
+        said.contains(
+            "box of A    -1.000000 to 1.000000, -1.000000 to 1.000000, -1.000000 to 1.000000"
+        ),
+        "{said}"
+    );
+    for (arguments, message) in [
+        (
+            &["compare", "koch", "menger"][..],
+            "koch lies in the plane, and menger in space",
+        ),
+        (
+            &["compare", "menger", "menger", "-o", "x.png"],
+            "for the plane",
+        ),
+    ] {
+        let output = kfrac(arguments);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(2) && said.contains(message),
+            "{said}"
+        );
+    }
+}

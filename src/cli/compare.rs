@@ -11,10 +11,12 @@ use super::readable;
 use crate::catalogue::Catalogue;
 use crate::document::{Document, Setting};
 use crate::figure::difference::{self, PixelSet};
+use crate::geometry::{Bounds, Frame, Frame2, Homothety};
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::measure::{
-    Distance, NoCover, Precision, Similarity, Subject, Subset, hausdorff, similarity_dimension,
+    Covering, Distance, NoCover, Precision, Similarity, Subject, Subset, hausdorff,
+    similarity_dimension,
 };
 use crate::render::{self, Canvas, Size};
 use crate::style::Style;
@@ -29,7 +31,7 @@ use super::{Failure, format, help, input, length, number, output, picture, steps
 ///
 /// The Hausdorff distance is the largest distance of a point of one set from the other set. It is reported
 /// with a bound of its error; the sets are considered the same if the distance does not exceed that bound.
-/// Closed outlines include their interior. The exit status is 0 in either case.
+/// Closed outlines and solids include their interior. The exit status is 0 in either case.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -121,60 +123,29 @@ struct Dimension {
 }
 
 /// One of the two fractals.
-struct One {
+struct One<F: Frame = Frame2> {
     loaded: Loaded,
-    graph: Graph,
+    graph: Graph<F>,
 }
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let format = format::choose(arguments.format, arguments.output.as_deref())?;
     let both = arguments.load(catalogue)?;
-    let set = match arguments.steps {
-        None => Subset::Limit,
-        Some(steps) => Subset::Approximant(Growth::steps(steps)),
-    };
-    let subject = |which: usize| {
-        let One { loaded, graph } = &both[which];
-        Subject::new(graph, set).map_err(|error| explain(error, loaded))
-    };
-    let subjects = [subject(0)?, subject(1)?];
-    let precision = Precision {
-        tolerance: arguments.tolerance,
-        most_points: arguments.max_points,
-    };
-    let distance = hausdorff([&subjects[0], &subjects[1]], &precision)
-        .map_err(|(which, error)| explain(error, &both[which].loaded))?;
-    let side = |which: usize| {
-        let One { loaded, graph } = &both[which];
-        let Similarity { value, note } = similarity_dimension(graph);
-        Side {
-            name: &loaded.name,
-            kind: loaded.model.kind().name(),
-            bounds: corners(&graph.place().bounds(subjects[which].bounds())),
-            dimension: Dimension {
-                similarity: value,
-                note,
-            },
+    match both.each_ref().map(|loaded| loaded.model.is_in_space()) {
+        [true, true] => return arguments.compare_in_space(both),
+        [false, false] => {}
+        [is_first, _] => {
+            let [plane, space] = if is_first { [1, 0] } else { [0, 1] };
+            let (plane, space) = (&both[plane].name, &both[space].name);
+            let message = format!("{plane} lies in the plane, and {space} in space");
+            return Err(Failure::Usage(message));
         }
-    };
-    let unit = both[0].graph.place().ratio();
-    let distance = Distance {
-        there: distance.there * unit,
-        back: distance.back * unit,
-        error: distance.error * unit,
-        ..distance
-    };
-    let comparison = Comparison {
-        a: side(0),
-        b: side(1),
-        steps: arguments.steps,
-        distance: distance.value(),
-        error: distance.error,
-        reached: distance.is_reached(),
-        a_to_b: distance.there,
-        b_to_a: distance.back,
-        same: distance.may_be_same(),
-    };
+    }
+    let both = arguments.compile(both)?;
+    let subjects = arguments.subjects(&both)?;
+    let place = both[0].graph.place();
+    let in_units = |bounds: &Bounds| corners(&place.bounds(bounds));
+    let (comparison, distance) = arguments.compare(&both, &subjects, place.ratio(), in_units)?;
     // The picture is written first, so that a failure leaves no result that looks complete.
     if let Some(path) = &arguments.output {
         arguments.draw(path, format, &both, &subjects)?;
@@ -185,8 +156,90 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    fn compare_in_space(&self, both: [Loaded; 2]) -> Result<(), Failure> {
+        if self.output.is_some() {
+            let message = "a picture of the difference is for the plane";
+            return Err(Failure::Usage(message.into()));
+        }
+        let compiled = both.map(|loaded| {
+            let graph = loaded.model.compile_in_space(false);
+            graph.map(|graph| One { loaded, graph })
+        });
+        let [Some(a), Some(b)] = compiled else {
+            return Err(anyhow!("one of the two lies in the plane").into());
+        };
+        let both = [a, b];
+        let subjects = self.subjects(&both)?;
+        let (comparison, distance) = self.compare(&both, &subjects, 1.0, corners)?;
+        output::print_as(self.json, &comparison, || described(&comparison, &distance))
+    }
+
+    /// Returns the sets that are compared.
+    fn subjects<'a, F: Covering>(
+        &self,
+        both: &'a [One<F>; 2],
+    ) -> Result<[Subject<'a, F>; 2], Failure> {
+        let set = match self.steps {
+            None => Subset::Limit,
+            Some(steps) => Subset::Approximant(Growth::steps(steps)),
+        };
+        let subject = |which: usize| {
+            let One { loaded, graph } = &both[which];
+            Subject::new(graph, set).map_err(|error| explain(error, loaded))
+        };
+        Ok([subject(0)?, subject(1)?])
+    }
+
+    /// Compares two sets. `unit` is the length of a unit of the graphs in the files' units, and `in_units` converts
+    /// boxes.
+    fn compare<'a, F: Covering>(
+        &self,
+        both: &'a [One<F>; 2],
+        subjects: &[Subject<'_, F>; 2],
+        unit: f64,
+        in_units: impl Fn(&Bounds<F::Point>) -> Corners,
+    ) -> Result<(Comparison<'a>, Distance), Failure> {
+        let precision = Precision {
+            tolerance: self.tolerance,
+            most_points: self.max_points,
+        };
+        let distance = hausdorff([&subjects[0], &subjects[1]], &precision)
+            .map_err(|(which, error)| explain(error, &both[which].loaded))?;
+        let side = |which: usize| {
+            let One { loaded, graph } = &both[which];
+            let Similarity { value, note } = similarity_dimension(graph);
+            Side {
+                name: &loaded.name,
+                kind: loaded.model.kind().name(),
+                bounds: in_units(subjects[which].bounds()),
+                dimension: Dimension {
+                    similarity: value,
+                    note,
+                },
+            }
+        };
+        let distance = Distance {
+            there: distance.there * unit,
+            back: distance.back * unit,
+            error: distance.error * unit,
+            ..distance
+        };
+        let comparison = Comparison {
+            a: side(0),
+            b: side(1),
+            steps: self.steps,
+            distance: distance.value(),
+            error: distance.error,
+            reached: distance.is_reached(),
+            a_to_b: distance.there,
+            b_to_a: distance.back,
+            same: distance.may_be_same(),
+        };
+        Ok((comparison, distance))
+    }
+
     /// Reads both fractals and applies every setting to whichever has the parameter.
-    fn load(&self, catalogue: &Catalogue) -> Result<[One; 2], Failure> {
+    fn load(&self, catalogue: &Catalogue) -> Result<[Loaded; 2], Failure> {
         let paths = [&self.a, &self.b];
         if paths.iter().all(|path| *path == Path::new("-")) {
             let message = "only one of the two can come from standard input";
@@ -205,7 +258,7 @@ impl Arguments {
         let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
         let settings = settings?.concat();
         let lost: Vec<_> = settings.iter().filter(nobody).cloned().collect();
-        let mut both: Vec<One> = Vec::new();
+        let mut both = Vec::new();
         for (path, document) in paths.into_iter().zip(documents) {
             let own = settings.iter().filter(|setting| has(&document, setting));
             let arguments = RuleArguments {
@@ -215,23 +268,27 @@ impl Arguments {
             };
             // A parameter that neither has is reported for the first.
             let settings = own.chain(&lost).cloned().collect();
-            let loaded = arguments.resolve(document, settings, self.quiet || self.json)?;
-            // Both are compiled in coordinates that suit the first.
-            let loaded = match both.first() {
-                Some(One { graph, .. }) => loaded.within(*graph.place()),
-                None => {
-                    let place = loaded.place()?;
-                    loaded.within(place)
-                }
-            };
-            let graph = match self.steps {
-                Some(steps) => loaded.compile(steps)?,
-                None => loaded.compile_limit(STEPS)?,
-            };
-            both.push(One { loaded, graph });
+            both.push(arguments.resolve(document, settings, self.quiet || self.json)?);
         }
         both.try_into()
             .map_err(|_| anyhow!("two fractals are compared").into())
+    }
+
+    /// Compiles both fractals, in coordinates that suit the first.
+    fn compile(&self, [a, b]: [Loaded; 2]) -> Result<[One; 2], Failure> {
+        let graph = |loaded: &Loaded| match self.steps {
+            Some(steps) => loaded.compile(steps),
+            None => loaded.compile_limit(STEPS),
+        };
+        let one = |loaded: Loaded, place: Homothety| {
+            let loaded = loaded.within(place);
+            let graph = graph(&loaded)?;
+            Ok::<_, Failure>(One { loaded, graph })
+        };
+        let place = a.place()?;
+        let first = one(a, place)?;
+        let place = *first.graph.place();
+        Ok([first, one(b, place)?])
     }
 
     fn draw(

@@ -11,7 +11,7 @@ use crate::geometry::{Bounds, Frame};
 use crate::graph::{CompileError, Forecast, Graph};
 use crate::grow::{Element, Elements, Growth, WalkError};
 use crate::measure::exact::dimensions_of_graph;
-use crate::measure::{BoxCounting, Grid, LimitSet};
+use crate::measure::{BoxCounting, Grid, LimitSet, Space};
 use crate::model::Model;
 use crate::output_file::{OutputFile, WriteError};
 use crate::parallel::is_cancelled;
@@ -217,13 +217,20 @@ impl Fractal {
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
         self.check_cancelled()?;
-        self.check_plane("dimensions are known in the plane")?;
+        if let Some(graph) = self.model.compile_in_space(false) {
+            return self.dimension_of(&graph);
+        }
         let model = self.model.of_limit();
         let graph = model.compile_normalised(STEPS, self.seed, self.max_elements);
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
-        let exact = dimensions_of_graph(&graph)
-            .dimensions
-            .map(|it| it.hausdorff);
+        self.dimension_of(&graph)
+    }
+
+    fn dimension_of<M: Space, F: Bounded<Map = M>>(
+        &self,
+        graph: &Graph<F>,
+    ) -> Result<Dimension, Error> {
+        let exact = dimensions_of_graph(graph).dimensions.map(|it| it.hausdorff);
         if let Some(exact) = exact
             && let Some(value) = exact.value
         {
@@ -235,7 +242,7 @@ impl Fractal {
         }
         self.check_cancelled()?;
         let none = |reason: String| Error::NoDimension(reason);
-        let set = LimitSet::of(&graph).map_err(|error| none(error.to_string()))?;
+        let set = LimitSet::of(graph).map_err(|error| none(error.to_string()))?;
         let grids = Grid::spread(const { NonZero::new(8).expect("8 is not zero") });
         let counted = BoxCounting::of_limit(&set, None, &grids, self.threads).estimate;
         let estimate = counted.ok_or_else(|| none("too many of its copies overlap".into()))?;

@@ -163,6 +163,9 @@ fn a_set_in_space_is_drawn_and_measured_by_its_own_methods() -> Result<(), Error
     // Without a number of steps and without one in the file, the limit is drawn.
     assert!(named("pylon").detail(2.0).png(64).is_ok());
 
+    let dimension = sponge.dimension()?;
+    assert_eq!(dimension.closed_form.as_deref(), Some("log(20)/log(3)"));
+
     let window = View {
         window: Some([0.0, 0.0, 1.0, 1.0]),
         ..View::default()

@@ -1,11 +1,13 @@
 //! The Hausdorff distance of two sets: both are covered by points, and the points are compared.
 
 mod cover;
+mod covering;
 mod hausdorff;
 mod nearest;
 mod region;
 mod squares;
 
 pub use cover::{NoCover, Subject, Subset};
+pub use covering::Covering;
 pub use hausdorff::{Distance, Precision, hausdorff};
-pub use region::TooMany;
+pub use region::{Covered, Region, TooMany};

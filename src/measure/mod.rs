@@ -49,7 +49,9 @@ mod voxels;
 pub use bits::Bits;
 pub use box_counting::{BoxCounting, Boxes, Window};
 pub use cover::{Grid, Scale};
-pub use distance::{Distance, NoCover, Precision, Subject, Subset, TooMany, hausdorff};
+pub use distance::{
+    Covered, Covering, Distance, NoCover, Precision, Region, Subject, Subset, TooMany, hausdorff,
+};
 pub use grown::{GrownPoints, grown};
 pub use limit::{Cascade, LimitSet};
 pub use mass::{Lacunarity, Masses};

@@ -2,12 +2,12 @@
 //! within the radius of the set.
 
 use crate::extent::{NoLimit, bounding_box};
-use crate::geometry::{Bounds, DAffine2, DVec2, stretch};
+use crate::geometry::{Affine, Bounds, Frame, Frame2, Linear, Point};
 use crate::graph::{Graph, Replacement};
 use crate::grow::{Element, Growth, Visitor, WalkError, walk};
 
-use super::region::{Region, TooMany, radius_of};
-use super::squares::Squares;
+use super::covering::Covering;
+use super::region::{Region, TooMany};
 
 /// Reason why a set is not covered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -36,23 +36,23 @@ pub enum Subset<'a> {
     Approximant(Growth<'a>),
 }
 
-/// A set of points of the plane that a graph defines.
+/// A set of points of the plane or of space that a graph defines.
 ///
 /// Closed outlines include the region that they enclose.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
-    graph: &'a Graph,
+pub struct Subject<'a, F: Frame = Frame2> {
+    graph: &'a Graph<F>,
     set: Subset<'a>,
-    bounds: Bounds,
+    bounds: Bounds<F::Point>,
 }
 
-impl<'a> Subject<'a> {
+impl<'a, F: Covering> Subject<'a, F> {
     /// Creates the set of a graph.
     ///
     /// # Errors
     ///
     /// Returns an error if there is no such set.
-    pub fn new(graph: &'a Graph, set: Subset<'a>) -> Result<Self, NoCover> {
+    pub fn new(graph: &'a Graph<F>, set: Subset<'a>) -> Result<Self, NoCover> {
         let bounds = match &set {
             Subset::Limit => {
                 let limit = graph.limit()?;
@@ -71,7 +71,7 @@ impl<'a> Subject<'a> {
 
     /// Returns a box that holds the set: the smallest one, wherever the graph determines it.
     #[must_use]
-    pub fn bounds(&self) -> &Bounds {
+    pub fn bounds(&self) -> &Bounds<F::Point> {
         &self.bounds
     }
 
@@ -85,7 +85,7 @@ impl<'a> Subject<'a> {
     /// # Errors
     ///
     /// Returns an error if the cover takes more than `most` points.
-    pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<DVec2>, NoCover> {
+    pub fn cover(&self, radius: f64, most: usize) -> Result<Vec<F::Point>, NoCover> {
         let mut points = Vec::new();
         self.visit(radius, most, &mut |point| points.push(point))?;
         Ok(points)
@@ -100,9 +100,10 @@ impl<'a> Subject<'a> {
         &self,
         radius: f64,
         most: usize,
-        visit: &mut dyn FnMut(DVec2),
+        visit: &mut dyn FnMut(F::Point),
     ) -> Result<(), NoCover> {
-        let mut region = Region::new(&self.bounds, radius, most, visit);
+        let covered = F::covered(&self.bounds, radius);
+        let mut region = Region::new(covered, radius, most, visit);
         match &self.set {
             Subset::Limit => cover_limit(self.graph, most, &mut region)?,
             Subset::Approximant(growth) => {
@@ -121,23 +122,23 @@ impl<'a> Subject<'a> {
 }
 
 /// Returns a box around discs that hold the limit set of every instance of the initiator.
-fn discs(graph: &Graph) -> Bounds {
+fn discs<F: Covering>(graph: &Graph<F>) -> Bounds<F::Point> {
     let reaches = reaches(graph);
     let mut bounds = Bounds::EMPTY;
     for instance in &graph.initiator(0).instances {
         let middle = instance.frame.apply(graph.middle());
         let reach = instance.frame.stretch() * reaches[instance.object];
-        bounds.add(middle - reach);
-        bounds.add(middle + reach);
+        bounds.add(middle - F::Point::splat(reach));
+        bounds.add(middle + F::Point::splat(reach));
     }
     bounds
 }
 
 /// Returns, for each object, the radius of a disc about the graph's centre that holds the object's limit set.
-pub(super) fn reaches(graph: &Graph) -> Vec<f64> {
+pub(super) fn reaches<F: Covering>(graph: &Graph<F>) -> Vec<f64> {
     let middle = graph.middle();
     graph.reaches(|object| match object.replacement {
-        Replacement::Kept => radius_of(&graph.base_elements()[object.base_element], middle),
+        Replacement::Kept => F::radius_of(&graph.base_elements()[object.base_element], middle),
         _ => 0.0,
     })
 }
@@ -151,11 +152,15 @@ const FEW: usize = 4096;
 
 /// Covers a limit set by its copies that are as small as the radius, or by squares where copies overlap
 /// heavily.
-fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<(), NoCover> {
+fn cover_limit<F: Covering>(
+    graph: &Graph<F>,
+    most: usize,
+    region: &mut Region<'_, F::Point>,
+) -> Result<(), NoCover> {
     let alive = graph.alive(true);
     let middle = graph.middle();
     let reaches = reaches(graph);
-    let mut open: Vec<(usize, DAffine2)> = Vec::new();
+    let mut open: Vec<(usize, F::Map)> = Vec::new();
     let initiator = graph.initiator(0).instances.iter().rev();
     open.extend(initiator.map(|instance| (instance.object, *instance.frame.map())));
     let (mut looked_at, mut may_be_squares) = (0, true);
@@ -163,19 +168,15 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
         looked_at += 1;
         if may_be_squares && looked_at > FEW + OVERLAPPING * region.visited() {
             may_be_squares = false;
-            // Where squares fail because there are too many of them, copies may suffice.
-            if let Ok(Some(squares)) = Squares::found(graph, region.radius, most) {
-                return Ok(squares.visit(region)?);
+            if F::cover_by_squares(graph, most, region)? {
+                return Ok(());
             }
         }
         if !alive[number] {
             continue;
         }
         let object = &graph.objects()[number];
-        let (middle, reach) = (
-            map.transform_point2(middle),
-            stretch(&map.matrix2) * reaches[number],
-        );
+        let (middle, reach) = (map.apply(middle), map.linear().stretch() * reaches[number]);
         if region.covers(middle, reach) {
             region.work(1)?;
             continue;
@@ -188,30 +189,30 @@ fn cover_limit(graph: &Graph, most: usize, region: &mut Region<'_>) -> Result<()
             Replacement::Fixed(production) => {
                 let children = production.placed_instances();
                 open.extend(
-                    children.map(|(_, instance)| (instance.object, map * instance.frame.map())),
+                    children.map(|(_, instance)| (instance.object, map * *instance.frame.map())),
                 );
                 region.work(1)?;
             }
-            _ => region.add_outline(&graph.base_elements()[object.base_element], &map)?,
+            _ => F::add_outline(region, &graph.base_elements()[object.base_element], &map)?,
         }
     }
     Ok(())
 }
 
-struct Approximant<'a, 'v> {
-    graph: &'a Graph,
-    region: &'a mut Region<'v>,
+struct Approximant<'a, 'v, F: Frame> {
+    graph: &'a Graph<F>,
+    region: &'a mut Region<'v, F::Point>,
 }
 
-impl Visitor for Approximant<'_, '_> {
+impl<F: Covering> Visitor<F> for Approximant<'_, '_, F> {
     type Error = TooMany;
 
-    fn element(&mut self, element: &Element) -> Result<(), TooMany> {
+    fn element(&mut self, element: &Element<F>) -> Result<(), TooMany> {
         let object = &self.graph.objects()[element.object];
         if !object.visible {
             return Ok(());
         }
         let outline = &self.graph.base_elements()[object.base_element];
-        self.region.add_outline(outline, element.frame.map())
+        F::add_outline(self.region, outline, element.frame.map())
     }
 }

@@ -1,8 +1,9 @@
 //! The Hausdorff distance of two sets: the maximum distance of a point of one from the other.
 
-use crate::geometry::DVec2;
+use crate::geometry::Point;
 
 use super::cover::{NoCover, Subject};
+use super::covering::Covering;
 use super::nearest::{Nearest, Open};
 
 /// Precision of a distance, and the effort allowed for it.
@@ -70,7 +71,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Computes the Hausdorff distance of two sets.
 ///
-/// Both sets are covered by discs of one radius ε about points, each of which is no farther than ε from the
+/// Both sets are covered by discs, or balls in space, of one radius ε about points, each of which is no farther than ε from the
 /// set. The distance of the points, which is computed exactly, is therefore that of the sets to within 2 ε.
 /// Covers are refined until 2 ε is as small as asked for, or until the next one takes too many points.
 ///
@@ -78,8 +79,8 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// Returns an error if a set cannot be covered even by large discs: the number of the set, 0 or 1, and the
 /// reason.
-pub fn hausdorff(
-    sets: [&Subject<'_>; 2],
+pub fn hausdorff<F: Covering>(
+    sets: [&Subject<'_, F>; 2],
     precision: &Precision,
 ) -> Result<Distance, (usize, NoCover)> {
     let mut bounds = *sets[0].bounds();
@@ -89,7 +90,7 @@ pub fn hausdorff(
     let rounding = ROUNDING * far.max(f64::MIN_POSITIVE);
     // A single point has no size; any radius will do.
     let wanted = (precision.tolerance * size / 2.0).max(rounding);
-    let covers = |radius: f64| -> Result<[Vec<DVec2>; 2], (usize, NoCover)> {
+    let covers = |radius: f64| -> Result<[Vec<F::Point>; 2], (usize, NoCover)> {
         let cover = |which: usize| {
             let points = sets[which].cover(radius, precision.most_points);
             points.map_err(|error| (which, error))
@@ -118,7 +119,7 @@ pub fn hausdorff(
 }
 
 /// Returns the maximum distance of a point of one set from the nearest of another.
-fn farthest(from: &Nearest, to: &Nearest) -> f64 {
+fn farthest<P: Point>(from: &Nearest<P>, to: &Nearest<P>) -> f64 {
     let (mut farthest, mut near, mut open) = (0.0, 0, Open::new());
     for &point in from.points() {
         // A point that is nearer than the maximum does not matter, and its nearest need not be found.

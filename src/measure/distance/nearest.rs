@@ -1,12 +1,12 @@
 //! Nearest-neighbour search among points, by a k-d tree (Bentley 1975).
 
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, Point};
 
 /// A k-d tree of points. The tree is the order of the points: the median of a range splits it.
-pub(super) struct Nearest {
-    points: Vec<DVec2>,
-    /// Whether the point at this index splits its range by y instead of x.
-    by_height: Vec<bool>,
+pub(super) struct Nearest<P> {
+    points: Vec<P>,
+    /// Number of the coordinate by which the point at this index splits its range.
+    axes: Vec<u8>,
 }
 
 /// Ranges that remain to be searched, with the square of a lower bound of the distance of their points. The
@@ -16,9 +16,9 @@ pub(super) type Open = Vec<(usize, usize, f64)>;
 /// Ranges of at most this many points are searched one by one.
 const FEW: usize = 8;
 
-impl Nearest {
-    pub(super) fn new(mut points: Vec<DVec2>) -> Self {
-        let mut by_height = vec![false; points.len()];
+impl<P: Point> Nearest<P> {
+    pub(super) fn new(mut points: Vec<P>) -> Self {
+        let mut axes = vec![0; points.len()];
         let mut open = vec![(0, points.len())];
         while let Some((start, end)) = open.pop() {
             if end - start <= FEW {
@@ -27,21 +27,28 @@ impl Nearest {
             let mut bounds = Bounds::EMPTY;
             let part = &mut points[start..end];
             part.iter().for_each(|&point| bounds.add(point));
-            let size = bounds.size();
-            let is_high = size.y > size.x;
-            let key = |point: &DVec2| if is_high { point.y } else { point.x };
+            let size = bounds.size().coordinates();
+            let longer = |axis: u8, other: u8| {
+                if size[usize::from(other)] > size[usize::from(axis)] {
+                    other
+                } else {
+                    axis
+                }
+            };
+            let axis = longer(longer(0, 1), 2);
+            let key = |point: &P| point.coordinates()[usize::from(axis)];
             let middle = part.len() / 2;
             part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
             let middle = start + middle;
-            by_height[middle] = is_high;
+            axes[middle] = axis;
             open.push((start, middle));
             open.push((middle + 1, end));
         }
-        Self { points, by_height }
+        Self { points, axes }
     }
 
     /// Returns the points, in an order in which neighbours are mostly near each other.
-    pub(super) fn points(&self) -> &[DVec2] {
+    pub(super) fn points(&self) -> &[P] {
         &self.points
     }
 
@@ -49,12 +56,12 @@ impl Nearest {
     /// squared distance is at most `enough`. `guess` is the index of a point that may be near.
     pub(super) fn find(
         &self,
-        point: DVec2,
+        point: P,
         enough: f64,
         guess: usize,
         open: &mut Open,
     ) -> (usize, f64) {
-        let mut best = (guess, (self.points[guess] - point).length_squared());
+        let mut best = (guess, square(self.points[guess] - point));
         open.clear();
         open.push((0, self.points.len(), 0.0));
         while let Some((start, end, away)) = open.pop() {
@@ -65,7 +72,7 @@ impl Nearest {
                 continue;
             }
             let mut look = |place: usize| {
-                let square = (self.points[place] - point).length_squared();
+                let square = square(self.points[place] - point);
                 if square < best.1 {
                     best = (place, square);
                 }
@@ -76,12 +83,8 @@ impl Nearest {
             }
             let middle = start + (end - start) / 2;
             look(middle);
-            let beyond = point - self.points[middle];
-            let beyond = if self.by_height[middle] {
-                beyond.y
-            } else {
-                beyond.x
-            };
+            let beyond = (point - self.points[middle]).coordinates();
+            let beyond = beyond[usize::from(self.axes[middle])];
             let far = away.max(beyond * beyond);
             let (low, high) = ((start, middle), (middle + 1, end));
             let (near, other) = if beyond < 0.0 {
@@ -96,9 +99,15 @@ impl Nearest {
     }
 }
 
+/// Returns the square of the length of a vector.
+fn square<P: Point>(vector: P) -> f64 {
+    vector.dot(vector)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::DVec2;
 
     #[test]
     fn the_nearest_point_is_found() {

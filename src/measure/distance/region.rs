@@ -1,6 +1,6 @@
 //! Covers of outlines, and of the regions that they enclose, by points.
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Point};
 use crate::rule::{BaseElement, Piece};
 use crate::saturating::{real, whole};
 
@@ -12,9 +12,18 @@ pub struct TooMany {
     pub most: usize,
 }
 
+/// Places that lie within the radius of a visited point.
+pub trait Covered<P> {
+    /// Returns whether a ball lies in one about a visited point: `false` where that is not known.
+    fn has(&self, middle: P, radius: f64) -> bool;
+
+    /// Adds the ball about a visited point.
+    fn add(&mut self, middle: P, radius: f64);
+}
+
 /// The points of a cover that have been visited so far.
-pub(super) struct Region<'a> {
-    visit: &'a mut dyn FnMut(DVec2),
+pub struct Region<'a, P: Point = DVec2> {
+    visit: &'a mut dyn FnMut(P),
     /// Maximum distance of the set from a point of the cover, and of a point from the set.
     pub(super) radius: f64,
     /// Maximum distance of an added point from the part of the set that it covers.
@@ -24,7 +33,7 @@ pub(super) struct Region<'a> {
     visited: usize,
     /// Work done so far: the number of points that were added and of copies that were examined.
     worked: usize,
-    covered: Option<Covered>,
+    covered: Option<Box<dyn Covered<P>>>,
 }
 
 /// Maximum work, as a multiple of the maximum number of points.
@@ -35,7 +44,7 @@ const WORK_A_POINT: usize = 16;
 const NEAR: f64 = 0.5;
 
 /// The squares of a grid that lie within the radius of a visited point.
-struct Covered {
+pub(super) struct CoveredSquares {
     corner: DVec2,
     side: f64,
     columns: usize,
@@ -43,7 +52,7 @@ struct Covered {
     bits: Vec<u64>,
 }
 
-impl Covered {
+impl CoveredSquares {
     /// Side of the squares, as a multiple of the radius.
     const SIDE: f64 = 0.15;
 
@@ -53,7 +62,7 @@ impl Covered {
     /// Maximum number of squares: about 120 mebibytes.
     const MOST: f64 = 1e9;
 
-    fn new(bounds: &Bounds, radius: f64) -> Option<Self> {
+    pub(super) fn new(bounds: &Bounds, radius: f64) -> Option<Self> {
         let side = Self::SIDE * radius;
         let corner = bounds.min() - radius;
         let counts = ((bounds.size() + 2.0 * radius) / side).ceil() + 1.0;
@@ -72,6 +81,18 @@ impl Covered {
         })
     }
 
+    /// Returns the index of the word that holds a square, and that of its bit.
+    fn place(&self, row: usize, column: usize) -> (usize, usize) {
+        let square = row * self.columns + column;
+        (square / 64, square % 64)
+    }
+
+    fn two(&self, word: usize) -> u128 {
+        u128::from(self.bits[word]) | u128::from(self.bits[word + 1]) << 64
+    }
+}
+
+impl Covered<DVec2> for CoveredSquares {
     /// Returns `true` if all squares in the bounding box of a disc are covered; `false` for discs of too many
     /// squares.
     fn has(&self, middle: DVec2, radius: f64) -> bool {
@@ -116,16 +137,6 @@ impl Covered {
             }
         }
     }
-
-    /// Returns the index of the word that holds a square, and that of its bit.
-    fn place(&self, row: usize, column: usize) -> (usize, usize) {
-        let square = row * self.columns + column;
-        (square / 64, square % 64)
-    }
-
-    fn two(&self, word: usize) -> u128 {
-        u128::from(self.bits[word]) | u128::from(self.bits[word + 1]) << 64
-    }
 }
 
 /// Returns the index, below `count`, of the row or column that a coordinate lies in; the nearest one for
@@ -143,14 +154,14 @@ pub(super) fn radius_of(outline: &BaseElement, middle: DVec2) -> f64 {
         .fold(0.0, f64::max)
 }
 
-impl<'a> Region<'a> {
-    /// Creates an empty cover of a set in a box. In the end, no point of the set may be farther than `radius`
-    /// from a visited point, and no visited point farther than that from the set.
+impl<'a, P: Point> Region<'a, P> {
+    /// Creates an empty cover of a set. In the end, no point of the set may be farther than `radius` from a visited
+    /// point, and no visited point farther than that from the set. `covered` remembers places that are covered.
     pub(super) fn new(
-        bounds: &Bounds,
+        covered: Option<Box<dyn Covered<P>>>,
         radius: f64,
         most: usize,
-        visit: &'a mut dyn FnMut(DVec2),
+        visit: &'a mut dyn FnMut(P),
     ) -> Self {
         Self {
             visit,
@@ -159,12 +170,12 @@ impl<'a> Region<'a> {
             near: NEAR * radius,
             most,
             worked: 0,
-            covered: Covered::new(bounds, radius),
+            covered,
         }
     }
 
     /// Creates an empty cover in which every point is visited, including points near others.
-    pub(super) fn of_all(radius: f64, most: usize, visit: &'a mut dyn FnMut(DVec2)) -> Self {
+    pub(super) fn of_all(radius: f64, most: usize, visit: &'a mut dyn FnMut(P)) -> Self {
         Self {
             visit,
             visited: 0,
@@ -177,12 +188,12 @@ impl<'a> Region<'a> {
     }
 
     /// Adds a point that covers a part of the set within the distance [`near`](Self::near).
-    pub(super) fn add(&mut self, point: DVec2) -> Result<(), TooMany> {
+    pub(super) fn add(&mut self, point: P) -> Result<(), TooMany> {
         self.add_within(point, self.near)
     }
 
     /// Adds a point that covers a part of the set within `near`, which is less than the radius.
-    pub(super) fn add_within(&mut self, point: DVec2, near: f64) -> Result<(), TooMany> {
+    pub(super) fn add_within(&mut self, point: P, near: f64) -> Result<(), TooMany> {
         if !self.covers(point, near) {
             self.visited += 1;
             if self.visited > self.most {
@@ -197,7 +208,7 @@ impl<'a> Region<'a> {
     }
 
     /// Returns `true` if a disc is covered already: where copies overlap, few have to be examined.
-    pub(super) fn covers(&self, middle: DVec2, radius: f64) -> bool {
+    pub(super) fn covers(&self, middle: P, radius: f64) -> bool {
         let covered = self.covered.as_ref();
         covered.is_some_and(|covered| covered.has(middle, radius))
     }
@@ -214,7 +225,9 @@ impl<'a> Region<'a> {
         }
         Ok(())
     }
+}
 
+impl Region<'_> {
     /// Adds the image of an outline, and the enclosed region if it is closed.
     pub(super) fn add_outline(
         &mut self,
