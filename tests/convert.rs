@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::document_of;
+use crate::common::{document, document_of};
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::convert::{ConvertError, Keeps, Refusal, convert};
 use kfrac::document::Document;
@@ -497,4 +497,58 @@ fn polygons_without_an_area_become_the_lines_that_they_trace() {
         written.contains("polygon:") && written.contains("segment:"),
         "{written}"
     );
+}
+
+#[test]
+fn systems_in_space_become_structures_and_return() {
+    let parsed = |text: &str| document_of(text).resolve(&[]).unwrap().0;
+    let maps = |model: &Model| {
+        let Model::IfsInSpace(system) = model else {
+            panic!("it is a system in space");
+        };
+        let maps = system.ifs().maps().iter();
+        maps.map(|map| map.affine.to_cols_array())
+            .collect::<Vec<_>>()
+    };
+    let sponge = document("menger").resolve(&[]).unwrap().0;
+    let plant = parsed(
+        "kind: ifs
+space: 3
+maps:
+  - {scale: 0.6, rotate: {axis: [1, 1, 0], angle: 35}, translate: [0, 1, 0]}
+  - {matrix: [[0.5, 0.1, 0], [0, 0.4, 0], [0, 0, 0.3]], translate: [0, 1, 0]}
+condensation:
+  - {cylinder: {radius: 0.07}}
+  - {sphere: {centre: [0, 1, 0], radius: 0.1}}
+  - {box: {from: [0, 0, 0], to: [0.1, 0.2, 0.3]}}
+  - {polygon: [[0, 0, 0], [1, 0, 0], [0, 1, 1]]}
+",
+    );
+    for model in [sponge, plant] {
+        let structure = convert(&model, Kind::Instancing, Keeps::Limit).unwrap();
+        let structure = structure.resolve(&[]).unwrap().0;
+        assert!(matches!(structure, Model::InstancingInSpace(_)));
+        let bounds = |model: &Model| {
+            model
+                .compile_in_space(false)
+                .unwrap()
+                .limit_bounds()
+                .unwrap()
+        };
+        let (own, found) = (bounds(&model), bounds(&structure));
+        assert!(
+            own.min().abs_diff_eq(found.min(), 1e-12) && own.max().abs_diff_eq(found.max(), 1e-12)
+        );
+        let back = convert(&structure, Kind::Ifs, Keeps::Limit).unwrap();
+        let back = back.resolve(&[]).unwrap().0;
+        for (own, found) in maps(&model).iter().zip(maps(&back)) {
+            let same = own.iter().zip(found).all(|(a, b)| (a - b).abs() < 1e-14);
+            assert!(same, "{own:?} {found:?}");
+        }
+        assert_eq!(maps(&model).len(), maps(&back).len());
+        for kind in [Kind::Rule, Kind::LSystem] {
+            let refused = convert(&model, kind, Keeps::Limit).unwrap_err();
+            assert!(refused.to_string().contains("lies in space"), "{refused}");
+        }
+    }
 }

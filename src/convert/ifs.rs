@@ -14,11 +14,10 @@ use std::collections::VecDeque;
 use crate::build::written::{Entries, sequence};
 use crate::digraph::components;
 use crate::document::node::Value;
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::Linear;
 
-use super::copies::with_copies;
-use super::number::{is_same, matrix, point, scale, value};
-use super::shape::set;
+use super::convertible::Convertible;
+use super::number::value;
 use super::structure::{Placed, Structure};
 use super::{Keeps, Refusal};
 
@@ -26,18 +25,32 @@ use super::{Keeps, Refusal};
 const MAX_MAPS: usize = 1_000;
 
 /// An iterated function system with a digraph.
-#[derive(Default)]
-struct System {
-    maps: Vec<DAffine2>,
+struct System<M> {
+    maps: Vec<M>,
     /// Edges: a map, and a map that may follow it.
     edges: Vec<[usize; 2]>,
     /// The condensation sets.
-    sets: Vec<Placed>,
+    sets: Vec<Placed<M>>,
     /// Map of the initial set.
-    initial: DAffine2,
+    initial: M,
 }
 
-pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
+impl<M: Convertible> System<M> {
+    /// Creates a system without maps.
+    fn new(initial: M) -> Self {
+        Self {
+            maps: Vec::new(),
+            edges: Vec::new(),
+            sets: Vec::new(),
+            initial,
+        }
+    }
+}
+
+pub(super) fn write<M: Convertible>(
+    structure: &Structure<M>,
+    keeps: Keeps,
+) -> Result<Entries, Refusal> {
     if keeps == Keeps::Approximants {
         check_steps(structure)?;
     }
@@ -45,20 +58,20 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
         Some(system) => system,
         None => match placed(structure) {
             Err(Refusal::ShapesInPart | Refusal::NoMaps) if keeps == Keeps::Limit => {
-                placed(&with_copies(structure)?)?
+                placed(&M::with_copies(structure)?)?
             }
             system => system?,
         },
     };
-    let maps = sequence(system.maps.iter().map(|map| of_map(map).value()));
+    let maps = sequence(system.maps.iter().map(|map| map.written().value()));
     let sets: Result<Vec<_>, _> = system
         .sets
         .iter()
-        .map(|placed| set(&structure.shapes[placed.shape], &placed.map))
+        .map(|placed| M::set(&structure.shapes[placed.shape], &placed.map))
         .collect();
     let sets = sets?.into_iter().map(Entries::value);
     let initial = structure.initial().flatten().map(|shape| {
-        let initial = set(&structure.shapes[shape], &system.initial);
+        let initial = M::set(&structure.shapes[shape], &system.initial);
         initial.map(Entries::value)
     });
     let initial = keeps.initial(initial)?;
@@ -75,7 +88,7 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
 }
 
 /// Returns an error if the approximants of a system differ from those of the structure.
-fn check_steps(structure: &Structure) -> Result<(), Refusal> {
+fn check_steps<M: Convertible>(structure: &Structure<M>) -> Result<(), Refusal> {
     let refuse = |what| Err(Refusal::Steps(what));
     if structure.objects.len() != 1 || structure.scene.len() != 1 {
         return refuse("a system draws one initial set at first, in one place");
@@ -85,24 +98,6 @@ fn check_steps(structure: &Structure) -> Result<(), Refusal> {
         Some(None) => refuse("what is replaced is not drawn, and an initial set is"),
         None => refuse("what is replaced does not all look the same, as an initial set does"),
     }
-}
-
-/// Writes a map in its shortest form.
-fn of_map(map: &DAffine2) -> Entries {
-    let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
-    let entries = Entries::default();
-    let linear = if let Some(factor) = scale(map.matrix2) {
-        entries.set("scale", factor)
-    } else if y == x.perp() {
-        entries.set("times", point(x))
-    } else if y == -x.perp() {
-        let conjugate = Value::Bool(true);
-        entries.set("times", point(x)).set("conjugate", conjugate)
-    } else {
-        entries.set("matrix", matrix(map.matrix2))
-    };
-    let shift = map.translation;
-    linear.set_some("shift", (shift != DVec2::ZERO).then(|| point(shift)))
 }
 
 /// Writes, for every map, the maps that may follow it.
@@ -124,8 +119,8 @@ fn edges(edges: &[[usize; 2]], count: usize) -> Value {
 }
 
 /// Returns the system with one map for each object, if all instances in every object have the same map.
-fn direct(structure: &Structure) -> Option<System> {
-    let is_here = |placed: &Placed| placed.map == DAffine2::IDENTITY;
+fn direct<M: Convertible>(structure: &Structure<M>) -> Option<System<M>> {
+    let is_here = |placed: &Placed<M>| placed.map == M::IDENTITY;
     let (objects, sets): (Vec<_>, Vec<_>) = structure
         .scene
         .iter()
@@ -139,16 +134,16 @@ fn direct(structure: &Structure) -> Option<System> {
     }
     let mut system = System {
         sets,
-        ..System::default()
+        ..System::new(M::IDENTITY)
     };
     for (number, object) in structure.objects.iter().enumerate() {
         let map = object.iter().find(|placed| placed.object.is_some())?.map;
         let mut befores: Vec<usize> = Vec::new();
-        let mut kept: Vec<&Placed> = Vec::new();
+        let mut kept: Vec<&Placed<M>> = Vec::new();
         for placed in object {
             match placed.object {
                 Some(before) => {
-                    if !is_same(&placed.map, &map) || befores.contains(&before) {
+                    if !placed.map.is_same(&map) || befores.contains(&before) {
                         return None;
                     }
                     befores.push(before);
@@ -156,7 +151,7 @@ fn direct(structure: &Structure) -> Option<System> {
                 None => kept.push(placed),
             }
         }
-        let moved = |set: &Placed| Placed {
+        let moved = |set: &Placed<M>| Placed {
             map: map * set.map,
             ..set.clone()
         };
@@ -173,37 +168,37 @@ fn direct(structure: &Structure) -> Option<System> {
 }
 
 /// Returns whether two lists of shapes have the same union.
-fn is_union(a: &[Placed], b: &[Placed]) -> bool {
-    let within = |a: &[Placed], b: &[Placed]| {
+fn is_union<M: Convertible>(a: &[Placed<M>], b: &[Placed<M>]) -> bool {
+    let within = |a: &[Placed<M>], b: &[Placed<M>]| {
         a.iter().all(|one| {
             let mut all = b.iter();
-            all.any(|other| other.shape == one.shape && is_same(&one.map, &other.map))
+            all.any(|other| other.shape == one.shape && one.map.is_same(&other.map))
         })
     };
     within(a, b) && within(b, a)
 }
 
 /// An object in the coordinates of the scene.
-struct Vertex {
+struct Vertex<M> {
     /// Index of the scene's instance that it descends from.
     copy: usize,
     object: usize,
     /// Composed map of the path to the object.
-    frame: DAffine2,
+    frame: M,
     /// Instances in the object, each with the index of its vertex if it is replaced.
-    instances: Vec<(Placed, Option<usize>)>,
+    instances: Vec<(Placed<M>, Option<usize>)>,
 }
 
 /// Returns the system with one map for each instance.
-fn placed(structure: &Structure) -> Result<System, Refusal> {
+fn placed<M: Convertible>(structure: &Structure<M>) -> Result<System<M>, Refusal> {
     let expanded = expanded(structure)?;
     let (roots, loose): (Vec<_>, Vec<_>) = expanded
         .scene
         .into_iter()
         .partition(|placed| placed.object.is_some());
-    let mut distinct: Vec<Placed> = Vec::new();
+    let mut distinct: Vec<Placed<M>> = Vec::new();
     for root in roots {
-        let same = |known: &Placed| known.object == root.object && is_same(&known.map, &root.map);
+        let same = |known: &Placed<M>| known.object == root.object && known.map.is_same(&root.map);
         if !distinct.iter().any(same) {
             distinct.push(root);
         }
@@ -212,25 +207,22 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
         return Err(Refusal::NoMaps);
     }
     let vertices = vertices(structure, &distinct, &expanded.objects)?;
-    let mut system = System {
-        initial: distinct[0].map,
-        ..System::default()
-    };
+    let mut system = System::new(distinct[0].map);
     // The vertex that contains each map's instance, and the vertex that it is an image of.
     let mut ends = Vec::new();
-    let mut sets: Option<Vec<Placed>> = None;
+    let mut sets: Option<Vec<Placed<M>>> = None;
     for (number, vertex) in vertices.iter().enumerate() {
         let mut own = Vec::new();
         for (placed, inside) in &vertex.instances {
             let map = vertex.frame * placed.map;
             match *inside {
                 Some(inside) => {
-                    let is_plain = vertex.frame == DAffine2::IDENTITY
-                        && vertices[inside].frame == DAffine2::IDENTITY;
+                    let is_plain =
+                        vertex.frame == M::IDENTITY && vertices[inside].frame == M::IDENTITY;
                     system.maps.push(if is_plain {
                         placed.map
                     } else {
-                        settled(map * vertices[inside].frame.inverse())
+                        (map * vertices[inside].frame.inverse()).settled()
                     });
                     ends.push((number, inside));
                 }
@@ -259,34 +251,17 @@ fn placed(structure: &Structure) -> Result<System, Refusal> {
     Ok(system)
 }
 
-/// Returns a map with the rounding errors of zeros removed.
-fn settled(map: DAffine2) -> DAffine2 {
-    const ROUNDING: f64 = 1e-15;
-    let columns = [map.matrix2.x_axis, map.matrix2.y_axis, map.translation];
-    let size = columns.map(|column| column.abs().max_element());
-    let size = size.into_iter().fold(0.0, f64::max);
-    let settle = |value: f64| {
-        if value.abs() <= ROUNDING * size {
-            0.0
-        } else {
-            value
-        }
-    };
-    let [x, y, shift] = columns.map(|column| DVec2::new(settle(column.x), settle(column.y)));
-    DAffine2::from_cols(x, y, shift)
-}
-
 /// Returns the objects that every instance of the scene leads to, with invertible maps of the paths to them.
-fn vertices(
-    structure: &Structure,
-    roots: &[Placed],
-    objects: &[Vec<Placed>],
-) -> Result<Vec<Vertex>, Refusal> {
-    let mut vertices: Vec<Vertex> = Vec::new();
+fn vertices<M: Convertible>(
+    structure: &Structure<M>,
+    roots: &[Placed<M>],
+    objects: &[Vec<Placed<M>>],
+) -> Result<Vec<Vertex<M>>, Refusal> {
+    let mut vertices: Vec<Vertex<M>> = Vec::new();
     let mut maps = 0;
     for (copy, root) in roots.iter().enumerate() {
         let first = vertices.len();
-        let is_flat = |map: &DAffine2| map.matrix2.determinant() == 0.0;
+        let is_flat = |map: &M| map.linear().determinant() == 0.0;
         if is_flat(&root.map) {
             return Err(Refusal::Flat("an instance of the scene".into()));
         }
@@ -295,7 +270,7 @@ fn vertices(
         // A map that flattens the plane is used only if no other path leads to an object.
         let mut flat = None;
         while let Some((object, frame)) = open.pop_front() {
-            let known = |vertex: &Vertex| vertex.object == object;
+            let known = |vertex: &Vertex<M>| vertex.object == object;
             if vertices[first..].iter().any(known) {
                 continue;
             }
@@ -340,23 +315,24 @@ fn vertices(
     Ok(vertices)
 }
 
-struct Expanded {
-    scene: Vec<Placed>,
-    objects: Vec<Vec<Placed>>,
+struct Expanded<M> {
+    scene: Vec<Placed<M>>,
+    objects: Vec<Vec<Placed<M>>>,
 }
 
 /// Returns scene and objects with only those objects that lead back to themselves; others are replaced by
 /// their content.
-fn expanded(structure: &Structure) -> Result<Expanded, Refusal> {
-    let inside = |object: &Vec<Placed>| object.iter().filter_map(|placed| placed.object).collect();
+fn expanded<M: Convertible>(structure: &Structure<M>) -> Result<Expanded<M>, Refusal> {
+    let inside =
+        |object: &Vec<Placed<M>>| object.iter().filter_map(|placed| placed.object).collect();
     let targets: Vec<Vec<usize>> = structure.objects.iter().map(inside).collect();
     let components = components(&targets);
     let leads_back = |object: usize| {
         let mut targets = targets[object].iter();
         targets.any(|&target| components[target] == components[object])
     };
-    let expand = |all: &[Placed]| -> Result<Vec<Placed>, Refusal> {
-        let mut open: Vec<Placed> = all.iter().rev().cloned().collect();
+    let expand = |all: &[Placed<M>]| -> Result<Vec<Placed<M>>, Refusal> {
+        let mut open: Vec<Placed<M>> = all.iter().rev().cloned().collect();
         let mut made = Vec::new();
         while let Some(placed) = open.pop() {
             match placed.object {

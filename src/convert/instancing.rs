@@ -2,18 +2,20 @@
 
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;
-use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::instancing::Tint;
 
-use super::number::{matrix, point, scale, value};
-use super::shape::set;
+use super::convertible::Convertible;
+use super::number::value;
 use super::structure::{Placed, Structure};
 use super::{Keeps, Refusal};
 
-pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refusal> {
+pub(super) fn write<M: Convertible>(
+    structure: &Structure<M>,
+    keeps: Keeps,
+) -> Result<Entries, Refusal> {
     let has_shapes = structure.instances().any(|placed| placed.object.is_none());
     let initial = match structure.initial() {
-        Some(Some(shape)) => Some(set(&structure.shapes[shape], &DAffine2::IDENTITY)),
+        Some(Some(shape)) => Some(M::set(&structure.shapes[shape], &M::IDENTITY)),
         // Where there are shapes, objects that are not replaced draw nothing.
         Some(None) | None
             if keeps == Keeps::Limit || has_shapes && structure.objects.is_empty() =>
@@ -47,14 +49,17 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
     Ok(entries.set_some("initial", initial.map(Entries::value)))
 }
 
-fn name(structure: &Structure, object: usize) -> String {
+fn name<M: Convertible>(structure: &Structure<M>, object: usize) -> String {
     match structure.objects.len() {
         1 => "A".into(),
         _ => format!("A{}", object + 1),
     }
 }
 
-fn instances(structure: &Structure, all: &[Placed]) -> Result<Value, Refusal> {
+fn instances<M: Convertible>(
+    structure: &Structure<M>,
+    all: &[Placed<M>],
+) -> Result<Value, Refusal> {
     let instances: Result<Vec<_>, _> = all
         .iter()
         .map(|placed| instance(structure, placed))
@@ -62,29 +67,23 @@ fn instances(structure: &Structure, all: &[Placed]) -> Result<Value, Refusal> {
     Ok(sequence(instances?))
 }
 
-fn instance(structure: &Structure, placed: &Placed) -> Result<Value, Refusal> {
+fn instance<M: Convertible>(
+    structure: &Structure<M>,
+    placed: &Placed<M>,
+) -> Result<Value, Refusal> {
     let master = match placed.object {
         Some(object) => {
             let name = Value::Text(name(structure, object));
-            if placed.map == DAffine2::IDENTITY && placed.tint.is_none() {
+            if placed.map == M::IDENTITY && placed.tint.is_none() {
                 return Ok(name);
             }
             Entries::default().set("object", name)
         }
-        None => set(&structure.shapes[placed.shape], &DAffine2::IDENTITY)?,
+        None => M::set(&structure.shapes[placed.shape], &M::IDENTITY)?,
     };
-    let DAffine2 {
-        matrix2,
-        translation,
-    } = placed.map;
-    let turned = match scale(matrix2) {
-        _ if matrix2 == DMat2::IDENTITY => master,
-        Some(factor) => master.set("scale", factor),
-        None => master.set("matrix", matrix(matrix2)),
-    };
-    let shift = (translation != DVec2::ZERO).then(|| point(translation));
-    Ok(turned
-        .set_some("translate", shift)
+    Ok(placed
+        .map
+        .placing(master)
         .set_some("tint", placed.tint.map(tint))
         .value())
 }

@@ -9,6 +9,7 @@
 //! belong to it with the area that they enclose. Weights, tints and the order of traversal are not part of
 //! the set and are dropped where the other kind has no equivalent.
 
+mod convertible;
 mod copies;
 mod ifs;
 mod instancing;
@@ -26,6 +27,7 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
+use crate::geometry::{DAffine2, DAffine3, Frame3};
 use crate::graph::{CompileError, Graph};
 use crate::metadata::Metadata;
 use crate::model::{Kind, Model};
@@ -93,6 +95,10 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
     }
+    if let Some(graph) = model.compile_in_space(false) {
+        let own = in_space(model, &graph, to, keeps)?;
+        return read_back(model, to, own);
+    }
     let steps = match model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
         Some(deepest) => model.metadata().steps.unwrap_or(deepest),
         None => STEPS,
@@ -124,7 +130,37 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         }
         _ => Structure::of_graph(&graph, steps, keeps, &[])?,
     };
-    let own = (writer(to).1)(&structure, keeps)?;
+    read_back(model, to, (writer(to).1)(&structure, keeps)?)
+}
+
+/// Converts a model in space to the keys of another kind.
+fn in_space(
+    model: &Model,
+    graph: &Graph<Frame3>,
+    to: Kind,
+    keeps: Keeps,
+) -> Result<Entries, ConvertError> {
+    let write: Writer<DAffine3> = match to {
+        Kind::Ifs => ifs::write,
+        Kind::Instancing => instancing::write,
+        Kind::Rule | Kind::LSystem => return Err(Refusal::InSpace(to).into()),
+    };
+    let ends = graph.depth().is_some() && to == Kind::Instancing;
+    if !ends {
+        graph.limit().map_err(Refusal::from)?;
+    }
+    let structure = match model {
+        Model::IfsInSpace(system) if keeps == Keeps::Limit => {
+            Structure::of_ifs(system.ifs(), graph.base_elements().to_vec())
+        }
+        _ => Structure::of_graph(graph, STEPS, keeps, &[])?,
+    };
+    let space = Entries::default().set("space", number::value(3.0));
+    Ok(space.and(write(&structure, keeps)?))
+}
+
+/// Returns the document of the keys of a kind, which is read back.
+fn read_back(model: &Model, to: Kind, own: Entries) -> Result<Document, ConvertError> {
     let text = Node::from(headed(model.metadata(), to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());
     let document = read.map_err(ConvertError::NotReadBack)?;
@@ -135,7 +171,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
 }
 
 /// Writes the keys of a kind.
-type Writer = fn(&Structure, Keeps) -> Result<Entries, Refusal>;
+type Writer<M = DAffine2> = fn(&Structure<M>, Keeps) -> Result<Entries, Refusal>;
 
 /// Returns the description and the writer of a kind as the target of conversions.
 fn writer(to: Kind) -> (&'static str, Writer) {

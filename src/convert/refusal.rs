@@ -55,6 +55,14 @@ pub enum Refusal {
         "a base element in it is round, and sets of this kind have straight sides or are ellipses"
     )]
     Round,
+    /// A solid is not written as a set of space.
+    #[error(
+        "a solid in it is neither round and upright, nor a box along the axes, nor a polygon, and sets in space are"
+    )]
+    Solid,
+    /// The model lies in space, and the other kind in the plane.
+    #[error("it lies in space, and a file of the kind '{}' lies in the plane", .0.name())]
+    InSpace(Kind),
     /// A closed outline crosses itself so that its area is 0.
     #[error(
         "a closed outline in it crosses itself so that its area is 0, and that of a polygon must not be"

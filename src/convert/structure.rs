@@ -1,18 +1,17 @@
 //! The common form of all kinds: objects and their instances.
 
-use crate::extent::NoLimit;
-use crate::geometry::DAffine2;
+use crate::extent::{Bounded, NoLimit};
+use crate::geometry::{DAffine2, Frame};
 use crate::graph::{Graph, Instance, Replacement};
-use crate::ifs::Ifs;
+use crate::ifs::{AffineMap, Ifs, OutlineOf};
 use crate::instancing::Tint;
-use crate::rule::BaseElement;
 
 use super::{Keeps, Refusal};
 
 /// An instance: a map of an object or of a shape that is kept.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
-    pub(super) map: DAffine2,
+pub(super) struct Placed<M = DAffine2> {
+    pub(super) map: M,
     /// Index of the shape that is drawn until the instance is replaced.
     pub(super) shape: usize,
     pub(super) visible: bool,
@@ -22,13 +21,13 @@ pub(super) struct Placed {
 }
 
 /// A model, decomposed into objects and instances.
-pub(super) struct Structure {
+pub(super) struct Structure<M: AffineMap = DAffine2> {
     /// Shapes of instances.
-    pub(super) shapes: Vec<BaseElement>,
+    pub(super) shapes: Vec<OutlineOf<M>>,
     /// Instances in each object; never empty.
-    pub(super) objects: Vec<Vec<Placed>>,
+    pub(super) objects: Vec<Vec<Placed<M>>>,
     /// Instances of the scene, which are approximant 0; never empty.
-    pub(super) scene: Vec<Placed>,
+    pub(super) scene: Vec<Placed<M>>,
     /// Terms of messages about instances.
     pub(super) words: Words,
     /// Names of the objects in the file, by index, if it has names.
@@ -43,7 +42,7 @@ pub(super) enum Words {
     Elements,
 }
 
-impl Structure {
+impl<M: AffineMap> Structure<M> {
     /// Decomposes a graph into objects, one for each behaviour; a time-indexed graph is decomposed for a
     /// number of steps. Where only the limit set is kept, objects that contribute nothing to it are left out.
     /// `names` are the names of the graph's objects in the file, or empty.
@@ -52,16 +51,19 @@ impl Structure {
     ///
     /// Returns an error if the scene is empty, or if an object in it is replaced by nothing.
     pub(super) fn of_graph(
-        graph: &Graph,
+        graph: &Graph<M::Frame>,
         steps: u32,
         keeps: Keeps,
         names: &[String],
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, Refusal>
+    where
+        M::Frame: Bounded,
+    {
         let alive = match keeps {
             Keeps::Limit => graph.alive(true),
             Keeps::Approximants => vec![true; graph.objects().len()],
         };
-        let placed = |instance: &Instance| {
+        let placed = |instance: &Instance<M::Frame>| {
             let object = &graph.objects()[instance.object];
             let ends = matches!(
                 object.replacement,
@@ -82,7 +84,7 @@ impl Structure {
             live[object.behaviour] |= alive;
         }
         // Invisible elements that are kept draw nothing at any step.
-        let stays = |instance: &&Instance| {
+        let stays = |instance: &&Instance<M::Frame>| {
             let object = &graph.objects()[instance.object];
             match object.replacement {
                 Replacement::Kept => object.visible,
@@ -125,21 +127,23 @@ impl Structure {
     /// Decomposes a system into the objects of its digraph (Hart 1992, section 3.3): one for the set that
     /// every map has just moved, or a single one where any map may follow any other. `shapes` are the
     /// outlines of the initial set and of the condensation sets.
-    pub(super) fn of_ifs(ifs: &Ifs, shapes: Vec<BaseElement>) -> Self {
+    pub(super) fn of_ifs(ifs: &Ifs<M>, shapes: Vec<OutlineOf<M>>) -> Self {
         // An initial set of several outlines is not a shape. The limit set does not depend on it.
-        let is_shape = ifs.initial().is_none_or(|set| set.count() == 1);
-        let placed = |map: DAffine2, shape: usize, object: Option<usize>| Placed {
+        let is_shape = ifs.initial().is_none_or(|set| M::outlines(set).len() == 1);
+        let placed = |map: M, shape: usize, object: Option<usize>| Placed {
             map,
             shape,
             visible: object.is_none() || is_shape,
             tint: None,
             object,
         };
-        let sets = || 1..=ifs.condensation().iter().map(|set| set.shape.count()).sum();
-        let drawn = || sets().map(|set| placed(DAffine2::IDENTITY, set, None));
+        let count = { ifs.condensation().iter() }.map(|set| M::outlines(&set.shape).len());
+        let count: usize = count.sum();
+        let sets = || 1..=count;
+        let drawn = || sets().map(|set| placed(M::IDENTITY, set, None));
         let maps = ifs.maps().iter().map(|map| map.affine);
         let (objects, scene) = if let Some(successors) = ifs.successors() {
-            let mut objects: Vec<Vec<Placed>> = vec![Vec::new(); ifs.maps().len()];
+            let mut objects: Vec<Vec<Placed<M>>> = vec![Vec::new(); ifs.maps().len()];
             for (before, successors) in successors.iter().enumerate() {
                 for &map in successors {
                     objects[map].push(placed(ifs.maps()[map].affine, 0, Some(before)));
@@ -148,12 +152,12 @@ impl Structure {
             for (object, map) in objects.iter_mut().zip(maps) {
                 object.extend(sets().map(|set| placed(map, set, None)));
             }
-            let all = (0..objects.len()).map(|object| placed(DAffine2::IDENTITY, 0, Some(object)));
+            let all = (0..objects.len()).map(|object| placed(M::IDENTITY, 0, Some(object)));
             let scene = all.chain(drawn()).collect();
             (objects, scene)
         } else {
             let maps = maps.map(|map| placed(map, 0, Some(0)));
-            let scene = vec![placed(DAffine2::IDENTITY, 0, Some(0))];
+            let scene = vec![placed(M::IDENTITY, 0, Some(0))];
             (vec![maps.chain(drawn()).collect()], scene)
         };
         Self {
@@ -169,7 +173,7 @@ impl Structure {
     fn renumbered(self) -> Self {
         let mut numbers = vec![None; self.objects.len()];
         let mut order = Vec::new();
-        let mut visit = |placed: &Placed, order: &mut Vec<usize>| {
+        let mut visit = |placed: &Placed<M>, order: &mut Vec<usize>| {
             if let Some(object) = placed.object
                 && numbers[object].is_none()
             {
@@ -186,7 +190,7 @@ impl Structure {
             placed.for_each(|placed| visit(placed, &mut order));
             done += 1;
         }
-        let renumbered = |all: &[Placed]| -> Vec<Placed> {
+        let renumbered = |all: &[Placed<M>]| -> Vec<Placed<M>> {
             let all = all.iter().cloned();
             all.map(|placed| Placed {
                 object: placed.object.and_then(|object| numbers[object]),
@@ -207,12 +211,12 @@ impl Structure {
     }
 
     /// Returns the instances in an object, or in the scene.
-    pub(super) fn placed(&self, object: Option<usize>) -> &[Placed] {
+    pub(super) fn placed(&self, object: Option<usize>) -> &[Placed<M>] {
         object.map_or(&self.scene, |object| &self.objects[object])
     }
 
     /// Iterates over all instances, those of the scene first.
-    pub(super) fn instances(&self) -> impl Iterator<Item = &Placed> {
+    pub(super) fn instances(&self) -> impl Iterator<Item = &Placed<M>> {
         self.scene.iter().chain(self.objects.iter().flatten())
     }
 
