@@ -12,7 +12,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use kfrac::catalogue::Catalogue;
 use kfrac::document::Document;
-use kfrac::geometry::{DAffine2, DVec2};
+use kfrac::geometry::{DAffine2, DAffine3, DVec2, DVec3};
 use kfrac::measure::{Bits, BoxCounting, Grid, LimitSet, counts};
 
 fn main() {
@@ -78,6 +78,38 @@ fn ten_million_points(bencher: Bencher, levels: u32) {
     bencher
         .counter(ItemsCount::new(points.len()))
         .bench(|| counts(&points, &map, [boxes, boxes, 1], levels));
+}
+
+/// Counts cubes of nine sizes about ten million points in space.
+#[divan::bench(sample_count = 5)]
+fn ten_million_points_in_space(bencher: Bencher) {
+    const LEVELS: u32 = 9;
+    let points: Vec<DVec3> = points()
+        .chunks(2)
+        .flat_map(|pair| [pair[0].extend(pair[1].x), pair[1].extend(pair[0].y)])
+        .collect();
+    let boxes = 1usize << LEVELS;
+    let map = DAffine3::from_scale(DVec3::splat(0.999_999_999 * boxes as f64));
+    bencher
+        .counter(ItemsCount::new(points.len()))
+        .bench(|| counts(&points, &map, [boxes; 3], LEVELS));
+}
+
+/// Counts the cubes of Menger's sponge to 3⁻¹².
+#[divan::bench(sample_count = 5)]
+fn cubes_of_a_sponge(bencher: Bencher) {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue.rule("menger").unwrap();
+    let (model, _) = Document::read(&source, &catalogue)
+        .unwrap()
+        .resolve(&[])
+        .unwrap();
+    let graph = model.compile_in_space(false).unwrap();
+    let base = NonZero::new(3).unwrap();
+    bencher.bench(|| {
+        let set = LimitSet::of(&graph).unwrap();
+        set.sampled_scales(base, &[Grid::ALONG], NonZero::<usize>::MIN)
+    });
 }
 
 /// Measures a limit set completely, on one thread.

@@ -1,4 +1,4 @@
-//! `kfrac dim`: dimensions of a rule, a picture or a table of points.
+//! `kfrac dim`: dimensions of a rule, a picture or a table of points, of the plane or of space.
 
 mod input;
 mod report;
@@ -12,6 +12,7 @@ use clap::builder::PossibleValue;
 
 use crate::catalogue::Catalogue;
 use crate::figure::dimension;
+use crate::geometry::HalfSpace;
 use crate::measure::{BoxCounting, Generalised, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels};
@@ -20,7 +21,7 @@ pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::family::{Assignment, assignment};
 use super::rule::RuleArguments;
-use super::{Failure, format, growth, help, number, output, text};
+use super::{Failure, format, growth, help, number, output, space, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
 ///
@@ -33,6 +34,9 @@ use super::{Failure, format, growth, help, number, output, text};
 /// similarity dimension, the overlap of the copies, and the resulting dimensions of the set and of its
 /// boundary.
 ///
+/// Sets and points in space are covered by cubes. Cubes along the axes that are of finitely many kinds, by the
+/// copies in them, are counted exactly, to any depth.
+///
 /// The spectrum of dimensions D_q is that of a measure on the limit set: the measure given by the weights of
 /// a system, or else the natural measure, under which the mass of a copy follows from its size and coinciding
 /// copies count once. Exact values are given where the copies are similar and do not overlap; measured values
@@ -40,8 +44,8 @@ use super::{Failure, format, growth, help, number, output, text};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Rule (a file or a name in the library), picture (PNG, JPEG), table of points (CSV), or - for any of
-    /// them on standard input
+    /// Rule (a file or a name in the library), picture (PNG, JPEG), points (CSV, PLY), or - for any of them on
+    /// standard input
     #[arg(value_name = "RULE|IMAGE|POINTS")]
     rule: PathBuf,
     /// Sets a parameter of the rule; may be given several times
@@ -58,6 +62,11 @@ pub(super) struct Arguments {
     /// Prints the result as JSON, with all counts
     #[arg(long)]
     json: bool,
+    /// Measures the slice of a set in space by the plane n·x = value instead: --slice 0,0,1=0.5
+    ///
+    /// For every size, the cubes of the layer that the plane halves are counted.
+    #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = space::plane, allow_hyphen_values = true)]
+    slice: Option<HalfSpace>,
     /// Plots counts, fit and local slopes into a file (SVG or PNG)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
@@ -97,9 +106,9 @@ pub(super) struct Arguments {
     /// Measures the light or transparent pixels instead
     #[arg(long, help_heading = "Pictures")]
     invert: bool,
-    /// Columns of a table that hold the coordinates, by name or number
-    #[arg(long, value_name = "X,Y", help_heading = "Tables", value_parser = columns)]
-    columns: Option<[String; 2]>,
+    /// Columns of a table that hold the two or three coordinates, by name or number
+    #[arg(long, value_name = "X,Y[,Z]", help_heading = "Tables", value_parser = columns)]
+    columns: Option<Columns>,
 }
 
 const MORE: &str = "\
@@ -112,6 +121,8 @@ Examples:
       Computes the dimension as a function of a parameter
   kfrac grow koch --steps 6 --format csv -o - | kfrac dim - --columns x0,y0 --json
       Measures the points of an approximant, with JSON output
+  kfrac dim menger --slice 1,1,1=1.5
+      Measures the slice through the middle of a cube, across its diagonal
   kfrac grow dragon --size 2048 --format png -o - | kfrac dim -
       Measures a picture
 ";
@@ -218,10 +229,15 @@ fn order(text: &str) -> Result<f64, String> {
     }
 }
 
-fn columns(text: &str) -> Result<[String; 2], String> {
-    match text.split_once(',') {
-        Some((x, y)) if !y.contains(',') => Ok([x.trim().into(), y.trim().into()]),
-        _ => Err("write the names or numbers of two columns: X,Y".into()),
+/// Names or numbers of the columns of coordinates.
+#[derive(Clone)]
+struct Columns(Vec<String>);
+
+fn columns(text: &str) -> Result<Columns, String> {
+    let columns: Vec<String> = text.split(',').map(|name| name.trim().into()).collect();
+    match columns.len() {
+        2 | 3 => Ok(Columns(columns)),
+        _ => Err("write the names or numbers of two or three columns: X,Y or X,Y,Z".into()),
     }
 }
 

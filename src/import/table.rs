@@ -5,17 +5,17 @@ use std::io::{self, Read};
 
 use csv::{ByteRecord, ErrorKind, ReaderBuilder, Trim};
 
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, DVec3};
 
-/// Limit of the number of points in a table; a point takes 16 bytes.
-const MAX_POINTS: usize = 1 << 27;
+/// Limit of the number of points in a table; a point takes 16 bytes, or 24 in space.
+pub(super) const MAX_POINTS: usize = 1 << 27;
 
 /// An error in a table of points. Rows are numbered from 1, the header included.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// No columns are named, and the table does not have two.
-    #[error("the table has {columns} columns, and points have two: name two of them")]
+    /// No columns are named, and the table has neither two nor three, nor columns named x, y and z.
+    #[error("the table has {columns} columns, and points have two or three: name these")]
     Columns {
         /// The number of columns.
         columns: usize,
@@ -60,20 +60,26 @@ pub enum TableError {
     Csv(csv::Error),
 }
 
+/// Points of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Table {
+    /// Points of the plane.
+    Plane(Vec<DVec2>),
+    /// Points of space.
+    Space(Vec<DVec3>),
+}
+
 /// Reads points from CSV: comma-separated rows, with or without a header.
 ///
-/// `columns` names the two columns of the coordinates, by their names in the header or by number from 1; a
-/// table of two columns needs none. The first row is a header if neither of its coordinates is a number.
-/// Lines that start with `#` are comments.
+/// `columns` names the two or three columns of the coordinates, by their names in the header or by number from 1; a
+/// table of two or three columns needs none, nor does one whose header has x, y and z. The first row is a header if
+/// none of its coordinates is a number. Lines that start with `#` are comments.
 ///
 /// # Errors
 ///
-/// Returns an error if the columns are not found, if a row does not hold two finite numbers there or differs
+/// Returns an error if the columns are not found, if a row does not hold finite numbers there or differs
 /// in length from the first, if the table cannot be read, or if it has too many points.
-pub fn read_points(
-    input: impl Read,
-    columns: Option<&[String; 2]>,
-) -> Result<Vec<DVec2>, TableError> {
+pub fn read_points(input: impl Read, columns: Option<&[String]>) -> Result<Table, TableError> {
     let bytes = Cell::new(0);
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
@@ -84,31 +90,35 @@ pub fn read_points(
             bytes: &bytes,
         });
     let mut record = ByteRecord::new();
-    let mut points = Vec::new();
+    let (mut plane, mut space) = (Vec::new(), Vec::new());
     let mut row = 0;
-    let mut places = None;
+    let mut places: Option<Vec<usize>> = None;
     while reader.read_byte_record(&mut record).map_err(explained)? {
         row += 1;
         bytes.set(0);
-        let [x, y] = match places {
+        let is_first = places.is_none();
+        let places = match &mut places {
             Some(places) => places,
-            None => {
-                let found = find(&record, columns)?;
-                places = Some(found);
-                let is_header = |place: usize| number(&record[place]).is_none();
-                if found.into_iter().all(is_header) {
-                    continue;
-                }
-                found
-            }
+            places => places.insert(find(&record, columns)?),
         };
-        if points.len() == MAX_POINTS {
+        let is_header = |place: &usize| number(&record[*place]).is_none();
+        if is_first && places.iter().all(is_header) {
+            continue;
+        }
+        if plane.len().max(space.len()) == MAX_POINTS {
             return Err(TableError::TooMany);
         }
         let coordinate = |place| coordinate(&record, place, row);
-        points.push(DVec2::new(coordinate(x)?, coordinate(y)?));
+        match places[..] {
+            [x, y, z] => space.push(DVec3::new(coordinate(x)?, coordinate(y)?, coordinate(z)?)),
+            [x, y, ..] => plane.push(DVec2::new(coordinate(x)?, coordinate(y)?)),
+            _ => {}
+        }
     }
-    Ok(points)
+    Ok(match space.is_empty() {
+        true => Table::Plane(plane),
+        false => Table::Space(space),
+    })
 }
 
 /// Limit of the number of bytes between two rows: a stream without line ends must not fill the memory.
@@ -134,20 +144,23 @@ impl<R: Read> Read for Rows<'_, R> {
 }
 
 /// Returns the positions of the coordinates, by the first row.
-fn find(first: &ByteRecord, columns: Option<&[String; 2]>) -> Result<[usize; 2], TableError> {
-    let Some([x, y]) = columns else {
-        return match first.len() {
-            2 => Ok([0, 1]),
-            columns => Err(TableError::Columns { columns }),
+fn find(first: &ByteRecord, columns: Option<&[String]>) -> Result<Vec<usize>, TableError> {
+    let of_name = |name: &str| first.iter().position(|field| field == name.as_bytes());
+    let Some(columns) = columns else {
+        let named: Option<Vec<usize>> = ["x", "y", "z"].into_iter().map(of_name).collect();
+        return match (named, first.len()) {
+            (Some(named), _) => Ok(named),
+            (None, columns @ 2..=3) => Ok((0..columns).collect()),
+            (None, columns) => Err(TableError::Columns { columns }),
         };
     };
     let place = |name: &String| {
-        let named = first.iter().position(|field| field == name.as_bytes());
+        let named = of_name(name);
         let numbered = || name.parse::<usize>().ok()?.checked_sub(1);
         let place = named.or_else(numbered).filter(|place| *place < first.len());
         place.ok_or_else(|| TableError::NoColumn { name: name.clone() })
     };
-    Ok([place(x)?, place(y)?])
+    columns.iter().map(place).collect()
 }
 
 fn number(field: &[u8]) -> Option<f64> {

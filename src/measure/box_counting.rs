@@ -9,7 +9,7 @@ use super::averaging::averaged;
 use super::bits::Bits;
 use super::cover::{Grid, Scale};
 use super::extrapolation::extrapolated;
-use super::limit::LimitSet;
+use super::limit::{LimitSet, Slice};
 use super::raster::{means, own_base, raster_scales, regular, thickness};
 use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
@@ -102,7 +102,7 @@ impl BoxCounting {
     ) -> Self {
         const MAX_BOXES: u64 = 1 << 17;
         let fine = libm::exp2(-f64::from(M::FILLED_LEVELS));
-        let most = real(M::Point::DIMENSION);
+        let most = real(set.space());
         let extent = set.bounds().size().max_element();
         if extent <= 0.0 {
             return Self::of_point();
@@ -120,6 +120,18 @@ impl BoxCounting {
             Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, most)),
             None => Self::of(&set.scales(base, MAX_BOXES, grids, threads), &window),
         }
+    }
+
+    /// Measures the slice of a limit set, as [`of_limit`](Self::of_limit) does, with layers of cubes on `grids` grids
+    /// that are turned and shifted in its plane. The base is a whole number.
+    #[must_use]
+    pub fn of_slice(
+        slice: &Slice,
+        base: Option<f64>,
+        grids: NonZero<usize>,
+        threads: NonZero<usize>,
+    ) -> Self {
+        Self::of_limit(slice.set(), base, &Slice::grids(grids), threads)
     }
 
     /// Measures the set pixels of a picture, with boxes of `base`, base² … pixels.

@@ -3,6 +3,7 @@
 mod cascade;
 mod descent;
 mod moments;
+mod slice;
 mod states;
 
 use std::num::NonZero;
@@ -15,9 +16,11 @@ use super::bits::Bits;
 use super::cover::{Counts, Grid, Scale, least};
 use super::space::Space;
 use super::voxels::Voxels;
+use crate::saturating::real;
 
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
+pub use slice::Slice;
 
 /// The limit set of a graph's fertile elements: the attractor.
 ///
@@ -28,6 +31,8 @@ pub struct LimitSet<M: Affine = DAffine2> {
     objects: Vec<Part<M>>,
     start: Vec<Placed<M>>,
     bounds: Bounds<M::Point>,
+    /// Whether the set is a [`Slice`] by the plane z = 0, which is covered by one layer of boxes.
+    is_layer: bool,
 }
 
 /// The limit set of an object, in its unit frame.
@@ -167,6 +172,7 @@ impl<M: Space> LimitSet<M> {
             objects: children.into_iter().map(part).collect(),
             start,
             bounds: Bounds::EMPTY,
+            is_layer: false,
         };
         set.find_points();
         set.find_radii();
@@ -227,6 +233,27 @@ impl<M: Space> LimitSet<M> {
         (common > LEAST).then(|| libm::exp(common))
     }
 
+    /// Returns the dimension of the space, or of the plane of a slice.
+    pub(super) fn space(&self) -> usize {
+        M::Point::DIMENSION - usize::from(self.is_layer)
+    }
+
+    /// Returns the numbers of boxes along the axes of a box that is divided by a base.
+    fn parts(&self, base: usize) -> Counts {
+        match self.is_layer {
+            true => [base, base, 1],
+            false => M::boxes(base),
+        }
+    }
+
+    /// Returns the translation that takes the layer in the middle of a divided box to the first one.
+    fn to_layer(&self, base: usize) -> M::Point {
+        match self.is_layer {
+            true => M::Point::of_coordinates([0.0, 0.0, (1.0 - real(base)) / 2.0]),
+            false => M::Point::ZERO,
+        }
+    }
+
     /// Covers the set by boxes whose sides are fractions of its extent, each smaller than the one before by
     /// the factor `base`, down to about `most` boxes (or 2^14 in a row, 2^9 in space), or to where too many copies would
     /// have to be examined.
@@ -245,7 +272,7 @@ impl<M: Space> LimitSet<M> {
         assert!(base > 1.0, "boxes get smaller");
         let finest = libm::exp2(-f64::from(M::FILLED_LEVELS));
         let extent = self.bounds.size().max_element();
-        if extent <= 0.0 {
+        if extent <= 0.0 || self.is_layer {
             return Vec::new();
         }
         let largest = extent / 2.0;
@@ -280,7 +307,11 @@ impl<M: Space> LimitSet<M> {
             ..*copy
         };
         let start: Vec<_> = self.start.iter().map(turned).collect();
-        Self::extent(&self.objects, &start)
+        let bounds = Self::extent(&self.objects, &start);
+        match self.is_layer {
+            true => Bounds::new(flattened(bounds.min()), flattened(bounds.max())),
+            false => bounds,
+        }
     }
 
     /// Returns the boxes that the set meets, on the grid that `map` leads to: its boxes have side 1 and
@@ -436,6 +467,12 @@ impl LimitSet {
         let covered = self.covered(map, [columns, rows, 1])?;
         Some(covered.into_layers())
     }
+}
+
+/// Returns the projection of a point to the plane z = 0.
+fn flattened<P: Point>(point: P) -> P {
+    let [x, y, _] = point.coordinates();
+    P::of_coordinates([x, y, 0.0])
 }
 
 /// Returns the extent of copies in a direction of length 1.

@@ -71,7 +71,7 @@ impl Masses {
     /// Computes the masses of points, each of which has a mass of 1.
     #[must_use]
     pub fn of_points<M: Space>(points: &Points<M>) -> Self {
-        // The number of boxes in a row is a quarter of the number of places, from 4 to 2048 (256 in space), rounded up to a
+        // The number of boxes in a row is a quarter of the number of places, from 4 to 2048 (64 in space), rounded up to a
         // power of two.
         let most = M::FINENESS[0].saturating_mul(2);
         let few = (points.places().count() / 4).clamp(4, most);

@@ -114,7 +114,7 @@ impl Space for DAffine3 {
     const LEVELS: u32 = 20;
     const FINEST_LEVELS: u32 = 18;
     const FILLED_LEVELS: u32 = 9;
-    const FINENESS: &'static [usize] = &[128, 64, 32];
+    const FINENESS: &'static [usize] = &[32, 16];
     const COUNTS_STATES: bool = true;
 
     /// Spreads rotations evenly (Shoemake 1992), from the identity on.

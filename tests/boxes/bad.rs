@@ -42,7 +42,7 @@ fn bad_input_is_refused_with_a_reason() {
     no_width[16..20].fill(0);
     let mut huge = white.clone();
     huge[16..24].fill(0x7f);
-    let cases: [(&str, &[u8], &str); 16] = [
+    let cases: [(&str, &[u8], &str); 20] = [
         ("empty.csv", b"", "there are no points"),
         ("header.csv", b"x,y\n", "there are no points"),
         ("one.csv", b"1,2\n", "all points are equal"),
@@ -64,9 +64,29 @@ fn bad_input_is_refused_with_a_reason() {
             "row 3: 3 columns, not 2 as in the rows before",
         ),
         (
-            "three.csv",
-            b"0,0,0\n",
-            "the table has 3 columns, and points have two",
+            "four.csv",
+            b"0,0,0,0\n",
+            "the table has 4 columns, and points have two or three",
+        ),
+        (
+            "cut.ply",
+            b"ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0123",
+            "the file ends before the last of its vertices",
+        ),
+        (
+            "flat.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+            "there is no element 'vertex' with the properties x, y and z",
+        ),
+        (
+            "type.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n0\n",
+            "line 4 of the header: unknown type 'half'",
+        ),
+        (
+            "word.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 one 0\n",
+            "vertex 1: 'one' is not a number",
         ),
         (
             "far.csv",

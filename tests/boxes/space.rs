@@ -1,6 +1,9 @@
 //! Boxes of sets in space.
 
-use kfrac::geometry::DAffine3;
+use std::fs;
+use std::path::Path;
+
+use kfrac::geometry::{DAffine3, DVec3};
 use kfrac::measure::{BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Scale};
 
 use super::{assert_is, common, number};
@@ -105,4 +108,123 @@ fn spectra_and_lacunarity_in_space() {
     // 4^5 of 32³ boxes are met: ⟨m²⟩ / ⟨m⟩² is 2^5 for single boxes, and 1 for the whole.
     assert!((lacunarity[0].value - 32.0).abs() < 1e-9, "{lacunarity:?}");
     assert!((lacunarity[5].value - 1.0).abs() < 1e-9, "{lacunarity:?}");
+}
+
+/// Returns points of the Sierpinski tetrahedron, by the chaos game.
+fn points(count: usize) -> Vec<[f32; 3]> {
+    let corners = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
+    let mut at = [1.0f32; 3];
+    let mut state = 1u64;
+    let point = |_| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        let corner = corners[(state >> 62) as usize];
+        for axis in 0..3 {
+            at[axis] = (at[axis] + corner[axis]) / 2.0;
+        }
+        at
+    };
+    (0..count).map(point).collect()
+}
+
+fn measured(folder: &Path, name: &str, bytes: &[u8]) -> String {
+    fs::write(folder.join(name), bytes).unwrap();
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let arguments = ["dim", name, "--grids", "2", "--orders", "0,2", "--json"];
+    let output = command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Tables and PLY files of the same points have the same boxes, in any order of bytes.
+#[test]
+fn points_in_space_from_tables_and_from_ply() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = points(20_000);
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\ncomment points\nelement face 2\nproperty list uchar int vertex_indices\n\
+             element vertex {}\nproperty float x\nproperty uchar shade\nproperty float y\nproperty float z\nend_header\n",
+            points.len()
+        )
+    };
+    let mut table = "x,y,z,shade\n".to_owned();
+    let mut text = header("ascii") + "3 0 1 2\n2 0 1\n";
+    let mut little = header("binary_little_endian").into_bytes();
+    let mut big = header("binary_big_endian").into_bytes();
+    for face in [&[0i32, 1, 2][..], &[0, 1]] {
+        let length = u8::try_from(face.len()).unwrap();
+        little.push(length);
+        big.push(length);
+        for corner in face {
+            little.extend(corner.to_le_bytes());
+            big.extend(corner.to_be_bytes());
+        }
+    }
+    for [x, y, z] in &points {
+        // All digits of a number of 32 bits.
+        let [long_x, long_y, long_z] = [*x, *y, *z].map(f64::from);
+        table += &format!("{long_x},{long_y},{long_z},7\n");
+        text += &format!("{long_x} 7 {long_y} {long_z}\n");
+        for (bytes, of) in [
+            (&mut little, f32::to_le_bytes as fn(f32) -> [u8; 4]),
+            (&mut big, f32::to_be_bytes),
+        ] {
+            bytes.extend(of(*x));
+            bytes.push(7);
+            bytes.extend(of(*y));
+            bytes.extend(of(*z));
+        }
+    }
+    let of_table = measured(folder.path(), "points.csv", table.as_bytes());
+    for (name, bytes) in [
+        ("text.ply", text.as_bytes()),
+        ("little.ply", &little),
+        ("big", &big),
+    ] {
+        assert_eq!(measured(folder.path(), name, bytes), of_table, "{name}");
+    }
+    let json: serde_json::Value = serde_json::from_str(&of_table).unwrap();
+    let value = json["box_counting"]["value"].as_f64().unwrap();
+    let error = json["box_counting"]["std_error"].as_f64().unwrap();
+    assert!((value - 2.0).abs() < 2.0 * error + 0.05, "{value} {error}");
+    assert!(json["lacunarity"].as_array().unwrap().len() > 3);
+}
+
+/// Layers of cubes about planes through a sponge: a carpet in its side, four cubes in each in its middle.
+#[test]
+fn slices_are_covered_by_layers() {
+    let set = named("menger");
+    let measured = |normal: DVec3, offset: f64| {
+        let slice = set.slice(normal, offset).unwrap();
+        BoxCounting::of_slice(&slice, Some(3.0), number(1), number(1))
+    };
+    for (normal, offset, parts) in [
+        (DVec3::Z, 0.0, 8u64),
+        (DVec3::Z, 0.5, 4),
+        (-2.0 * DVec3::X, -1.0, 4),
+        (DVec3::Y, 1.0, 8),
+    ] {
+        let counting = measured(normal, offset);
+        for (level, it) in (1..).zip(&counting.boxes) {
+            assert_eq!(it.count, parts.pow(level), "{normal} {offset}");
+        }
+        let dimension = (parts as f64).ln() / 3f64.ln();
+        assert_is(&counting.estimate.unwrap(), dimension, 0.001);
+    }
+    let misses = set.slice(2.0 * DVec3::Z, 3.0).unwrap_err();
+    assert!(
+        misses[0].abs() < 1e-9 && (misses[1] - 2.0).abs() < 1e-9,
+        "{misses:?}"
+    );
 }

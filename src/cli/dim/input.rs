@@ -9,11 +9,11 @@ use anyhow::{Context, anyhow};
 use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
 use crate::extent::{Bounded, NoLimit};
-use crate::geometry::DAffine2;
+use crate::geometry::{DAffine2, DAffine3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::ifs::{AffineMap, Ifs};
-use crate::import::{Channel, Raster, TableError, read_points};
+use crate::import::{Channel, PlyError, Raster, Table, TableError, read_ply, read_points};
 use crate::measure::exact::{GraphDimensions, Spectrum, dimensions_of_graph};
 use crate::measure::{
     Bits, BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Points, Space, grown,
@@ -87,12 +87,21 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
         }
         Kind::Table => {
-            let points = read_points(&mut whole, arguments.columns.as_ref());
+            let columns = arguments.columns.as_ref().map(|columns| &columns.0[..]);
+            let points = read_points(&mut whole, columns);
             let points = points.map_err(|error| match error {
                 TableError::Columns { .. } => anyhow!("{name}: {error}, as in --columns x,y"),
                 error => anyhow::Error::new(error).context(name.clone()),
             })?;
-            of_points(arguments, &name, points)
+            match points {
+                Table::Plane(points) => of_points::<DAffine2>(arguments, &name, points),
+                Table::Space(points) => of_points::<DAffine3>(arguments, &name, points),
+            }
+        }
+        Kind::Ply => {
+            let points = read_ply(io::BufReader::with_capacity(1 << 16, &mut whole));
+            let points = points.map_err(|error: PlyError| anyhow!("{name}: {error}"))?;
+            of_points::<DAffine3>(arguments, &name, points)
         }
         Kind::Rule => {
             let most = u64::try_from(Source::MAX_BYTES).unwrap_or(u64::MAX) + 1;
@@ -114,6 +123,7 @@ enum Kind {
     Rule,
     Picture,
     Table,
+    Ply,
 }
 
 impl Kind {
@@ -125,6 +135,8 @@ impl Kind {
             .map(|it| it.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             _ if Raster::is_picture(head) => Self::Picture,
+            _ if head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n") => Self::Ply,
+            Some("ply") => Self::Ply,
             Some("png" | "jpg" | "jpeg") => Self::Picture,
             Some("csv" | "txt") => Self::Table,
             Some("yaml" | "yml" | "json") => Self::Rule,
@@ -157,10 +169,12 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
             _ => None,
         };
         return Ok(match LimitSet::of(&graph) {
+            Ok(set) if arguments.slice.is_some() => of_slice(arguments, &set, measured)?,
             Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
             Err(error) => measured.without(&error),
         });
     }
+    only_in_space(arguments)?;
     let (graph, steps) = compiled(loaded)?;
     let weighted = match &loaded.model {
         Model::Ifs(system) => Some(system.ifs()),
@@ -173,6 +187,45 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
         }
         Err(error) => measured.without(&error),
     })
+}
+
+/// Checks that no slice of a set in the plane is asked for.
+fn only_in_space(arguments: &Arguments) -> Result<(), Failure> {
+    let message = "--slice: slices are those of limit sets in space";
+    match arguments.slice {
+        Some(_) => Err(Failure::Usage(message.into())),
+        None => Ok(()),
+    }
+}
+
+/// Measures the slice of a limit set in space.
+fn of_slice(
+    arguments: &Arguments,
+    set: &LimitSet<DAffine3>,
+    mut measured: Measured,
+) -> Result<Measured, Failure> {
+    let Some(HalfSpace { normal, distance }) = arguments.slice else {
+        return Ok(measured);
+    };
+    whole(arguments.base, "slices")?;
+    let slice = set.slice(normal, distance).map_err(|[low, high]| {
+        anyhow!(
+            "the slice misses the limit set, on which {normal} · x is from {low:.6} to {high:.6}"
+        )
+    })?;
+    let [x, y, z] = normal.to_array();
+    measured.exact = None;
+    measured.set = format!(
+        "the slice ({x}, {y}, {z}) · (x, y, z) = {distance} of the limit set, by layers of cubes"
+    );
+    let threads = arguments.threads();
+    measured.counting = BoxCounting::of_slice(&slice, arguments.base, arguments.grids, threads);
+    if measured.counting.boxes.is_empty() && measured.counting.estimate.is_none() {
+        let reason =
+            "nothing is measured: the slice meets nothing of the set, or too many copies overlap";
+        measured.warnings.push(reason.into());
+    }
+    Ok(measured)
 }
 
 /// Measures a limit set.
@@ -234,6 +287,7 @@ fn of_growth(
 }
 
 fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Measured, Failure> {
+    only_in_space(arguments)?;
     let picture = if arguments.invert {
         picture.inverted()
     } else {
@@ -303,11 +357,12 @@ fn whole(base: Option<f64>, of: &str) -> Result<NonZero<usize>, Failure> {
     whole.ok_or_else(|| Failure::Usage(message()))
 }
 
-fn of_points(
+fn of_points<M: Space>(
     arguments: &Arguments,
     name: &str,
-    points: Vec<crate::geometry::DVec2>,
+    points: Vec<M::Point>,
 ) -> Result<Measured, Failure> {
+    only_in_space(arguments)?;
     let base = whole(arguments.base, "points")?;
     let count = points.len();
     let mut measured = Measured {
@@ -316,7 +371,7 @@ fn of_points(
         set: format!("{count} points"),
         ..Measured::default()
     };
-    let points = Points::<DAffine2>::new(points).with_context(|| name.to_owned())?;
+    let points = Points::<M>::new(points).with_context(|| name.to_owned())?;
     measured.sampled(&points, base, 0.0, arguments);
     Ok(measured)
 }

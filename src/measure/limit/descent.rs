@@ -80,10 +80,14 @@ impl<'s, M: Space> Descent<'s, M> {
         self.choose();
         self.looked_at = 0;
         let scale = real(base);
+        let layer = self.set.to_layer(base);
         let mut cells = Vec::new();
         for mut cell in std::mem::take(&mut self.cells) {
-            cell.iter_mut().for_each(|copy| copy.grow(scale));
-            cells.append(&mut self.divided(cell, M::boxes(base)));
+            for copy in &mut cell {
+                copy.grow(scale);
+                *copy = copy.moved(layer);
+            }
+            cells.append(&mut self.divided(cell, self.set.parts(base)));
             if self.looked_at > MAX_COPIES {
                 break;
             }
@@ -190,8 +194,14 @@ impl<M: Space> LimitSet<M> {
             return least(&sizes, &[Grid::ALONG], threads, |_: &Grid<M>| exact.clone());
         }
         let counts = map(grids, threads.get(), |number, grid| {
-            let (map, boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
-            let map = Placed::new(map, 0);
+            let (map, mut boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
+            let mut map = Placed::new(map, 0);
+            if self.is_layer {
+                // The plane of the slice lies in the middle of the layer.
+                let up = 0.5 - map.map.translation().coordinates()[2];
+                map = map.moved(M::Point::of_coordinates([0.0, 0.0, up]));
+                boxes[2] = 1;
+            }
             let start = self.start.iter().map(|copy| map.compose(copy)).collect();
             let mut descent = Descent::new(self, start, boxes, number);
             let mut counts = Vec::new();

@@ -49,10 +49,13 @@ impl<M: Space> LimitSet<M> {
     pub(super) fn counts_by_states(&self, base: usize, sizes: usize) -> Option<Vec<u64>> {
         let extent = self.bounds.size().max_element();
         let unit = Placed::new(M::IDENTITY, 0);
+        // The plane of a slice lies in the middle of its layer.
+        let height = if self.is_layer { 0.5 } else { 0.0 };
+        let middle = M::Point::of_coordinates([0.0, 0.0, height]);
         let start = self.start.iter().map(|copy| {
             let mut copy = unit.compose(copy).moved(-self.bounds.min());
             copy.grow(1.0 / extent);
-            copy
+            copy.moved(middle)
         });
         let mut states = States {
             set: self,
@@ -115,10 +118,14 @@ impl<M: Space> States<'_, M> {
 
     /// Returns the states of the boxes into which a box is divided, without empty ones.
     fn divided(&mut self, cell: Cell<M>, base: usize) -> Option<Vec<usize>> {
-        let boxes: Counts = M::boxes(base);
+        let boxes: Counts = self.set.parts(base);
+        let layer = self.set.to_layer(base);
         let mut parts = vec![Cell::new(); boxes.iter().product()];
         let mut copies = cell;
-        copies.iter_mut().for_each(|copy| copy.grow(real(base)));
+        for copy in &mut copies {
+            copy.grow(real(base));
+            *copy = copy.moved(layer);
+        }
         while let Some(copy) = copies.pop() {
             self.left = self.left.checked_sub(1)?;
             let bounds = self.bounds_of(&copy)?;
