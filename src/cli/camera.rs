@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::geometry::DVec3;
-use crate::render::space::{Camera, Light, Shade, SpaceOptions};
+use crate::geometry::{DVec3, HalfSpace};
+use crate::render::space::{Camera, Light, Shade, Slice, SpaceOptions};
 use crate::style::Named;
 
 use super::Failure;
@@ -28,6 +28,17 @@ pub(super) struct SpaceArguments {
     /// Angle of view in degrees, for a picture in perspective [default: parallel]
     #[arg(long, value_name = "DEGREES", value_parser = angle, allow_hyphen_values = true)]
     perspective: Option<f64>,
+    /// Part between two planes: the normal, the value on the middle plane, and the thickness
+    ///
+    /// N·x = VALUE is the middle. Without a thickness, the section itself. Seen along the normal unless --from is
+    /// given. For example, --slice "1,1,1=1.5,w=0.01".
+    #[arg(long, value_name = "X,Y,Z=VALUE[,w=W]", value_parser = slice, allow_hyphen_values = true)]
+    slice: Option<Slice>,
+    /// Cut off what lies before a plane: the normal, and the value on the plane; repeatable
+    ///
+    /// Points with N·x at most VALUE remain. For example, --cut "1,0,0=0.5".
+    #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = cut, allow_hyphen_values = true)]
+    cut: Vec<HalfSpace>,
     /// Shading: depth darkens what is far, relief lights surfaces that are taken from the depths
     #[arg(long, value_name = "HOW", value_parser = named::<Shade>())]
     shade: Option<Shade>,
@@ -44,11 +55,17 @@ impl SpaceArguments {
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
         let vector = |vector: DVec3| vector.to_array().map(|it| it.to_string()).join(",");
         let angles = |angles: [f64; 2]| angles.map(|it| it.to_string()).join(",");
+        let plane = |normal: DVec3, value: f64| format!("{}={value}", vector(normal));
+        let slab = |slice: Slice| {
+            let thickness = slice.thickness.map(|it| format!(",w={it}"));
+            plane(slice.normal, slice.offset) + &thickness.unwrap_or_default()
+        };
         let all = [
             ("from", self.from.as_ref().map(ToString::to_string)),
             ("up", self.up.map(vector)),
             ("look-at", self.look_at.map(vector)),
             ("perspective", self.perspective.map(|it| it.to_string())),
+            ("slice", self.slice.map(slab)),
             ("shade", self.shade.map(|it| it.name().into())),
             ("light", self.light.map(angles)),
             ("ambient", self.ambient.map(|it| it.to_string())),
@@ -56,7 +73,8 @@ impl SpaceArguments {
         let given = all
             .into_iter()
             .filter_map(|(name, value)| Some((name, value?)));
-        given.collect()
+        let cuts = { self.cut.iter() }.map(|cut| ("cut", plane(cut.normal, cut.distance)));
+        given.chain(cuts).collect()
     }
 
     /// Refuses the options for a set of the plane.
@@ -70,7 +88,7 @@ impl SpaceArguments {
     /// Returns the options of a picture from the one direction that is given, or from the default.
     pub(super) fn to_options(&self) -> Result<SpaceOptions, Failure> {
         match self.from.as_ref().map(|views| &views.0[..]) {
-            None => Ok(self.seen_from(Camera::default().from)),
+            None => Ok(self.seen_from(self.default_view())),
             Some([from]) => Ok(self.seen_from(*from)),
             Some(_) => Err(Failure::Usage(
                 "a picture is seen from one direction: kfrac sheet shows several".into(),
@@ -80,7 +98,7 @@ impl SpaceArguments {
 
     /// Returns the options of one picture for each direction, with its name.
     pub(super) fn views(&self) -> Vec<(String, SpaceOptions)> {
-        let default = vec![Camera::default().from];
+        let default = vec![self.default_view()];
         let views = self.from.as_ref().map_or(&default, |views| &views.0);
         let name = |from: &[f64; 2]| {
             let named = Camera::NAMED.iter().find(|(_, angles)| angles == from);
@@ -92,6 +110,12 @@ impl SpaceArguments {
         let all = views.iter();
         all.map(|from| (name(from), self.seen_from(*from)))
             .collect()
+    }
+
+    /// Returns the direction in which a slice is seen face-on, or the default.
+    fn default_view(&self) -> [f64; 2] {
+        let face_on = self.slice.map(|slice| slice.from());
+        face_on.unwrap_or(Camera::default().from)
     }
 
     /// Returns the options of a picture from a direction.
@@ -109,6 +133,8 @@ impl SpaceArguments {
             .camera(camera)
             .light(light)
             .shade(self.shade.unwrap_or_default())
+            .slice(self.slice)
+            .cuts(self.cut.clone())
     }
 }
 
@@ -179,6 +205,34 @@ fn vector(text: &str) -> Result<DVec3, String> {
         Some(_) => Ok(vector),
         None => Err("a vector upwards has a length".into()),
     }
+}
+
+/// Parses a plane, as its normal and the value on it.
+fn cut(text: &str) -> Result<HalfSpace, String> {
+    let plane = || {
+        let (normal, value) = text.split_once('=')?;
+        let normal = vector(normal).ok()?;
+        let [distance] = numbers::<1>(value)?;
+        Some(HalfSpace { normal, distance })
+    };
+    plane().ok_or_else(|| "a plane is its normal and a value, as 1,0,0=0.5".into())
+}
+
+/// Parses a slab, as a plane and its thickness.
+fn slice(text: &str) -> Result<Slice, String> {
+    let slab = || {
+        let (plane, thickness) = match text.split_once(",w=") {
+            Some((plane, width)) => {
+                let [width] = numbers::<1>(width)?;
+                (plane, Some(Some(width).filter(|width| *width > 0.0)?))
+            }
+            None => (text, None),
+        };
+        let HalfSpace { normal, distance } = cut(plane).ok()?;
+        Some(Slice::new(normal, distance).thickness(thickness))
+    };
+    let wrong = "a slice is its normal and a value, and maybe a thickness above 0: 0,0,1=0.5 or 0,0,1=0.5,w=0.01";
+    slab().ok_or_else(|| wrong.into())
 }
 
 fn angle(text: &str) -> Result<f64, String> {

@@ -143,6 +143,18 @@ pub(super) struct Placement {
     pub(super) size: [u32; 2],
 }
 
+impl Placement {
+    /// Returns the number of samples a unit, in perspective at the middle of what is shown.
+    pub(super) fn scale(&self) -> f64 {
+        match self.projection {
+            Projection::Parallel => self.map.matrix3.row(2).length(),
+            Projection::Central { focus, .. } => {
+                focus / -f64::midpoint(self.range[0], self.range[1])
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

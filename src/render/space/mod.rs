@@ -19,6 +19,7 @@ mod relief;
 mod round;
 mod scene;
 mod shade;
+mod slice;
 mod solid;
 mod stamp;
 mod tints;
@@ -26,13 +27,14 @@ mod tints;
 pub use camera::{Camera, CameraError};
 pub(super) use shade::ink;
 pub use shade::{Light, Shade};
+pub use slice::Slice;
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-use crate::geometry::Frame3;
+use crate::geometry::{Frame3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::parallel::with_team;
@@ -43,8 +45,9 @@ use self::camera::Placement;
 use self::descent::{Descent, Roots};
 use self::forms::Forms;
 use self::relief::Relief;
-use self::scene::{Child, ClassBy, End};
+use self::scene::{ClassBy, End};
 use self::shade::Inks;
+use self::slice::Search;
 use self::solid::{Depths, View};
 use super::png::TooManyPixels;
 use super::{NoRoom, Options, Picture, Pixels, RenderError};
@@ -76,6 +79,12 @@ pub enum SpaceError {
         /// The limit.
         limit: u64,
     },
+    /// Slices and cuts leave nothing. The set lies between the two values along the first one's normal.
+    #[error(
+        "the slice or cut leaves nothing of the set, which lies between {:.6} and {:.6} along its normal",
+        .0[0], .0[1]
+    )]
+    NothingLeft([f64; 2]),
 }
 
 /// Options of pictures in space, beside those of all pictures.
@@ -88,13 +97,28 @@ pub struct SpaceOptions {
     pub shade: Shade,
     /// Light for relief.
     pub light: Light,
+    /// Slab to which the picture is confined.
+    pub slice: Option<Slice>,
+    /// Half-spaces to which the picture is confined: what lies before their planes is cut off.
+    pub cuts: Vec<HalfSpace>,
 }
 
 setters!(SpaceOptions {
     camera: Camera,
     shade: Shade,
     light: Light,
+    slice: Option<Slice>,
+    cuts: Vec<HalfSpace>,
 });
+
+impl SpaceOptions {
+    /// Returns the half-spaces to which the picture is confined; `pixel` is the thickness of a section.
+    fn within(&self, pixel: f64) -> Vec<HalfSpace> {
+        let slice = self.slice.iter();
+        let slabs = slice.flat_map(|slice| slice.half_spaces(slice.thickness.unwrap_or(pixel)));
+        slabs.chain(self.cuts.iter().copied()).collect()
+    }
+}
 
 /// White: the paper of pictures whose style has no background.
 pub(crate) const PAPER: Colour = Colour::grey(255);
@@ -151,6 +175,7 @@ struct Tile<'a> {
 /// State that all tiles share.
 struct Scene<'a> {
     roots: Roots<'a>,
+    cuts: Vec<HalfSpace>,
     placement: Placement,
     inks: Inks,
     cancel: Option<&'a AtomicBool>,
@@ -180,7 +205,7 @@ impl Tile<'_> {
         let view = View {
             projection: placement.projection,
             depths: Depths::new(placement.range),
-            cuts: &[],
+            cuts: &self.scene.cuts,
             corner: self.at.map(|tile| f64::from(tile) * side),
         };
         self.buffer.clear();
@@ -217,21 +242,25 @@ fn draw(
 ) -> Result<(Pixmap, Picture), RenderError> {
     const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
+    let parts = scene::parts(graph, steps);
+    let search = Search {
+        parts: &parts,
+        start: &scene::start(graph),
+        steps,
+    };
     let placement = place::place(
         graph,
-        steps,
+        &search,
         &space.camera,
+        // A section has the depths of its plane.
+        &space.within(0.0),
         options.size,
         options.view.margin,
     )?;
-    let parts = scene::parts(graph, steps);
-    let seen = scene::seen(graph, &placement.map);
-    let start: Vec<Child> = seen
-        .initiator(0)
-        .instances
-        .iter()
-        .map(scene::child)
-        .collect();
+    #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+    let cuts = space.within(SAMPLES as f64 / placement.scale());
+    let cuts = cuts.iter().map(|cut| slice::mapped(cut, &placement.map));
+    let start = scene::start(&scene::seen(graph, &placement.map));
     let detail = options.detail.as_ref().map_or(1.0, |detail| detail.pixels);
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let end = End {
@@ -259,6 +288,7 @@ fn draw(
             pad,
             overlap: copies::overlap(&parts),
         },
+        cuts: cuts.collect(),
         placement,
         inks: Inks::of(style, class_by, classes, space.shade),
         cancel,

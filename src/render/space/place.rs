@@ -1,6 +1,6 @@
 //! Placement of a set in space on a picture, by the exact extent of its projection.
 
-use crate::geometry::{Bounds, DAffine3, DMat3, DVec2, DVec3, Frame3};
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec2, DVec3, Frame3, HalfSpace, Solid};
 use crate::graph::Graph;
 use crate::render::{Canvas, NoRoom, Size};
 
@@ -8,18 +8,25 @@ use super::SpaceError;
 use super::buffer::SAMPLES;
 use super::camera::{Camera, Placement, Projection};
 use super::scene::extent_along;
+use super::slice::Search;
 
 /// Number of steps of the search for the extent of a perspective picture.
 const MAX_ROUNDS: usize = 60;
 
-/// Places a set: the limit set, and approximant `steps` if it is given.
+/// Extent of a section, relative to its distance from the origin, that is a rounding error.
+const FLAT: f64 = 1e-12;
+
+/// Places what lies in all of the half-spaces `within` of a set: the limit set, and approximant `steps` if it is
+/// given.
 pub(super) fn place(
     graph: &Graph<Frame3>,
-    steps: Option<u32>,
+    search: &Search<'_>,
     camera: &Camera,
+    within: &[HalfSpace],
     size: Size,
     margin: f64,
 ) -> Result<Placement, SpaceError> {
+    let steps = search.steps;
     camera.check()?;
     let rotation = camera.rotation()?;
     let extent = |rows: DMat3| -> Result<Bounds<DVec3>, SpaceError> {
@@ -34,7 +41,17 @@ pub(super) fn place(
         }
         Ok(bounds)
     };
-    let bounds = extent(rotation)?;
+    let bounds = match within.first() {
+        None => extent(rotation)?,
+        Some(first) => match search.extent(rotation, within) {
+            Some(bounds) => without_rounding(&bounds),
+            None => {
+                let normal = DMat3::from_cols(first.normal, DVec3::ZERO, DVec3::ZERO);
+                let along = extent(normal.transpose())?;
+                return Err(SpaceError::NothingLeft([along.min().x, along.max().x]));
+            }
+        },
+    };
     let middle = bounds.min() + bounds.size() / 2.0;
     let centre = camera.look_at.map_or(middle, |point| rotation * point);
     let Some(angle) = camera.perspective else {
@@ -56,7 +73,10 @@ pub(super) fn place(
     let distance = away.length() / crate::expression::degrees::sin(angle / 2.0);
     let distance = if distance > 0.0 { distance } else { 1.0 };
     let viewer = centre + DVec3::Z * distance;
-    let window = window(rotation, viewer, &bounds, &extent)?;
+    let window = match within {
+        [] => window(rotation, viewer, &bounds, &extent)?,
+        _ => window_of_box(viewer, &bounds),
+    };
     let flat = Bounds::new(window.min().extend(0.0), window.max().extend(0.0));
     let canvas = Canvas::fit(&around(&flat, DVec3::ZERO, camera), size, margin)?;
     let focus = canvas.scale() * SAMPLES_A_PIXEL;
@@ -71,6 +91,24 @@ pub(super) fn place(
         range: [bounds.min().z - viewer.z, bounds.max().z - viewer.z],
         size: canvas.size(),
     })
+}
+
+/// Returns a box without extents that are rounding errors.
+fn without_rounding(bounds: &Bounds<DVec3>) -> Bounds<DVec3> {
+    let (min, max) = (bounds.min(), bounds.max());
+    let largest = min.abs().max(max.abs()).max_element();
+    let is_flat = (max - min).cmple(DVec3::splat(FLAT * largest));
+    Bounds::new(min, DVec3::select(is_flat, min, max))
+}
+
+/// Returns the extent of a perspective picture of a box, in units at distance 1.
+fn window_of_box(viewer: DVec3, bounds: &Bounds<DVec3>) -> Bounds {
+    let mut window = Bounds::EMPTY;
+    for corner in Solid::cuboid(bounds).corners() {
+        let away = *corner - viewer;
+        window.add(away.truncate() / -away.z);
+    }
+    window
 }
 
 #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]

@@ -112,8 +112,8 @@ fn span(primitive: Round, Ray { start, along }: Ray) -> [f64; 2] {
 }
 
 /// Returns the part of a ray that lies within half-spaces, too; `None` if it is empty.
-fn cut([mut low, mut high]: [f64; 2], cuts: &[(DVec3, f64)], ray: Ray) -> Option<[f64; 2]> {
-    for (normal, distance) in cuts {
+fn cut([mut low, mut high]: [f64; 2], cuts: &[HalfSpace], ray: Ray) -> Option<[f64; 2]> {
+    for HalfSpace { normal, distance } in cuts {
         let along = normal.dot(ray.along);
         let rest = distance - normal.dot(ray.start);
         if along > 0.0 {

@@ -173,7 +173,13 @@ pub(super) fn draws_unmade(graph: &Graph<Frame3>) -> bool {
     { graph.objects().iter() }.any(|object| object.is_kept() && is_unmade(object))
 }
 
-pub(super) fn child(instance: &Instance<Frame3>) -> Child {
+/// Returns the instances of the initiator.
+pub(super) fn start(graph: &Graph<Frame3>) -> Vec<Child> {
+    let instances = &graph.initiator(0).instances;
+    instances.iter().map(child).collect()
+}
+
+fn child(instance: &Instance<Frame3>) -> Child {
     Child {
         map: *instance.frame.map(),
         length: instance.length,
@@ -260,11 +266,11 @@ fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
 
 /// Returns the box of the limit of an object's subtree, in its unit frame. Overwrites the initiator.
 fn box_of(graph: &mut Graph<Frame3>, object: usize) -> Option<Bounds<DVec3>> {
-    start(graph, object, Frame3::UNIT);
+    start_with(graph, object, Frame3::UNIT);
     graph.limit_bounds()
 }
 
-fn start(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
+fn start_with(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
     let root = Instance {
         length: frame.stretch(),
         frame,

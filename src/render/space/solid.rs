@@ -1,6 +1,6 @@
 //! Drawing of convex solids into a depth buffer.
 
-use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, Solid, eigen};
+use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, HalfSpace, Solid, eigen};
 use crate::graph::Graph;
 
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
@@ -187,8 +187,6 @@ impl Planes {
 #[derive(Default)]
 pub(super) struct Pencil {
     planes: Planes,
-    highest: Vec<f64>,
-    lowest: Vec<f64>,
 }
 
 impl Pencil {
@@ -209,65 +207,61 @@ impl Pencil {
             buffer.refresh(rectangle);
             return;
         }
-        let faces = faces(solid, map, view).chain(view.cuts.iter().copied());
+        let faces =
+            faces(solid, map, view).chain(view.cuts.iter().map(|cut| (cut.normal, cut.distance)));
         self.planes.set(view.projection, faces);
         let [left, top, right, bottom] = rectangle;
         for y in top..bottom {
-            self.draw_row(buffer, view, [left, right], y, class);
+            let row = &mut buffer.row_mut(y)[left..right];
+            self.planes.draw_row(row, view, [left, y], class);
         }
         buffer.refresh(rectangle);
     }
+}
 
+/// Samples that are drawn together.
+const LANES: usize = 8;
+
+impl Planes {
+    /// Draws the solid on a part of a row of samples, whose first one is given.
     #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-    fn draw_row(
-        &mut self,
-        buffer: &mut Buffer,
-        view: &View<'_>,
-        [mut left, mut right]: [usize; 2],
-        y: usize,
-        class: u16,
-    ) {
+    fn draw_row(&self, row: &mut [u32], view: &View<'_>, [left, y]: [usize; 2], class: u16) {
         let [corner_x, corner_y] = view.corner;
         let at_y = corner_y + y as f64 + 0.5;
-        for plane in &self.planes.edges {
-            let rest = plane.z + plane.y * at_y;
-            let inside = |x: usize| rest + plane.x * (corner_x + x as f64 + 0.5) <= 0.0;
-            while left < right && !inside(left) {
-                left += 1;
+        for (number, keys) in row.chunks_mut(LANES).enumerate() {
+            let first = corner_x + (left + number * LANES) as f64 + 0.5;
+            let at = |plane: &Plane| plane.z + plane.y * at_y + plane.x * first;
+            let mut highest = [f64::INFINITY; LANES];
+            for plane in &self.front {
+                let start = at(plane);
+                for (step, highest) in highest.iter_mut().enumerate() {
+                    let z = start + plane.x * step as f64;
+                    *highest = if z < *highest { z } else { *highest };
+                }
             }
-            while left < right && !inside(right - 1) {
-                right -= 1;
+            let mut lowest = [f64::NEG_INFINITY; LANES];
+            for plane in &self.back {
+                let start = at(plane);
+                for (step, lowest) in lowest.iter_mut().enumerate() {
+                    let z = start + plane.x * step as f64;
+                    *lowest = if z > *lowest { z } else { *lowest };
+                }
             }
-        }
-        if left >= right {
-            return;
-        }
-        let count = right - left;
-        let first = corner_x + left as f64 + 0.5;
-        self.highest.clear();
-        self.highest.resize(count, f64::INFINITY);
-        self.lowest.clear();
-        self.lowest.resize(count, f64::NEG_INFINITY);
-        for plane in &self.planes.front {
-            let start = plane.z + plane.y * at_y + plane.x * first;
-            for (step, highest) in self.highest.iter_mut().enumerate() {
-                *highest = highest.min(start + plane.x * step as f64);
+            for plane in &self.edges {
+                let start = at(plane);
+                for (step, lowest) in lowest.iter_mut().enumerate() {
+                    let is_beyond = start + plane.x * step as f64 > 0.0;
+                    *lowest = if is_beyond { f64::INFINITY } else { *lowest };
+                }
             }
-        }
-        for plane in &self.planes.back {
-            let start = plane.z + plane.y * at_y + plane.x * first;
-            for (step, lowest) in self.lowest.iter_mut().enumerate() {
-                *lowest = lowest.max(start + plane.x * step as f64);
-            }
-        }
-        let row = &mut buffer.row_mut(y)[left..right];
-        for ((key, highest), lowest) in row.iter_mut().zip(&self.highest).zip(&self.lowest) {
-            if highest >= lowest && *highest < f64::INFINITY {
-                let z = match view.projection {
-                    Projection::Parallel => *highest,
-                    Projection::Central { .. } => -1.0 / highest,
-                };
-                *key = (*key).min(view.depths.of(z) << CLASS_BITS | u32::from(class));
+            for ((key, highest), lowest) in keys.iter_mut().zip(highest).zip(lowest) {
+                if highest >= lowest && highest < f64::INFINITY {
+                    let z = match view.projection {
+                        Projection::Parallel => highest,
+                        Projection::Central { .. } => -1.0 / highest,
+                    };
+                    *key = (*key).min(view.depths.of(z) << CLASS_BITS | u32::from(class));
+                }
             }
         }
     }
@@ -277,8 +271,8 @@ impl Pencil {
 pub(super) struct View<'a> {
     pub(super) projection: Projection,
     pub(super) depths: Depths,
-    /// Half-spaces that are shown, in the coordinates of the projection: normals and distances.
-    pub(super) cuts: &'a [(DVec3, f64)],
+    /// Half-spaces to which the picture is confined, in the coordinates of the projection.
+    pub(super) cuts: &'a [HalfSpace],
     /// Upper left corner of the tile, in samples.
     pub(super) corner: [f64; 2],
 }
@@ -296,14 +290,14 @@ impl View<'_> {
     pub(super) fn cuts_off(&self, middle: DVec3, half: DVec3) -> bool {
         self.cuts
             .iter()
-            .any(|(normal, distance)| normal.dot(middle) - normal.abs().dot(half) > *distance)
+            .any(|cut| cut.normal.dot(middle) - cut.normal.abs().dot(half) > cut.distance)
     }
 
     /// Returns whether a part of a box about a point is not shown.
     pub(super) fn cuts_through(&self, middle: DVec3, half: DVec3) -> bool {
         self.cuts
             .iter()
-            .any(|(normal, distance)| normal.dot(middle) + normal.abs().dot(half) > *distance)
+            .any(|cut| cut.normal.dot(middle) + cut.normal.abs().dot(half) > cut.distance)
     }
 
     /// Returns the largest number of samples a unit of a box whose nearest point is at a z.
@@ -320,6 +314,7 @@ impl View<'_> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
         reason = "the values are clamped"
     )]
     pub(super) fn rectangle(&self, middle: DVec3, half: DVec3) -> Option<[usize; 4]> {
@@ -357,9 +352,13 @@ impl View<'_> {
             #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
             let side = SIDE as f64;
             // Samples lie in the middle of their squares.
-            let low = (low - 0.5).ceil().clamp(0.0, side);
-            let high = (high + 0.5).floor().clamp(0.0, side);
-            [low as usize, high as usize]
+            let low = (low - 0.5).clamp(0.0, side);
+            let before = low as usize;
+            let is_between = low > before as f64;
+            [
+                before + usize::from(is_between),
+                (high + 0.5).clamp(0.0, side) as usize,
+            ]
         });
         (left < right && top < bottom).then_some([left, top, right, bottom])
     }
