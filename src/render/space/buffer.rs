@@ -92,6 +92,29 @@ impl Buffer {
         hidden(coarse) || (coarse > 0 && hidden(coarse - 1))
     }
 
+    /// Returns the least rectangle within one that contains its samples which are not strictly nearer than a depth;
+    /// `None` if there are none.
+    pub(super) fn open(
+        &self,
+        [left, top, right, bottom]: [usize; 4],
+        depth: u32,
+    ) -> Option<[usize; 4]> {
+        let least = depth << CLASS_BITS;
+        let is_open = |key: &u32| *key >= least;
+        let [mut first, mut last] = [right, left];
+        let [mut upper, mut lower] = [bottom, top];
+        for y in top..bottom {
+            let row = &self.row(y)[left..right];
+            if let Some(at) = row.iter().position(is_open) {
+                first = first.min(left + at);
+                last = last.max(right - row.iter().rev().position(is_open).unwrap_or(0));
+                upper = upper.min(y);
+                lower = y + 1;
+            }
+        }
+        (upper < lower).then_some([first, upper, last, lower])
+    }
+
     /// Updates the pyramid after samples of a rectangle have been changed.
     pub(super) fn refresh(&mut self, [left, top, right, bottom]: [usize; 4]) {
         const BLOCK: usize = 1 << BLOCKS[0];

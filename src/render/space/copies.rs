@@ -79,7 +79,11 @@ impl Copies {
     reason = "casts from floats saturate"
 )]
 fn rounded<const N: usize>(numbers: [f64; N], scale: f64) -> [i64; N] {
-    numbers.map(|number| (number * scale).round() as i64)
+    numbers.map(|number| {
+        let number = number * scale + 0.5;
+        let whole = number as i64;
+        whole - i64::from(number < 0.0)
+    })
 }
 
 /// Returns whether instances meet in equal positions within two steps.

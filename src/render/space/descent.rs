@@ -213,6 +213,9 @@ impl Descent {
         form: &Form,
         node: &Node,
     ) {
+        let Some(rectangle) = buffer.open(node.rectangle, node.nearest) else {
+            return;
+        };
         if let Some(solid) = roots.parts[form.object].drawn(form.level, &roots.end) {
             let map = DAffine3::from_mat3_translation(form.linear, node.at - form.middle);
             let class = match roots.class_by {
@@ -220,7 +223,7 @@ impl Descent {
                 _ => roots.class(form, node.paint.class),
             };
             self.pencil
-                .draw(buffer, view, solid, &map, node.rectangle, class);
+                .draw(buffer, view, solid, &map, rectangle, class);
             self.drawn += 1;
             self.deepest = self.deepest.max(form.level);
         }

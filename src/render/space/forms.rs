@@ -12,7 +12,7 @@ use crate::geometry::{DMat3, DVec3};
 
 use super::camera::{Placement, Projection};
 use super::scene::{Child, ClassBy, End, Part};
-use super::stamp::{PHASES, REACH, Stamp};
+use super::stamp::{PHASES, PIECE, REACH, Stamp};
 use super::{buffer::MAX_CLASS, scene};
 
 /// Limit of the number of forms that are known before the descent.
@@ -213,7 +213,8 @@ impl Forms {
                 |form: &Form| form.elements > 0 && form.half.x.max(form.half.y) + pad <= reach;
             let samples = self.known.iter().filter(|form| fits(form)).map(|form| {
                 let sides = 2.0 * (form.half + pad + 1.0);
-                sides.x * sides.y
+                // Rows consist of pieces.
+                (sides.x + PIECE as f64) * sides.y
             });
             if samples.sum::<f64>() <= MAX_SAMPLES {
                 for form in self.known.iter_mut().filter(|form| fits(form)) {

@@ -1,6 +1,6 @@
 //! Drawing of round solids into a depth buffer: every sample has the exact depth of the surface.
 
-use crate::geometry::{DAffine3, DVec3, Round};
+use crate::geometry::{DAffine3, DVec3, HalfSpace, Round};
 
 use super::buffer::{Buffer, CLASS_BITS};
 use super::camera::Projection;

@@ -30,7 +30,7 @@ const STEEPEST: f64 = 4.0;
 const EQUAL: f32 = 1.0 / 64.0;
 
 /// Samples of a piece of a row.
-const PIECE: usize = 8;
+pub(super) const PIECE: usize = 8;
 
 /// Pieces of a row of a stamp.
 const PIECES: usize = WIDTH / PIECE;
