@@ -48,6 +48,7 @@
 //! |---|---|---|
 //! | `cli` | yes | the command line; enables all other features |
 //! | `jpeg` | with `cli` | JPEG, besides PNG, among the pictures that are measured |
+//! | `meshes` | with `cli` | meshes from files as sets in space |
 //! | `simd` | with `cli` | random iteration with AVX2 where the processor has it: the same points, sooner |
 //! | `tables` | with `cli` | tables of points in CSV that are measured |
 //!
