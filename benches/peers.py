@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free, flam3, numba and l-system-fractals: ratios of time, peak memory, and the targets.
+"""kfrac beside Context Free, flam3, numba, l-system-fractals and POV-Ray: ratios of time, peak memory, and the targets.
 
 On a fresh Debian:
 
@@ -9,6 +9,7 @@ On a fresh Debian:
     python3 benches/peers.py --quick    # a minute; small cases only
     python3 -m pip install numba        # to compare the chaos game with numba
     cargo install l-system-fractals     # for the Koch curve as an L-system
+    apt-get install --no-install-recommends povray    # for the sponge in space; 4 GB of memory
 
 Whole commands run alternately, and their medians are compared: on a machine with other load only the
 ratios are meaningful. Outputs are files in a temporary folder (set by TMPDIR; a folder in memory
@@ -53,6 +54,17 @@ NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
 
 # Smallest ratio of times to l-system-fractals.
 STRINGS = 18
+
+# Levels of the sponge, and the smallest ratio of times to POV-Ray.
+SPONGE = (5, 8)
+
+# Sets in space, sides of pictures, the largest number of seconds on one thread; and the smallest ratio on two.
+SPACE = [
+    (name, side, seconds)
+    for side, seconds in [(1024, 0.8), (2048, 2)]
+    for name in ["menger", "icosahedron-flake", "solid-tetrahedron"]
+]
+TWO_THREADS = 1.8
 
 # Title, command, and largest number of milliseconds.
 ALONE = [
@@ -191,6 +203,51 @@ def beside_strings(kfrac, folder, quick):
     )
 
 
+def beside_pov(kfrac, folder, quick):
+    """Compares a step of the Menger sponge, as a picture, with nested unions of cubes in POV-Ray."""
+    levels, ratio = (4, SPONGE[1]) if quick else SPONGE
+    print()
+    row("beside POV-Ray", "kfrac", "POV-Ray", "ratio", "target", "", "memory", "its memory")
+    ours = [kfrac, "grow", "menger", "--steps", levels, "--threads", 1, "-o", folder / "ours.png", "--quiet"]
+    theirs = ["povray", "+W1024", "+H1024", "+WT1", "-D", "-GA", f"Declare=Level={levels}"]
+    theirs += [f"+I{HERE / 'peers/menger.pov'}", f"+O{folder / 'theirs.png'}"]
+    (seconds, memory), (peer, its) = in_turn([ours, theirs], 1)
+    row(
+        f"Menger level {levels} to PNG 1024²",
+        f"{seconds:.3f} s",
+        f"{peer:.2f} s",
+        f"{peer / seconds:.1f} x",
+        f"{ratio} x",
+        verdict(peer / seconds >= ratio),
+        f"{memory:.0f} MiB",
+        f"{its:.0f} MiB",
+    )
+
+
+def in_space(kfrac, folder, quick):
+    """Measures pictures in space to the pixel, on one thread and on two."""
+    print()
+    row("pictures in space", "1 thread", "target", "", "2 threads", "target", "", "memory", "target", "")
+    for name, side, most in SPACE:
+        command = lambda threads: [
+            kfrac, "grow", name, "--size", side, "--threads", threads,
+            "-o", folder / "ours.png", "--quiet",
+        ]  # fmt: skip
+        (one, memory), (two, _) = in_turn([command(1), command(2)], 1 if quick else 5)
+        row(
+            f"{name} to PNG {side}²",
+            f"{one:.2f} s",
+            f"{most} s",
+            verdict(one <= most),
+            f"{one / two:.2f} x",
+            f"{TWO_THREADS} x",
+            verdict(one / two >= TWO_THREADS),
+            f"{memory:.0f} MiB",
+            "64 MiB",
+            verdict(memory <= 64),
+        )
+
+
 def streamed(kfrac, folder, quick):
     """Measures segments a second to a file, and that memory does not grow with the steps."""
     steps, fewer = (22, 18) if quick else (26, 22)
@@ -241,6 +298,9 @@ def main():
             beside_numba(kfrac, Path(folder), arguments.quick)
         if shutil.which("l-system-fractals") is not None:
             beside_strings(kfrac, Path(folder), arguments.quick)
+        if shutil.which("povray") is not None:
+            beside_pov(kfrac, Path(folder), arguments.quick)
+        in_space(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)
         alone(kfrac, arguments.quick)
 
