@@ -7,7 +7,7 @@ On a fresh Debian:
     cargo build --release
     python3 benches/peers.py            # about ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; small cases only
-    python3 -m pip install numba        # to compare the chaos game with numba
+    python3 -m pip install numba        # to compare the chaos game with numba, and boxes with numpy
     cargo install l-system-fractals     # for the Koch curve as an L-system
     apt-get install --no-install-recommends povray    # for the sponge in space; 4 GB of memory
 
@@ -18,7 +18,7 @@ excludes the disk). Peak memory is that of the process, but at least this script
 The inputs are in benches/peers: the same curves for cfdg, and rules that the library does not have.
 Colours are switched off: both cfdg and kfrac draw black bars. kfrac and flam3 run on one thread, then on
 two. Programs other than cfdg are skipped if they are not installed (numba: for the Python that runs
-this script). The time of numba is that of the loop, the time of kfrac that of the whole command.
+this script). The times of numba and numpy are those of their loops, the time of kfrac that of the whole command.
 """
 
 import argparse
@@ -51,6 +51,9 @@ RANDOM = [(1, 10), (2, 20)]
 
 # Points, and the smallest ratio of times to numba, on one thread.
 NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
+
+# Points in space, and the smallest ratio of times to numpy, on one thread.
+BOXES = (2_000_000, 8)
 
 # Smallest ratio of times to l-system-fractals.
 STRINGS = 18
@@ -182,6 +185,31 @@ def beside_numba(kfrac, folder, quick):
         )
 
 
+def beside_numpy(kfrac, folder, quick):
+    """Compares boxes of points in space, measured from a file, with the rows that numpy finds distinct."""
+    print()
+    row("beside numpy", "kfrac", "numpy", "ratio", "target", "")
+    points, ratio = BOXES
+    peer = [sys.executable, HERE / "peers/boxes.py"]
+    file = folder / "points.ply"
+    subprocess.run([*peer, "--write", str(points), file], check=True)
+    ours, theirs = [], []
+    for _ in range(1 if quick else 3):
+        command = [kfrac, "dim", file, "--grids", 1, "--orders", 0, "--threads", 1]
+        ours.append(run(command)[0])
+        counted = subprocess.run([*peer, file], check=True, capture_output=True)
+        theirs.append(float(counted.stdout))
+    seconds, peer = statistics.median(ours), statistics.median(theirs)
+    row(
+        f"cubes of nine sizes, {points / 1e6:.0f} M points",
+        f"{seconds:.3f} s",
+        f"{peer:.2f} s",
+        f"{peer / seconds:.1f} x",
+        f"{ratio} x",
+        verdict(peer / seconds >= ratio),
+    )
+
+
 def beside_strings(kfrac, folder, quick):
     """Compares the Koch curve as an L-system, to SVG, with a program that writes the word."""
     print()
@@ -296,6 +324,8 @@ def main():
             beside_flam3(kfrac, Path(folder), arguments.quick)
         if importlib.util.find_spec("numba") is not None:
             beside_numba(kfrac, Path(folder), arguments.quick)
+        if importlib.util.find_spec("numpy") is not None:
+            beside_numpy(kfrac, Path(folder), arguments.quick)
         if shutil.which("l-system-fractals") is not None:
             beside_strings(kfrac, Path(folder), arguments.quick)
         if shutil.which("povray") is not None:
