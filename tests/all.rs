@@ -26,6 +26,7 @@ mod library;
 mod lsystem;
 mod manual;
 mod meshes;
+mod new_files;
 mod pictures;
 mod png;
 mod random_iteration;

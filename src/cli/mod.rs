@@ -23,6 +23,7 @@ mod length;
 mod light;
 mod list;
 mod man;
+mod new;
 mod number;
 mod output;
 mod picture;
@@ -74,6 +75,7 @@ enum Command {
     Info(info::Arguments),
     Count(count::Arguments),
     Dim(dim::Arguments),
+    New(new::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
     Check(check::Arguments),
@@ -198,6 +200,7 @@ pub fn run() -> ExitCode {
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Count(arguments) => count::run(arguments, &catalogue),
         Command::Dim(arguments) => dim::run(arguments, &catalogue),
+        Command::New(arguments) => new::run(arguments),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),
         Command::Check(arguments) => check::run(arguments, &catalogue),
