@@ -6,9 +6,9 @@ use crate::geometry::{DVec3, HalfSpace};
 use crate::render::space::{Camera, Light, Shade, Slice, SpaceOptions};
 use crate::style::Named;
 
-use super::Failure;
 use super::picture::named;
 use super::rule::Loaded;
+use super::{Failure, space};
 
 /// Options of sets in space.
 #[derive(clap::Args)]
@@ -37,7 +37,7 @@ pub(super) struct SpaceArguments {
     /// Cut off what lies before a plane: the normal, and the value on the plane; repeatable
     ///
     /// Points with N·x at most VALUE remain. For example, --cut "1,0,0=0.5".
-    #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = cut, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = space::plane, allow_hyphen_values = true)]
     cut: Vec<HalfSpace>,
     /// Shading: depth darkens what is far, relief lights surfaces that are taken from the depths
     #[arg(long, value_name = "HOW", value_parser = named::<Shade>())]
@@ -207,17 +207,6 @@ fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Parses a plane, as its normal and the value on it.
-fn cut(text: &str) -> Result<HalfSpace, String> {
-    let plane = || {
-        let (normal, value) = text.split_once('=')?;
-        let normal = vector(normal).ok()?;
-        let [distance] = numbers::<1>(value)?;
-        Some(HalfSpace { normal, distance })
-    };
-    plane().ok_or_else(|| "a plane is its normal and a value, as 1,0,0=0.5".into())
-}
-
 /// Parses a slab, as a plane and its thickness.
 fn slice(text: &str) -> Result<Slice, String> {
     let slab = || {
@@ -228,7 +217,7 @@ fn slice(text: &str) -> Result<Slice, String> {
             }
             None => (text, None),
         };
-        let HalfSpace { normal, distance } = cut(plane).ok()?;
+        let HalfSpace { normal, distance } = space::plane(plane).ok()?;
         Some(Slice::new(normal, distance).thickness(thickness))
     };
     let wrong = "a slice is its normal and a value, and maybe a thickness above 0: 0,0,1=0.5 or 0,0,1=0.5,w=0.01";

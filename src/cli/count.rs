@@ -14,7 +14,7 @@ use crate::grow::{Counted, count};
 use super::growth::GrowthArguments;
 use super::info::{Corners, corners};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, help, output, progress, space, steps};
+use super::{Failure, help, output, progress, steps};
 
 /// Grows a rule and counts its elements, without drawing
 ///
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     if let Some(graph) = loaded.model.compile_in_space(false) {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
-        space::check(&loaded, &graph, steps, growth.max_elements())?;
+        growth.check(steps, &graph, &loaded)?;
         return arguments.count(&loaded, &graph, steps);
     }
     let steps = steps::choose(arguments.steps, &loaded)?;

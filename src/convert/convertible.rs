@@ -1,4 +1,4 @@
-//! What conversions write differently in the plane and in space: maps and sets.
+//! Maps and sets, which conversions write differently in the plane and in space.
 
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;

@@ -26,9 +26,7 @@ pub enum CompileError {
         length: f64,
     },
     /// The model lies in space, and a graph of the plane is asked for.
-    #[error(
-        "it lies in space: `grow`, `info` and `count` know space, and other commands know the plane only"
-    )]
+    #[error("it lies in space, and this is known of the plane only")]
     InSpace,
     /// The word of an L-system cannot be derived.
     #[error(transparent)]

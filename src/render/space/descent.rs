@@ -11,7 +11,7 @@ use super::stamp::Stamp;
 use super::tints::Tints;
 use crate::style::Colour;
 
-/// What the colour of an instance depends on.
+/// Properties on which the colour of an instance depends.
 #[derive(Clone, Copy, Default)]
 struct Paint {
     class: u16,

@@ -215,7 +215,7 @@ fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
             Some(bounds)
         })
         .collect();
-    // What is kept stays in the limit.
+    // Objects that are kept stay in the limit.
     let is_kept = |number: usize| !graph.is_fertile(number) || !graph.objects()[number].visible;
     let all_stays = (0..boxes.len()).all(is_kept);
     let hold = steps.is_none() || all_stays || holds(graph, &boxes);

@@ -3,7 +3,7 @@
 //! A tile shows far more colours than a key has classes. Classes are therefore given to colours as they come, from 1;
 //! when there is none left, samples take their colours, and class 0.
 //!
-//! What is drawn is opaque: alphas mix the tints of an instance with those around it, and with the colour of the
+//! Solids are opaque: alphas mix the tints of an instance with those around it, and with the colour of the
 //! style, and nothing behind it shows.
 
 use crate::fast_hash::FastMap;

@@ -1,4 +1,4 @@
-//! What structures of the plane and of space resolve differently: transforms and sets.
+//! Transforms and sets, which structures of the plane and of space resolve differently.
 
 use std::sync::Arc;
 
