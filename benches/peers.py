@@ -49,8 +49,12 @@ BESIDE = [
 # Threads, and the smallest ratio of times to flam3.
 RANDOM = [(1, 10), (2, 20)]
 
-# Points, and the smallest ratio of times to numba, on one thread.
-NUMBA = [(20_000_000, 5), (100 * 1024**2, 5)]
+# Title, rule, numba's program, points, and the smallest ratio of times to numba, on one thread.
+NUMBA = [
+    ("fern", "barnsley-fern-four", "fern", 20_000_000, 5),
+    ("Menger sponge", "menger", "menger", 20_000_000, 6),
+    ("fern", "barnsley-fern-four", "fern", 100 * 1024**2, 5),
+]
 
 # Points in space, and the smallest ratio of times to numpy, on one thread.
 BOXES = (2_000_000, 8)
@@ -163,20 +167,20 @@ def beside_flam3(kfrac, folder, quick):
 
 
 def beside_numba(kfrac, folder, quick):
-    """Compares the fern by random iteration with the textbook loop compiled by numba."""
+    """Compares random iteration, of the plane and of space, with the textbook loops compiled by numba."""
     print()
     row("beside numba", "kfrac", "numba", "ratio", "target", "")
-    for points, ratio in NUMBA[: 1 if quick else None]:
+    for name, rule, program, points, ratio in NUMBA[: 2 if quick else None]:
         ours, theirs = [], []
         for _ in range(1 if quick else 3):
-            command = [kfrac, "grow", "barnsley-fern-four", "--method", "chaos", "--quiet"]
+            command = [kfrac, "grow", rule, "--method", "chaos", "--quiet"]
             command += ["--points", points, "--size", "1024x1024", "--threads", 1]
             ours.append(run([*command, "-o", folder / "ours.png"])[0])
-            peer = [sys.executable, HERE / "peers/fern.py", str(points)]
+            peer = [sys.executable, HERE / f"peers/{program}.py", str(points)]
             theirs.append(float(subprocess.run(peer, check=True, capture_output=True).stdout))
         seconds, peer = statistics.median(ours), statistics.median(theirs)
         row(
-            f"fern, {points / 1e6:.0f} M points, 1 thread",
+            f"{name}, {points / 1e6:.0f} M points, 1 thread",
             f"{seconds:.3f} s",
             f"{peer:.2f} s",
             f"{peer / seconds:.1f} x",

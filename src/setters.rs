@@ -2,8 +2,8 @@
 
 /// Implements a method for each named field of a struct that sets the field.
 macro_rules! setters {
-    ($name:ident $(<$life:lifetime>)? { $($field:ident: $type:ty),* $(,)? }) => {
-        impl $(<$life>)? $name $(<$life>)? {
+    ($name:ident $(<$life:lifetime $(, $parameter:ident)?>)? { $($field:ident: $type:ty),* $(,)? }) => {
+        impl $(<$life $(, $parameter)?>)? $name $(<$life $(, $parameter)?>)? {
             $(
                 #[doc = concat!("Sets [`", stringify!($field), "`](Self#structfield.", stringify!($field), ").")]
                 #[must_use]

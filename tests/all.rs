@@ -7,6 +7,7 @@ mod bands;
 mod boxes;
 mod build;
 mod chaos;
+mod clouds;
 mod command_line;
 mod common;
 mod compare;

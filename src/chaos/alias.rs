@@ -35,13 +35,11 @@ impl AliasTable {
     /// Chooses from a row.
     #[inline(always)]
     pub(super) fn choose(&self, row: usize, word: u32) -> usize {
-        let own = (word >> (32 - self.bits)) as usize;
-        let Entry { rest, alias } = self.entries[(row << self.bits) + own];
-        if (word << self.bits) < rest {
-            own
-        } else {
-            alias as usize
-        }
+        let own = word >> (32 - self.bits);
+        let Entry { rest, alias } = self.entries[(row << self.bits) + own as usize];
+        // A branch would be mispredicted at random.
+        let keeps = u32::from((word << self.bits) < rest).wrapping_neg();
+        (alias ^ ((alias ^ own) & keeps)) as usize
     }
 }
 

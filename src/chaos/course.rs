@@ -1,11 +1,13 @@
 //! The walks of a chaos game, divided into waves for threads.
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::Point;
+use crate::ifs::PointOf;
 
 use super::alias::AliasTable;
 use super::random::{LANES, Scalar};
 use super::system::{Map, WeightedMaps};
-use super::{ClassBy, Game, HistogramWindow, Start};
+use super::walked::{Sample, Walked};
+use super::{ClassBy, Game, Start};
 
 /// Steps of a walker that starts on the attractor, before another one starts: few enough for all threads to
 /// have walks, and enough that the warm-up takes little.
@@ -21,19 +23,18 @@ const PILOT: u32 = 10_000;
 /// Rounding error, in pixels, up to which single precision is used.
 const FINE: f64 = 1.0 / 64.0;
 
-/// All walks of a game, in pixels. A *wave* consists of [`LANES`] walkers side by side; it has its own random
+/// All walks of a game, in the coordinates of a window. A *wave* consists of [`LANES`] walkers side by side; it has its own random
 /// numbers, and waves can be walked in any order.
-pub(super) struct Course<'a> {
-    pub(super) system: &'a WeightedMaps,
+pub(super) struct Course<'a, M: Walked> {
+    pub(super) system: &'a WeightedMaps<M>,
     pub(super) choice: AliasTable,
-    /// Affine maps as maps from pixels to pixels.
-    pub(super) maps: Vec<Option<DAffine2>>,
-    pub(super) window: &'a HistogramWindow,
-    /// Number of bins of a class: its pixels, and one for points outside.
-    pub(super) stride: u32,
+    /// Affine maps as maps of the window to itself.
+    pub(super) maps: Vec<Option<M>>,
+    /// Map to the coordinates of the window.
+    pub(super) to_window: M,
     pub(super) classes: ClassBy,
     pub(super) seed: u64,
-    start: &'a Start,
+    start: &'a Start<PointOf<M>>,
     /// Number of steps of a walker that count.
     steps: u64,
     points: u64,
@@ -41,24 +42,24 @@ pub(super) struct Course<'a> {
     pub(super) is_double: bool,
 }
 
-impl<'a> Course<'a> {
+impl<'a, M: Walked> Course<'a, M> {
+    /// Creates the walks of a game. `scale` is the largest number of pixels a unit of the window.
     pub(super) fn new(
-        system: &'a WeightedMaps,
-        window: &'a HistogramWindow,
-        game: &'a Game<'_>,
+        system: &'a WeightedMaps<M>,
+        to_window: M,
+        scale: f64,
+        game: &'a Game<'_, PointOf<M>>,
     ) -> Self {
-        let inverse = window.to_pixels.inverse();
+        let inverse = to_window.inverted();
         let maps = system.maps().iter().map(|map| match map {
-            Map::Affine(map) => Some(window.to_pixels * *map * inverse),
+            Map::Affine(map) => Some(to_window * *map * inverse),
             Map::Condensation(_) => None,
         });
-        let [width, height] = window.size;
         let mut course = Self {
             system,
             choice: system.choice(),
             maps: maps.collect(),
-            window,
-            stride: width * height + 1,
+            to_window,
             classes: game.classes,
             seed: game.seed,
             start: &game.start,
@@ -69,7 +70,7 @@ impl<'a> Course<'a> {
             points: game.points,
             is_double: false,
         };
-        course.is_double = course.rounding() > FINE;
+        course.is_double = course.rounding() * scale > FINE;
         course
     }
 
@@ -96,9 +97,9 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Returns the start of a walker of a wave, in pixels, and the map that led to it: the number of maps
+    /// Returns the start of a walker of a wave, in the window, and the map that led to it: the number of maps
     /// where there was none.
-    pub(super) fn start(&self, wave: u64, lane: usize) -> (DVec2, usize) {
+    pub(super) fn start(&self, wave: u64, lane: usize) -> (PointOf<M>, usize) {
         let walk = wave.wrapping_mul(LANES as u64).wrapping_add(lane as u64);
         let (point, last) = match self.start.walk(walk) {
             Some(point) => (point, self.maps.len()),
@@ -107,17 +108,17 @@ impl<'a> Course<'a> {
                 (start.point, start.last)
             }
         };
-        (self.window.to_pixels.transform_point2(point), last)
+        (self.to_window.apply(point), last)
     }
 
-    /// Returns a bound of the error of a point by single precision, in pixels, estimated along a walk.
+    /// Returns a bound of the error of a point by single precision, in the window, estimated along a walk.
     fn rounding(&self) -> f64 {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let mut random = Scalar::new(0, 0);
         let start = self.system.start();
         let mut last = start.last;
-        let mut point = self.window.to_pixels.transform_point2(start.point);
-        let mut error = DVec2::ZERO;
+        let mut point = self.to_window.apply(start.point);
+        let mut error = PointOf::<M>::ZERO;
         let mut worst = 0.0f64;
         for _ in 0..PILOT {
             last = self
@@ -125,20 +126,17 @@ impl<'a> Course<'a> {
                 .choose(self.system.state_after(last), random.word());
             match (&self.maps[last], &self.system.maps()[last]) {
                 (Some(map), _) => {
-                    let matrix = map.matrix2.abs();
-                    // Two products, two sums, and the rounding of the coefficients.
-                    let terms = matrix * point.abs() + map.translation.abs();
-                    error = matrix * error + 4.0 * unit * terms;
-                    point = map.transform_point2(point);
+                    let spread = map.abs();
+                    // Products, sums, and the rounding of the coefficients.
+                    let terms = spread.apply(point.abs());
+                    error = spread.apply_vector(error) + terms * (M::ROUNDINGS * unit);
+                    point = map.apply(point);
                 }
                 (None, Map::Condensation(shape)) => {
-                    point = self
-                        .window
-                        .to_pixels
-                        .transform_point2(shape.draw(&mut random));
-                    error = unit * point.abs();
+                    point = self.to_window.apply(shape.sample(&mut random));
+                    error = point.abs() * unit;
                 }
-                (None, Map::Affine(_)) => unreachable!("affine maps have one in pixels"),
+                (None, Map::Affine(_)) => unreachable!("affine maps have one of the window"),
             }
             worst = worst.max(error.max_element());
         }

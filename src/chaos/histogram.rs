@@ -2,6 +2,8 @@
 
 use crate::geometry::DAffine2;
 
+use super::tally::Counter;
+
 /// A part of the plane, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HistogramWindow {
@@ -62,5 +64,28 @@ impl Histogram {
     pub fn inside(&self) -> u64 {
         let classes = (0..self.classes).map(|class| self.counts(class));
         classes.flatten().map(|&count| u64::from(count)).sum()
+    }
+}
+
+/// Counters of the pixels of every class.
+pub(super) struct Counts(pub(super) Vec<u32>);
+
+impl Counter for Counts {
+    /// Number of a bin.
+    type Spot = u32;
+
+    #[inline(always)]
+    fn add(&mut self, bins: &[u32]) {
+        for &bin in bins {
+            if let Some(count) = self.0.get_mut(bin as usize) {
+                *count += 1;
+            }
+        }
+    }
+
+    fn merge(&mut self, other: Self) {
+        for (all, count) in self.0.iter_mut().zip(other.0) {
+            *all = all.saturating_add(count);
+        }
     }
 }

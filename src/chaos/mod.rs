@@ -4,7 +4,8 @@
 //! A [`WeightedMaps`] is the walk of an [`Ifs`](crate::ifs::Ifs). At each step a walker is moved by one of its
 //! maps, chosen at random, or placed at a random point of a condensation set; the fraction of its steps that
 //! end in a part of the plane converges to the measure of that part. The function [`play`] counts the points
-//! of walks, pixel by pixel, as a [`Histogram`]; [`RandomPoints`] lists them.
+//! of walks, pixel by pixel, as a [`Histogram`]; [`RandomPoints`] lists them. In space, [`play_in_space`] draws
+//! them as a [`DepthPicture`].
 //!
 //! Walkers walk side by side, in waves that each have their own random numbers. The result therefore depends
 //! neither on the order of waves nor on the number of threads, and is the same on every machine. Walks are
@@ -13,33 +14,41 @@
 
 mod alias;
 mod course;
+mod depth;
 mod histogram;
 mod points;
 mod random;
+mod raster;
 mod real;
 mod sampler;
+mod solids;
 mod system;
 mod tally;
+mod walked;
 mod walkers;
 
+pub use depth::{DepthPicture, DepthWindow, Seen, play_in_space};
 pub use histogram::{Histogram, HistogramWindow};
 pub use points::{RandomPoint, RandomPoints};
 pub use system::{SystemError, WeightedMaps};
+pub use walked::{Sample, Walked};
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, Point};
 use crate::grow::Progress;
+use crate::ifs::PointOf;
 use crate::parallel::{all_cores, map};
 
 use self::course::Course;
-use self::tally::{Cancelled, Tally};
+use self::histogram::Counts;
+use self::tally::{Cancelled, Counter, Tally};
 
 /// Start of walks.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Start {
+pub enum Start<P = DVec2> {
     /// On the attractor, and spread over it: all points that are counted lie on it.
     #[default]
     Attractor,
@@ -47,16 +56,16 @@ pub enum Start {
     /// except the start itself (Demko, Hodges & Naylor 1985, figure 4.5).
     Points {
         /// Points at which walks start; if empty, walks start on the attractor.
-        points: Vec<DVec2>,
+        points: Vec<P>,
         /// Number of steps of a walk. The fewer, the larger is the fraction of points on the way to the
         /// attractor.
         steps: NonZero<u32>,
     },
 }
 
-impl Start {
+impl<P: Point> Start<P> {
     /// Returns the start of a walk, or `None` if walks start on the attractor.
-    fn walk(&self, number: u64) -> Option<DVec2> {
+    fn walk(&self, number: u64) -> Option<P> {
         let Self::Points { points, .. } = self else {
             return None;
         };
@@ -85,13 +94,13 @@ pub enum ClassBy {
 /// Parameters of a chaos game.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Game<'a> {
+pub struct Game<'a, P = DVec2> {
     /// Number of points; by default ten million.
     pub points: u64,
     /// Seed of the random choices; by default 0.
     pub seed: u64,
     /// Start of walks; by default on the attractor.
-    pub start: Start,
+    pub start: Start<P>,
     /// Classification of points; by default one class.
     pub classes: ClassBy,
     /// Number of threads; by default that of the machine's cores. The result does not depend on it.
@@ -102,22 +111,22 @@ pub struct Game<'a> {
     pub progress: Option<&'a Progress>,
 }
 
-setters!(Game<'a> {
+setters!(Game<'a, P> {
     points: u64,
     seed: u64,
-    start: Start,
+    start: Start<P>,
     classes: ClassBy,
     threads: NonZero<usize>,
     cancel: Option<&'a AtomicBool>,
     progress: Option<&'a Progress>,
 });
 
-impl Default for Game<'_> {
+impl<P> Default for Game<'_, P> {
     fn default() -> Self {
         Self {
             points: 10_000_000,
             seed: 0,
-            start: Start::default(),
+            start: Start::Attractor,
             classes: ClassBy::default(),
             threads: all_cores(),
             cancel: None,
@@ -175,7 +184,7 @@ pub fn play(
     window: &HistogramWindow,
     game: &Game<'_>,
 ) -> Result<Histogram, GameError> {
-    check(window, game)?;
+    check(window.size, &window.to_pixels, game)?;
     let classes = match game.classes {
         ClassBy::One => 1,
         ClassBy::Map { .. } => system.classes(),
@@ -185,22 +194,41 @@ pub fn play(
     if pixels.saturating_mul(classes as u64) > MAX_BINS {
         return Err(GameError::TooManyBins { size, classes });
     }
-    let course = Course::new(system, window, game);
-    let bins = course.stride as usize * classes;
+    let course = Course::new(system, window.to_pixels, 1.0, game);
+    // Every class has a bin for points outside.
+    let bins = (width as usize * height as usize + 1) * classes;
+    let counts = count(
+        &course,
+        game,
+        bins,
+        &|| Counts(vec![0; bins]),
+        |wave, tally| raster::walk(&course, size, wave, tally),
+    )?;
+    Ok(Histogram::new(size, classes, game.points, counts.0))
+}
+
+/// Walks all waves of a game; `walk` walks one. `bins` is the number of counters of a thread.
+fn count<M: Walked, C: Counter>(
+    course: &Course<'_, M>,
+    game: &Game<'_, PointOf<M>>,
+    bins: usize,
+    fresh: &(dyn Fn() -> C + Sync),
+    walk: impl Fn(u64, &mut Tally<'_, C>) -> Result<(), Cancelled> + Sync,
+) -> Result<C, GameError> {
     if let Some(progress) = game.progress {
         progress.expect(game.points);
     }
     let all = Mutex::new(None);
     let next = AtomicU64::new(0);
     let walk = || {
-        let mut tally = Tally::new(bins, &all, game.progress, game.cancel);
+        let mut tally = Tally::new(fresh, &all, game.progress, game.cancel);
         loop {
             let wave = next.fetch_add(1, Ordering::Relaxed);
             if wave >= course.waves() {
                 tally.finish();
                 return Ok(());
             }
-            walkers::walk(&course, wave, &mut tally)?;
+            walk(wave, &mut tally)?;
         }
     };
     let threads = (game.threads.get() as u64)
@@ -211,15 +239,17 @@ pub fn play(
     let walked = map(&vec![(); threads], threads, |_, ()| walk());
     let walked: Result<(), Cancelled> = walked.into_iter().collect();
     walked.map_err(|Cancelled| GameError::Cancelled)?;
-    let counts = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let counts = counts.unwrap_or_else(|| vec![0; bins]);
-    Ok(Histogram::new(size, classes, game.points, counts))
+    let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(all.unwrap_or_else(fresh))
 }
 
-fn check(window: &HistogramWindow, game: &Game<'_>) -> Result<(), GameError> {
+fn check<M: Walked>(
+    size: [u32; 2],
+    to_window: &M,
+    game: &Game<'_, PointOf<M>>,
+) -> Result<(), GameError> {
     let sides = 1..=MAX_PIXELS;
-    let inverse = window.to_pixels.inverse();
-    if !window.size.iter().all(|side| sides.contains(side)) || !inverse.is_finite() {
+    if !size.iter().all(|side| sides.contains(side)) || !to_window.inverted().is_finite() {
         return Err(GameError::Window);
     }
     if let Start::Points { points, .. } = &game.start
@@ -270,12 +300,15 @@ mod tests {
             classes,
             ..Game::default()
         };
-        let mut course = Course::new(&system, window, &game);
+        let mut course = Course::new(&system, window.to_pixels, 1.0, &game);
         course.is_double = is_double;
-        let mut tally = Tally::new(4 * course.stride as usize, &all, None, None);
-        walkers::walk(&course, 0, &mut tally).unwrap();
+        let [width, height] = window.size;
+        let bins = 4 * (width * height + 1) as usize;
+        let fresh = || Counts(vec![0; bins]);
+        let mut tally = Tally::new(&fresh, &all, None, None);
+        raster::walk(&course, window.size, 0, &mut tally).unwrap();
         tally.finish();
-        all.into_inner().unwrap().unwrap()
+        all.into_inner().unwrap().unwrap().0
     }
 
     /// In the same walk few points differ in their pixel: those within the error of an edge.
@@ -285,7 +318,7 @@ mod tests {
             let window = window(side, f64::from(side) / 10.2);
             let classes = ClassBy::One;
             let game = Game::default();
-            assert!(!Course::new(&fern(), &window, &game).is_double);
+            assert!(!Course::new(&fern(), window.to_pixels, 1.0, &game).is_double);
             let [single, double] = [false, true].map(|double| counts(&window, classes, double));
             let differ: u64 = single
                 .iter()
@@ -308,7 +341,7 @@ mod tests {
         ] {
             let window = window(side, scale);
             let game = Game::default();
-            let course_is_double = Course::new(&fern(), &window, &game).is_double;
+            let course_is_double = Course::new(&fern(), window.to_pixels, 1.0, &game).is_double;
             assert_eq!(course_is_double, is_double, "{side}");
         }
     }

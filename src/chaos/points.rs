@@ -1,18 +1,20 @@
 //! The points of a random walk as an iterator.
 
-use crate::geometry::DVec2;
+use crate::geometry::{DAffine2, DVec2};
+use crate::ifs::PointOf;
 
 use super::Start;
 use super::alias::AliasTable;
 use super::course::WARM_UP;
 use super::random::Scalar;
 use super::system::{Map, WeightedMaps};
+use super::walked::{Sample, Walked};
 
 /// A point of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RandomPoint {
+pub struct RandomPoint<P = DVec2> {
     /// Position of the point.
-    pub place: DVec2,
+    pub place: P,
     /// Index of the map that led to it, from 0; the condensation sets follow the maps.
     pub map: usize,
 }
@@ -23,20 +25,20 @@ pub struct RandomPoint {
 /// A walk that starts on the attractor has forgotten the start before its first point. Walks from given
 /// starts end after their number of steps, and the next one begins.
 #[derive(Clone, Debug)]
-pub struct RandomPoints<'a> {
-    system: &'a WeightedMaps,
+pub struct RandomPoints<'a, M: Walked = DAffine2> {
+    system: &'a WeightedMaps<M>,
     choice: AliasTable,
     random: Scalar,
-    start: &'a Start,
-    at: RandomPoint,
+    start: &'a Start<PointOf<M>>,
+    at: RandomPoint<PointOf<M>>,
     /// Number of steps taken, over all walks.
     taken: u64,
 }
 
-impl<'a> RandomPoints<'a> {
+impl<'a, M: Walked> RandomPoints<'a, M> {
     /// Creates the walk of a system with a seed.
     #[must_use]
-    pub fn new(system: &'a WeightedMaps, start: &'a Start, seed: u64) -> Self {
+    pub fn new(system: &'a WeightedMaps<M>, start: &'a Start<PointOf<M>>, seed: u64) -> Self {
         let first = system.start();
         let mut points = Self {
             system,
@@ -61,17 +63,17 @@ impl<'a> RandomPoints<'a> {
         let state = self.system.state_after(self.at.map);
         let map = self.choice.choose(state, self.random.word());
         let place = match &self.system.maps()[map] {
-            Map::Affine(affine) => affine.transform_point2(self.at.place),
-            Map::Condensation(shape) => shape.draw(&mut self.random),
+            Map::Affine(affine) => affine.apply(self.at.place),
+            Map::Condensation(shape) => shape.sample(&mut self.random),
         };
         self.at = RandomPoint { place, map };
     }
 }
 
-impl Iterator for RandomPoints<'_> {
-    type Item = RandomPoint;
+impl<M: Walked> Iterator for RandomPoints<'_, M> {
+    type Item = RandomPoint<PointOf<M>>;
 
-    fn next(&mut self) -> Option<RandomPoint> {
+    fn next(&mut self) -> Option<Self::Item> {
         if let Start::Points { steps, .. } = self.start
             && self.taken.is_multiple_of(steps.get().into())
             && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))

@@ -60,7 +60,7 @@ impl Lanes {
 
 /// A generator for occasional draws.
 #[derive(Clone, Debug)]
-pub(super) struct Scalar(Pcg);
+pub struct Scalar(Pcg);
 
 impl Scalar {
     pub(super) fn new(seed: u64, stream: u64) -> Self {

@@ -1,11 +1,16 @@
 //! The arithmetic of walkers, in single and double precision.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 /// Floating-point numbers of walkers. Sums and products are those of IEEE 754, each rounded separately, and
 /// are the same on every machine.
 pub(super) trait Real:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + PartialOrd
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + PartialOrd
 {
     const ZERO: Self;
 

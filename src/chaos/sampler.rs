@@ -5,6 +5,7 @@ use crate::ifs::Shape;
 use crate::rule::BaseElement;
 
 use super::random::Scalar;
+use super::walked::Sample;
 
 /// Samples points from a shape: from lines by length, from the region that closed outlines wind around by
 /// area.
@@ -12,7 +13,7 @@ use super::random::Scalar;
 /// Curves are replaced by chords, enough that none is farther from its curve than 1e-4 of the shape's size
 /// where the outline has no sharp bends.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sampler {
+pub struct Sampler {
     /// Pieces, each with the total measure of all pieces up to its end.
     pieces: Vec<(f64, Piece)>,
 }
@@ -35,6 +36,16 @@ const MAX_SIDES: usize = 1 << 13;
 
 /// Maximum number of pieces of a union.
 const MAX_PIECES: usize = 1 << 21;
+
+impl Sample<DAffine2> for Sampler {
+    fn of_set(set: &Shape) -> Option<Self> {
+        Self::of(set)
+    }
+
+    fn sample(&self, random: &mut Scalar) -> DVec2 {
+        self.draw(random)
+    }
+}
 
 impl Sampler {
     /// Creates the sampler of a shape. Returns `None` if the shape has no extent, is not finite, or has an

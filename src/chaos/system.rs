@@ -1,21 +1,21 @@
 //! Systems of maps and condensation sets, prepared for random walks.
 
 use crate::digraph::components;
-use crate::geometry::{DAffine2, DVec2};
-use crate::ifs::{self, Choice, Ifs};
+use crate::geometry::DAffine2;
+use crate::ifs::{self, Choice, Ifs, PointOf};
 
 use super::alias::AliasTable;
 use super::random::Scalar;
-use super::sampler::Sampler;
+use super::walked::{Sample, Walked};
 
 /// A step of the walk.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Map {
+pub(super) enum Map<M: Walked> {
     /// Moves the point by an affine map.
-    Affine(DAffine2),
+    Affine(M),
     /// Replaces the point by one drawn from a *condensation set*: the set-valued map whose image of any point
     /// is that set (Demko, Hodges & Naylor 1985, section 3.5).
-    Condensation(Sampler),
+    Condensation(M::Sampler),
 }
 
 /// The [walk](ifs::Walk) of an iterated function system, prepared for many walkers.
@@ -24,17 +24,17 @@ pub(super) enum Map {
 /// can follow every other one, possibly with others in between, and walks therefore draw all of the
 /// attractor. There is a point of the attractor to start from.
 #[derive(Clone, Debug)]
-pub struct WeightedMaps {
-    maps: Vec<Map>,
+pub struct WeightedMaps<M: Walked = DAffine2> {
+    maps: Vec<Map<M>>,
     /// Probability of every map, one row per state of the walk.
     rows: Vec<Vec<f64>>,
-    start: Start,
+    start: Start<PointOf<M>>,
 }
 
 /// A point of the attractor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Start {
-    pub(super) point: DVec2,
+pub(super) struct Start<P> {
+    pub(super) point: P,
     /// Index of the map that led to it.
     pub(super) last: usize,
 }
@@ -57,7 +57,7 @@ pub enum SystemError {
     /// No map has a shortest cycle back to itself that contracts.
     #[error("no map contracts")]
     Expands,
-    /// A condensation set has too many corners and crossings.
+    /// A condensation set has too many corners and crossings, or faces.
     #[error("points cannot be drawn from condensation set {}: it has too many corners", .condensation + 1)]
     Corners {
         /// Index of the condensation set.
@@ -74,7 +74,7 @@ pub enum SystemError {
 /// Maximum number of entries of the table of transition probabilities.
 const MAX_ENTRIES: usize = 1 << 24;
 
-impl WeightedMaps {
+impl<M: Walked> WeightedMaps<M> {
     /// Prepares the walk of a system.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl WeightedMaps {
     /// Returns an error if a map cannot follow another, if no shortest cycle from a map back to itself
     /// contracts, if a condensation set has too many corners, or if the table of transition probabilities is
     /// too large.
-    pub fn of(ifs: &Ifs) -> Result<Self, SystemError> {
+    pub fn of(ifs: &Ifs<M>) -> Result<Self, SystemError> {
         let affine = ifs.maps().len();
         let walk = ifs.walk();
         let states = walk.states();
@@ -107,7 +107,8 @@ impl WeightedMaps {
             .map(|map| Map::Affine(map.affine))
             .collect();
         for (condensation, set) in ifs.condensation().iter().enumerate() {
-            let sampler = Sampler::of(&set.shape).ok_or(SystemError::Corners { condensation })?;
+            let sampler =
+                M::Sampler::of_set(&set.shape).ok_or(SystemError::Corners { condensation })?;
             maps.push(Map::Condensation(sampler));
         }
         let mut rows = vec![vec![0.0; count]; states.len()];
@@ -129,7 +130,7 @@ impl WeightedMaps {
     }
 
     /// Returns the maps, followed by the condensation sets.
-    pub(super) fn maps(&self) -> &[Map] {
+    pub(super) fn maps(&self) -> &[Map<M>] {
         &self.maps
     }
 
@@ -162,7 +163,7 @@ impl WeightedMaps {
     }
 
     /// Returns a point of the attractor.
-    pub(super) fn start(&self) -> Start {
+    pub(super) fn start(&self) -> Start<PointOf<M>> {
         self.start
     }
 }
@@ -175,10 +176,14 @@ fn targets_of_maps(rows: &[Vec<f64>], affine: usize) -> Vec<Vec<usize>> {
 }
 
 /// Returns a point drawn from a condensation set, or the fixed point of a contracting cycle of maps.
-fn start(ifs: &Ifs, maps: &[Map], targets: &[Vec<usize>]) -> Option<Start> {
+fn start<M: Walked>(
+    ifs: &Ifs<M>,
+    maps: &[Map<M>],
+    targets: &[Vec<usize>],
+) -> Option<Start<PointOf<M>>> {
     let drawn = maps.iter().enumerate().find_map(|(last, map)| match map {
         Map::Condensation(shape) => Some(Start {
-            point: shape.draw(&mut Scalar::new(0, 0)),
+            point: shape.sample(&mut Scalar::new(0, 0)),
             last,
         }),
         Map::Affine(_) => None,
@@ -220,6 +225,7 @@ fn cycle(targets: &[Vec<usize>], last: usize) -> Option<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::DVec2;
     use crate::ifs::{Definition, Edge};
 
     fn scaled(factor: f64, x: f64) -> ifs::Map {

@@ -6,8 +6,6 @@ use std::sync::{Mutex, PoisonError};
 use crate::grow::Progress;
 use crate::parallel::is_cancelled;
 
-use super::walkers::Bins;
-
 /// Error of a game that was cancelled.
 #[derive(Debug)]
 pub(super) struct Cancelled;
@@ -18,27 +16,41 @@ const MOST: u64 = u32::MAX as u64;
 /// Number of points between two reports of progress.
 const PATIENCE: u64 = 1 << 17;
 
+/// Counters that the points of walks are added to.
+pub(super) trait Counter: Send {
+    /// Place of a point among the counters.
+    type Spot: Copy + Default;
+
+    /// Adds points.
+    fn add(&mut self, spots: &[Self::Spot]);
+
+    /// Adds the counts of another thread.
+    fn merge(&mut self, other: Self);
+}
+
 /// Counts of a thread.
-pub(super) struct Tally<'a> {
-    counts: Vec<u32>,
+pub(super) struct Tally<'a, C> {
+    counter: C,
+    fresh: &'a (dyn Fn() -> C + Sync),
     counted: u64,
     /// Number of points not yet reported to the progress.
     untold: u64,
     /// Counts of all threads.
-    all: &'a Mutex<Option<Vec<u32>>>,
+    all: &'a Mutex<Option<C>>,
     progress: Option<&'a Progress>,
     cancel: Option<&'a AtomicBool>,
 }
 
-impl<'a> Tally<'a> {
+impl<'a, C: Counter> Tally<'a, C> {
     pub(super) fn new(
-        bins: usize,
-        all: &'a Mutex<Option<Vec<u32>>>,
+        fresh: &'a (dyn Fn() -> C + Sync),
+        all: &'a Mutex<Option<C>>,
         progress: Option<&'a Progress>,
         cancel: Option<&'a AtomicBool>,
     ) -> Self {
         Self {
-            counts: vec![0; bins],
+            counter: fresh(),
+            fresh,
             counted: 0,
             untold: 0,
             all,
@@ -47,17 +59,12 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Counts the first points of a block, up to `most`, and returns their number.
+    /// Adds the first points of a block, up to `most`, and returns their number.
     #[inline(always)]
-    pub(super) fn add(&mut self, bins: &Bins, most: u64) -> Result<u64, Cancelled> {
-        let bins = bins.as_flattened();
-        let bins = &bins[..bins.len().min(usize::try_from(most).unwrap_or(usize::MAX))];
-        for &bin in bins {
-            if let Some(count) = self.counts.get_mut(bin as usize) {
-                *count += 1;
-            }
-        }
-        let points = bins.len() as u64;
+    pub(super) fn add(&mut self, spots: &[C::Spot], most: u64) -> Result<u64, Cancelled> {
+        let spots = &spots[..spots.len().min(usize::try_from(most).unwrap_or(usize::MAX))];
+        self.counter.add(spots);
+        let points = spots.len() as u64;
         self.counted += points;
         self.untold += points;
         if self.untold >= PATIENCE {
@@ -75,9 +82,8 @@ impl<'a> Tally<'a> {
         }
         self.untold = 0;
         if self.counted > MOST - 2 * PATIENCE {
-            let none = vec![0; self.counts.len()];
-            let counts = std::mem::replace(&mut self.counts, none);
-            self.hand_in(counts);
+            let counter = std::mem::replace(&mut self.counter, (self.fresh)());
+            hand_in(self.all, counter);
             self.counted = 0;
         }
         match is_cancelled(self.cancel) {
@@ -86,25 +92,20 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Adds counts to those of all threads.
-    fn hand_in(&mut self, counts: Vec<u32>) {
-        let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
-        match &mut *all {
-            None => *all = Some(counts),
-            Some(all) => {
-                for (all, count) in all.iter_mut().zip(counts) {
-                    *all = all.saturating_add(count);
-                }
-            }
-        }
-    }
-
     /// Ends the count, and adds it to that of all threads.
-    pub(super) fn finish(mut self) {
-        let counts = std::mem::take(&mut self.counts);
-        self.hand_in(counts);
+    pub(super) fn finish(self) {
+        hand_in(self.all, self.counter);
         if let Some(progress) = self.progress {
             progress.count(self.untold);
         }
+    }
+}
+
+/// Adds counts to those of all threads.
+fn hand_in<C: Counter>(all: &Mutex<Option<C>>, counter: C) {
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    match &mut *all {
+        None => *all = Some(counter),
+        Some(all) => all.merge(counter),
     }
 }

@@ -17,6 +17,7 @@ use clap::ValueHint;
 use crate::catalogue::Catalogue;
 use crate::export;
 use crate::fractal::Goal;
+use crate::graph::Graph;
 use crate::render::RenderError;
 use crate::style::Named;
 
@@ -25,7 +26,7 @@ use super::growth::GrowthArguments;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, help, output, readable, steps, text};
+use super::{Failure, format, help, output, readable, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
 use plan::{Format, Plan};
@@ -129,6 +130,10 @@ Examples:
       Draws an iterated function system by random iteration, into barnsley-fern.png
   kfrac grow menger --from 35,20 --perspective 40 -o menger.png
       Draws a set in space, to the pixel
+  kfrac grow menger --method chaos --points 20M -o menger.png
+      Draws points of the same set by random iteration
+  kfrac grow menger --points 2M -o menger.ply
+      Writes points with colours and normals for other programs
   kfrac grow menger --steps 60 -o menger.usda
       Writes 20^60 cubes as a small scene of nested instances for other programs
   kfrac grow menger --steps 3 --mesh shell -o menger.stl
@@ -142,7 +147,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     if loaded.model.is_in_space() {
         let (path, summary, bytes) = match plan {
             Plan::Scene(format) => scene::write(arguments, &loaded, format)?,
-            _ => space::draw(arguments, &loaded)?,
+            plan => space::draw(arguments, &loaded, &plan)?,
         };
         arguments.report(&path, &summary, bytes, start);
         return Ok(());
@@ -172,12 +177,34 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             );
             return Err(Failure::Usage(message));
         }
+        Plan::Cloud => {
+            return Err(Failure::Usage(format!(
+                "a .ply holds points in space, and {} lies in the plane: write a .csv of its points",
+                loaded.name
+            )));
+        }
     };
     arguments.report(path, &summary, bytes, start);
     Ok(())
 }
 
 impl Arguments {
+    /// Returns whether a file is named, other than standard output.
+    fn names_file(&self) -> bool {
+        { self.output.as_deref() }.is_some_and(|path| path != Path::new("-"))
+    }
+
+    /// Returns whether a PLY file is requested.
+    fn is_ply(&self) -> bool {
+        let format = format::choose(self.format, self.output.as_deref());
+        (self.format.is_some() || self.names_file()) && matches!(format, Ok(Format::PLY))
+    }
+
+    /// Returns whether random iteration is requested: for a PLY file, also by a number of points.
+    fn draws_points(&self) -> bool {
+        self.chaos.is_asked() || (self.chaos.has_points() && self.is_ply())
+    }
+
     /// Prints what has been written, unless messages are suppressed.
     fn report(&self, path: &Path, summary: &str, bytes: u64, start: Instant) {
         if !self.growth.quiet {
@@ -204,14 +231,27 @@ impl Arguments {
         if let Goal::Steps(..) = goal {
             self.growth.check(steps, &graph, loaded)?;
         }
+        let (listed, bytes) = self.list_step(&graph, steps, loaded, format, path)?;
+        let step = goal.reached(&loaded.name, steps);
+        Ok((format!("{step}, {listed}"), bytes))
+    }
+
+    /// Lists the elements of a step of a graph; returns a summary and the number of bytes.
+    fn list_step<F: export::Listed>(
+        &self,
+        graph: &Graph<F>,
+        steps: u32,
+        loaded: &Loaded,
+        format: export::TableFormat,
+        path: &Path,
+    ) -> Result<(String, u64), Failure> {
         let (walked, bytes) = output::write(path, self.growth.quiet, |out, progress| {
             let growth = self.growth.to(steps, progress);
-            export::write(&graph, &growth, format, self.growth.threads(), out)
+            export::write(graph, &growth, format, self.growth.threads(), out)
                 .map_err(|error| self.growth.explain(RenderError::from(error), loaded, path))
         })?;
         let elements = readable::counted(&walked.elements.into(), "element");
         let fractals = drawing::fractals(walked.fractals);
-        let step = goal.reached(&loaded.name, steps);
-        Ok((format!("{step}, {elements}{fractals}"), bytes))
+        Ok((format!("{elements}{fractals}"), bytes))
     }
 }

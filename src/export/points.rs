@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::sync::atomic::AtomicBool;
 
 use crate::chaos::RandomPoint;
+use crate::geometry::Point;
 use crate::grow::{Progress, WalkError};
 use crate::parallel::is_cancelled;
 
@@ -20,16 +21,18 @@ const MANY: u64 = 1 << 12;
 /// # Errors
 ///
 /// Returns an error if the walk is cancelled, or if `out` fails.
-pub fn write_points(
-    points: impl Iterator<Item = RandomPoint>,
+pub fn write_points<P: Point>(
+    points: impl Iterator<Item = RandomPoint<P>>,
     format: TableFormat,
     cancel: Option<&AtomicBool>,
     progress: Option<&Progress>,
     out: &mut impl Write,
 ) -> Result<(), WalkError<io::Error>> {
+    let axes = &["x", "y", "z"][..P::DIMENSION];
     if format == TableFormat::Csv {
-        writeln!(out, "x,y,map").map_err(WalkError::Visitor)?;
+        writeln!(out, "{},map", axes.join(",")).map_err(WalkError::Visitor)?;
     }
+    let mut row = String::new();
     for (number, point) in (1u64..).zip(points) {
         if number.is_multiple_of(MANY) {
             if is_cancelled(cancel) {
@@ -39,15 +42,19 @@ pub fn write_points(
                 progress.count(MANY);
             }
         }
-        let (mut x, mut y) = (zmij::Buffer::new(), zmij::Buffer::new());
-        let (x, y) = (
-            coordinate(&mut x, point.place.x),
-            coordinate(&mut y, point.place.y),
-        );
+        row.clear();
+        for (axis, value) in axes.iter().zip(point.place.coordinates()) {
+            let mut buffer = zmij::Buffer::new();
+            let value = coordinate(&mut buffer, value);
+            match format {
+                TableFormat::Csv => row.extend([value, ","]),
+                TableFormat::JsonLines => row.extend(["\"", axis, "\":", value, ","]),
+            }
+        }
         let map = point.map + 1;
         match format {
-            TableFormat::Csv => writeln!(out, "{x},{y},{map}"),
-            TableFormat::JsonLines => writeln!(out, r#"{{"x":{x},"y":{y},"map":{map}}}"#),
+            TableFormat::Csv => writeln!(out, "{row}{map}"),
+            TableFormat::JsonLines => writeln!(out, r#"{{{row}"map":{map}}}"#),
         }
         .map_err(WalkError::Visitor)?;
     }

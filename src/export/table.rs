@@ -3,13 +3,15 @@
 use std::io::{self, Write};
 use std::num::NonZero;
 
-use crate::geometry::{BEYOND, DVec2, Direction};
+use crate::geometry::{BEYOND, Direction};
 use crate::graph::Graph;
 use crate::grow::{
     Division, Element, FractalInfo, Growth, Ranks, Visitor, WalkError, Walked, walk_with,
 };
 use crate::parallel::with_team;
 use crate::style::Named;
+
+use super::listed::Listed;
 
 /// Format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,33 +32,13 @@ impl Named for TableFormat {
     ];
 }
 
-/// Columns: the number and age of the fractal; the element's rank in it, its first and last point of
-/// traversal in the model's units, whether it is fertile, its direction, whether it is visible.
-///
-/// Where maps may be arbitrary affine ones, six columns follow: x' = a x + c y + e, y' = b x + d y + f.
-const COLUMNS: [&str; 16] = [
-    "fractal",
-    "age",
-    "index",
-    "x0",
-    "y0",
-    "x1",
-    "y1",
-    "fertile",
-    "direction",
-    "visible",
-    "a",
-    "b",
-    "c",
-    "d",
-    "e",
-    "f",
-];
-
-/// Number of columns of a table of similarities.
-const WITHOUT_MAPS: usize = 10;
-
 /// Grows a graph and writes the elements of the approximant as rows, in order of traversal.
+///
+/// Columns are the number and age of the fractal; the element's rank in it, its first and last point of traversal in
+/// the model's units, in space the unit vector upwards (its normal), whether it is fertile, its direction, and whether
+/// it is visible. Where maps may be arbitrary affine ones, the entries of the map follow, column by column: in the
+/// plane x' = a x + c y + e, y' = b x + d y + f, in space x' = a x + d y + g z + j, y' = b x + e y + h z + k,
+/// z' = c x + f y + i z + l.
 ///
 /// Coordinates are the shortest decimals that read back as the same doubles. The bytes do not depend on the
 /// number of threads.
@@ -64,20 +46,19 @@ const WITHOUT_MAPS: usize = 10;
 /// # Errors
 ///
 /// Returns an error if growing ends early, if an element has no finite coordinates, or if `out` fails.
-pub fn write(
-    graph: &Graph,
+pub fn write<F: Listed>(
+    graph: &Graph<F>,
     growth: &Growth<'_>,
     format: TableFormat,
     threads: NonZero<usize>,
     out: &mut impl Write,
 ) -> Result<Walked, WalkError<io::Error>> {
     if format == TableFormat::Csv {
-        let columns = if graph.is_affine() {
-            &COLUMNS[..]
-        } else {
-            &COLUMNS[..WITHOUT_MAPS]
+        let columns = match graph.is_affine() {
+            true => F::COLUMNS.len(),
+            false => F::COLUMNS.len() - F::ENTRIES,
         };
-        writeln!(out, "{}", columns.join(",")).map_err(WalkError::Visitor)?;
+        writeln!(out, "{}", F::COLUMNS[..columns].join(",")).map_err(WalkError::Visitor)?;
     }
     if let Some(progress) = growth.progress
         && let Ok(Some(elements)) = graph.check_size(growth.steps, growth.max_elements)
@@ -85,8 +66,8 @@ pub fn write(
         progress.expect(elements);
     }
     with_team(threads, |team| {
-        let mut line = team.line(Rows::format);
-        let mut write = |rows: &mut Rows| out.write_all(&rows.text);
+        let mut line = team.line(Rows::<F>::format);
+        let mut write = |rows: &mut Rows<F>| out.write_all(&rows.text);
         let fresh = || Collector {
             graph,
             fractal: FractalInfo::default(),
@@ -117,24 +98,24 @@ pub fn write(
 const MANY: u64 = 1 << 12;
 
 /// The cells of a row.
-struct Row {
+struct Row<F: Listed> {
     fractal: FractalInfo,
     index: u128,
-    ends: [DVec2; 2],
+    coordinates: F::Coordinates,
     fertile: bool,
     direction: Direction,
     visible: bool,
-    map: Option<[f64; 6]>,
+    entries: Option<F::Entries>,
 }
 
 /// Rows, and the text that is made of them.
-struct Rows {
+struct Rows<F: Listed> {
     format: TableFormat,
-    rows: Vec<Row>,
+    rows: Vec<Row<F>>,
     text: Vec<u8>,
 }
 
-impl Rows {
+impl<F: Listed> Rows<F> {
     fn of(format: TableFormat) -> Self {
         Self {
             format,
@@ -147,6 +128,7 @@ impl Rows {
         self.text.clear();
         let mut line = Cells {
             format: self.format,
+            columns: F::COLUMNS.iter(),
             text: &mut self.text,
         };
         for row in &self.rows {
@@ -158,72 +140,77 @@ impl Rows {
 /// Writes the cells of rows as text.
 struct Cells<'t> {
     format: TableFormat,
+    /// Names of the columns that follow in the row.
+    columns: std::slice::Iter<'static, &'static str>,
     text: &'t mut Vec<u8>,
 }
 
 impl Cells<'_> {
-    fn row(&mut self, row: &Row) {
-        let [from, to] = row.ends;
-        self.whole(0, row.fractal.number);
-        self.whole(1, u64::from(row.fractal.age));
-        self.whole(2, row.index);
-        self.coordinate(3, from.x);
-        self.coordinate(4, from.y);
-        self.coordinate(5, to.x);
-        self.coordinate(6, to.y);
-        self.flag(7, row.fertile);
-        self.whole(8, u64::from(row.direction.number()));
-        self.flag(9, row.visible);
-        if let Some(map) = row.map {
-            for (column, value) in (WITHOUT_MAPS..).zip(map) {
-                self.coordinate(column, value);
-            }
+    fn row<F: Listed>(&mut self, row: &Row<F>) {
+        self.columns = F::COLUMNS.iter();
+        let is_json = self.format == TableFormat::JsonLines;
+        if is_json {
+            self.text.push(b'{');
         }
-        if self.format == TableFormat::JsonLines {
+        self.whole(row.fractal.number);
+        self.whole(u64::from(row.fractal.age));
+        self.whole(row.index);
+        self.coordinates(row.coordinates.as_ref());
+        self.flag(row.fertile);
+        self.whole(u64::from(row.direction.number()));
+        self.flag(row.visible);
+        if let Some(entries) = &row.entries {
+            self.coordinates(entries.as_ref());
+        }
+        // Every cell ends with a comma.
+        self.text.pop();
+        if is_json {
             self.text.push(b'}');
         }
         self.text.push(b'\n');
     }
 
-    fn cell(&mut self, column: usize, text: &str) {
-        if self.format == TableFormat::JsonLines {
-            self.text
-                .extend_from_slice(if column == 0 { b"{\"" } else { b",\"" });
-            self.text.extend_from_slice(COLUMNS[column].as_bytes());
+    fn cell(&mut self, text: &str) {
+        if self.format == TableFormat::JsonLines
+            && let Some(column) = self.columns.next()
+        {
+            self.text.push(b'"');
+            self.text.extend_from_slice(column.as_bytes());
             self.text.extend_from_slice(b"\":");
-        } else if column > 0 {
-            self.text.push(b',');
         }
         self.text.extend_from_slice(text.as_bytes());
+        self.text.push(b',');
     }
 
-    fn coordinate(&mut self, column: usize, value: f64) {
-        // Adding zero turns −0 into 0.
-        let mut buffer = zmij::Buffer::new();
-        let text = buffer.format_finite(value + 0.0);
-        self.cell(column, text.strip_suffix(".0").unwrap_or(text));
+    fn coordinates(&mut self, values: &[f64]) {
+        for value in values {
+            // Adding zero turns −0 into 0.
+            let mut buffer = zmij::Buffer::new();
+            let text = buffer.format_finite(value + 0.0);
+            self.cell(text.strip_suffix(".0").unwrap_or(text));
+        }
     }
 
-    fn whole(&mut self, column: usize, value: impl itoa::Integer) {
+    fn whole(&mut self, value: impl itoa::Integer) {
         let mut buffer = itoa::Buffer::new();
-        self.cell(column, buffer.format(value));
+        self.cell(buffer.format(value));
     }
 
-    fn flag(&mut self, column: usize, value: bool) {
-        self.cell(column, if value { "true" } else { "false" });
+    fn flag(&mut self, value: bool) {
+        self.cell(if value { "true" } else { "false" });
     }
 }
 
 /// Collects the rows of a span.
-struct Collector<'g> {
-    graph: &'g Graph,
+struct Collector<'g, F: Listed> {
+    graph: &'g Graph<F>,
     fractal: FractalInfo,
     /// Number of leading rows whose fractal began before the span.
     goes_on: usize,
-    rows: Vec<Row>,
+    rows: Vec<Row<F>>,
 }
 
-impl Visitor for Collector<'_> {
+impl<F: Listed> Visitor<F> for Collector<'_, F> {
     type Error = io::Error;
 
     fn go_on(&mut self, fractal: FractalInfo) {
@@ -237,30 +224,19 @@ impl Visitor for Collector<'_> {
         Ok(())
     }
 
-    fn element(&mut self, element: &Element) -> io::Result<()> {
+    fn element(&mut self, element: &Element<F>) -> io::Result<()> {
         let affine = self.graph.is_affine();
-        let place = self.graph.place();
-        let mut frame = element.frame;
-        let is_in_range = frame.is_in_range();
-        if affine && !place.is_identity() {
-            frame = frame.conjugated(place);
-        }
-        let mut ends = frame.ends();
-        if !affine && !place.is_identity() {
-            ends = ends.map(|end| place.point(end));
-        }
-        if !is_in_range || !ends.iter().all(|end| end.is_finite()) || !frame.is_finite() {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
-        }
-        let map = affine.then(|| frame.map().to_cols_array());
+        let listed = element.frame.listed(self.graph.place(), affine);
+        let (coordinates, entries) =
+            listed.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, BEYOND))?;
         self.rows.push(Row {
             fractal: self.fractal,
             index: element.index,
-            ends,
+            coordinates,
             fertile: element.fertile,
             direction: element.frame.direction(),
             visible: self.graph.objects()[element.object].visible,
-            map,
+            entries: affine.then_some(entries),
         });
         Ok(())
     }

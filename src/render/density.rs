@@ -35,7 +35,7 @@ impl Named for Tone {
 
 impl Tone {
     /// Returns the tone of a number of hits, where `most` is the largest number.
-    fn of(self, hits: u64, most: u64) -> f64 {
+    pub(super) fn of(self, hits: u64, most: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a tone has 255 steps")]
         let [hits, most] = [hits, most].map(|count| count as f64);
         if hits == 0.0 {

@@ -1,5 +1,10 @@
 //! `kfrac grow --method chaos`: random iteration of iterated function systems.
 
+mod space;
+
+pub(super) use space::SpaceGame;
+
+use std::fmt;
 use std::io::Write;
 use std::num::NonZero;
 use std::path::Path;
@@ -11,10 +16,11 @@ use crate::chaos::{
     ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, WeightedMaps, play,
 };
 use crate::export;
-use crate::geometry::{Bounds, DVec2, Homothety};
+use crate::geometry::{Bounds, DVec3, Homothety};
 use crate::graph::Graph;
 use crate::grow::Progress;
 use crate::ifs;
+use crate::metadata::Metadata;
 use crate::model::Model;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_density};
 use crate::style::{ColorBy, Colour, Named, Style};
@@ -44,8 +50,8 @@ pub(super) struct ChaosArguments {
     #[arg(long, value_parser = picture::named::<Tone>())]
     tone: Option<Tone>,
     /// Start of the walks, if not on the attractor; the way there is drawn; may be given several times
-    #[arg(long, value_name = "X,Y", value_parser = start, allow_hyphen_values = true)]
-    start: Vec<DVec2>,
+    #[arg(long, value_name = "X,Y[,Z]", value_parser = start, allow_hyphen_values = true)]
+    start: Vec<StartPoint>,
     /// Number of points of a walk from a start, before the next walk begins [default: 256]
     #[arg(long, value_name = "N", requires = "start", value_parser = number::whole("a number of steps", 1..=u32::MAX))]
     walk: Option<u32>,
@@ -92,19 +98,74 @@ fn points(text: &str) -> Result<u64, String> {
     }
 }
 
-/// Parses a point `X,Y`.
-fn start(text: &str) -> Result<DVec2, String> {
-    let coordinates = text.split_once(',').and_then(|(x, y)| {
-        let point = DVec2::new(x.trim().parse().ok()?, y.trim().parse().ok()?);
-        point.is_finite().then_some(point)
-    });
-    coordinates.ok_or_else(|| "expected a point X,Y".into())
+/// Start of walks: a point of the plane, which in space lies in z = 0, or of space.
+#[derive(Clone, Copy)]
+struct StartPoint {
+    place: DVec3,
+    is_flat: bool,
+}
+
+impl fmt::Display for StartPoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.place.x, self.place.y)?;
+        match self.is_flat {
+            true => Ok(()),
+            false => write!(f, ",{}", self.place.z),
+        }
+    }
+}
+
+/// Parses a point `X,Y` or `X,Y,Z`.
+fn start(text: &str) -> Result<StartPoint, String> {
+    let numbers = text.split(',').map(|number| number.trim().parse::<f64>());
+    let place = match numbers.collect::<Result<Vec<_>, _>>().as_deref() {
+        Ok(&[x, y]) => Some((DVec3::new(x, y, 0.0), true)),
+        Ok(&[x, y, z]) => Some((DVec3::new(x, y, z), false)),
+        _ => None,
+    };
+    let place = place.filter(|(place, _)| place.is_finite());
+    let place = place.map(|(place, is_flat)| StartPoint { place, is_flat });
+    place.ok_or_else(|| "expected a point X,Y, or X,Y,Z in space".into())
 }
 
 impl ChaosArguments {
     /// Returns whether random iteration is requested.
     pub(super) fn is_asked(&self) -> bool {
         self.method == Method::Chaos
+    }
+
+    /// Returns whether a number of points is given.
+    pub(super) fn has_points(&self) -> bool {
+        self.points.is_some()
+    }
+
+    /// Returns the start of walks.
+    fn start<P>(&self, place: impl Fn(&StartPoint) -> P) -> Start<P> {
+        match &self.start[..] {
+            [] => Start::Attractor,
+            points => Start::Points {
+                points: points.iter().map(place).collect(),
+                steps: NonZero::new(self.walk.unwrap_or(256)).unwrap_or(NonZero::<u32>::MIN),
+            },
+        }
+    }
+
+    /// Returns the options of a game that are given, with their values. `steps` is the number of steps for which
+    /// first maps are distinguished.
+    fn options(&self, points: u64, color_by: ColorBy, steps: u32) -> Vec<(&'static str, String)> {
+        let mut options = vec![("method", Method::Chaos.name().into())];
+        options.push(("points", points.to_string()));
+        if let Some(tone) = self.tone {
+            options.push(("tone", tone.name().into()));
+        }
+        options.extend(self.start.iter().map(|start| ("start", start.to_string())));
+        if let Start::Points { steps, .. } = self.start(|_| ()) {
+            options.push(("walk", steps.to_string()));
+        }
+        if color_by == ColorBy::FirstMap {
+            options.push(("steps", steps.to_string()));
+        }
+        options
     }
 
     /// Returns the options that apply to random iteration only, and whether they are given.
@@ -119,8 +180,8 @@ impl ChaosArguments {
 
 /// Returns the property that colours points: as requested, or as in the file where points have it. A file
 /// that colours by step is coloured by hits, because points have no step.
-fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy, Failure> {
-    let color_by = picture.style(system.metadata()).color_by;
+fn color_by(picture: &PictureArguments, heading: &Metadata) -> Result<ColorBy, Failure> {
+    let color_by = picture.style(heading).color_by;
     match (color_by, picture.asked_color_by()) {
         (ColorBy::None | ColorBy::Hits | ColorBy::FirstMap | ColorBy::LastMap, _) => Ok(color_by),
         (_, None) => Ok(ColorBy::Hits),
@@ -131,6 +192,41 @@ fn color_by(picture: &PictureArguments, system: &ifs::System) -> Result<ColorBy,
         ))),
     }
 }
+
+/// Returns the property by which points are classified for a colour. `steps` is the number of steps for which first
+/// maps are distinguished.
+fn classes(color_by: ColorBy, steps: u32) -> ClassBy {
+    let ago = match color_by {
+        ColorBy::LastMap => 0,
+        // Walks record no more maps than that.
+        ColorBy::FirstMap => u8::try_from(steps.clamp(1, 200) - 1).unwrap_or(u8::MAX),
+        _ => return ClassBy::One,
+    };
+    ClassBy::Map { ago }
+}
+
+/// Returns an error if the number of steps is given, and has no meaning for points of a colour.
+fn refuse_steps(steps: Option<u32>, color_by: ColorBy) -> Result<(), Failure> {
+    if steps.is_none() || color_by == ColorBy::FirstMap {
+        return Ok(());
+    }
+    let message = "--steps applies to deterministic iteration; with --method chaos, --points is the number of \
+                   points";
+    Err(Failure::Usage(message.into()))
+}
+
+/// Returns an error if a list has more points than are allowed.
+fn check_rows(points: u64, most: u64) -> Result<(), Failure> {
+    if points <= most {
+        return Ok(());
+    }
+    let points = counted(&points.into(), "point");
+    Err(anyhow!("{points} are more rows than --max-elements {most} allows").into())
+}
+
+/// Number of points of a picture, and of a list, where none is given.
+const DRAWN: u64 = 10_000_000;
+const LISTED: u64 = 100_000;
 
 /// Game that is ready to be played.
 pub(super) struct ChaosGame<'a> {
@@ -182,20 +278,15 @@ impl<'a> ChaosGame<'a> {
                 loaded.name
             ))
         })?;
-        let color_by = color_by(picture, &source)?;
-        if steps.is_some() && color_by != ColorBy::FirstMap {
-            let message = "--steps applies to deterministic iteration; with --method chaos, \
-                           --points is the number of points";
-            return Err(Failure::Usage(message.into()));
+        let color_by = color_by(picture, source.metadata())?;
+        refuse_steps(*steps, color_by)?;
+        if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {
+            return Err(Failure::Usage(format!(
+                "--start {start} lies in space, and {} in the plane: a point is X,Y",
+                loaded.name
+            )));
         }
-        let walks = NonZero::new(chaos.walk.unwrap_or(256)).unwrap_or(NonZero::<u32>::MIN);
-        let start = match &chaos.start[..] {
-            [] => Start::Attractor,
-            points => Start::Points {
-                points: points.iter().map(|&point| place.origin_of(point)).collect(),
-                steps: walks,
-            },
-        };
+        let start = chaos.start(|start| place.origin_of(start.place.truncate()));
         Ok(Self {
             arguments,
             loaded,
@@ -254,7 +345,7 @@ impl<'a> ChaosGame<'a> {
         let canvas = self
             .canvas(*size)
             .map_err(|error| self.explain(error, path))?;
-        let points = chaos.points.unwrap_or(10_000_000);
+        let points = chaos.points.unwrap_or(DRAWN);
         let window = HistogramWindow {
             to_pixels: canvas.to_pixels(),
             size: canvas.size(),
@@ -263,7 +354,7 @@ impl<'a> ChaosGame<'a> {
             points,
             seed: growth.seed,
             start: self.start.clone(),
-            classes: self.classes(),
+            classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
             cancel: None,
             progress,
@@ -284,7 +375,7 @@ impl<'a> ChaosGame<'a> {
             background: style.background,
         };
         let described = counted(&points.into(), "point");
-        let mut options = self.options(points);
+        let mut options = chaos.options(points, self.color_by, self.steps);
         options.extend(growth.options());
         options.push(("format", "png".into()));
         options.push(("size", size.to_string()));
@@ -312,15 +403,8 @@ impl<'a> ChaosGame<'a> {
         path: &Path,
     ) -> Result<String, Failure> {
         let growth = &self.arguments.growth;
-        let points = self.arguments.chaos.points.unwrap_or(100_000);
-        if points > growth.max_elements() {
-            let error = anyhow!(
-                "{} are more rows than --max-elements {} allows",
-                counted(&points.into(), "point"),
-                growth.max_elements()
-            );
-            return Err(error.into());
-        }
+        let points = self.arguments.chaos.points.unwrap_or(LISTED);
+        check_rows(points, growth.max_elements())?;
         if let Some(progress) = progress {
             progress.expect(points);
         }
@@ -334,17 +418,6 @@ impl<'a> ChaosGame<'a> {
             .map_err(|error| self.explain(error.into(), path))?;
         let described = counted(&points.into(), "point");
         Ok(format!("{}, {described}", self.loaded.name))
-    }
-
-    /// Returns the property by which points are classified.
-    fn classes(&self) -> ClassBy {
-        let ago = match self.color_by {
-            ColorBy::LastMap => 0,
-            // Walks record no more maps than that.
-            ColorBy::FirstMap => u8::try_from(self.steps.clamp(1, 200) - 1).unwrap_or(u8::MAX),
-            _ => return ClassBy::One,
-        };
-        ClassBy::Map { ago }
     }
 
     /// Returns the colours of hits, maps or all points in a style.
@@ -367,24 +440,6 @@ impl<'a> ChaosGame<'a> {
             }
             _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
         }
-    }
-
-    /// Returns the options of the game that are given, with their values.
-    fn options(&self, points: u64) -> Vec<(&'static str, String)> {
-        let mut options = vec![("method", Method::Chaos.name().into())];
-        options.push(("points", points.to_string()));
-        if let Some(tone) = self.arguments.chaos.tone {
-            options.push(("tone", tone.name().into()));
-        }
-        if let Start::Points { steps, .. } = &self.start {
-            let starts = self.arguments.chaos.start.iter();
-            options.extend(starts.map(|start| ("start", format!("{},{}", start.x, start.y))));
-            options.push(("walk", steps.to_string()));
-        }
-        if self.color_by == ColorBy::FirstMap {
-            options.push(("steps", self.steps.to_string()));
-        }
-        options
     }
 }
 

@@ -23,6 +23,8 @@ pub(super) enum Plan {
     },
     /// Points of random iteration: a PNG of their numbers, or a table of them.
     Chaos(Option<export::TableFormat>),
+    /// Points of random iteration in space, as a PLY file.
+    Cloud,
     /// Elements in space for other programs.
     Scene(SceneFormat),
 }
@@ -54,6 +56,11 @@ pub(super) enum SceneFormat {
     Mesh(MeshFormat),
 }
 
+impl Format {
+    /// Polygon File Format: a mesh, or the points of random iteration.
+    pub(super) const PLY: Self = Self::Scene(SceneFormat::Mesh(MeshFormat::Ply));
+}
+
 impl Named for Format {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("svg", Self::Picture(render::Format::Svg)),
@@ -67,7 +74,7 @@ impl Named for Format {
         ("usda", Self::Scene(SceneFormat::Usda)),
         ("stl", Self::Scene(SceneFormat::Mesh(MeshFormat::Stl))),
         ("obj", Self::Scene(SceneFormat::Mesh(MeshFormat::Obj))),
-        ("ply", Self::Scene(SceneFormat::Mesh(MeshFormat::Ply))),
+        ("ply", Self::PLY),
     ];
 }
 
@@ -82,7 +89,7 @@ impl Plan {
             picture,
             ..
         } = arguments;
-        let (is_chaos, has_detail) = (chaos.is_asked(), arguments.detail.is_some());
+        let (is_chaos, has_detail) = (arguments.draws_points(), arguments.detail.is_some());
         if is_chaos {
             let message = "--detail applies to elements, and --method chaos draws points";
             refuse(has_detail, message)?;
@@ -152,13 +159,14 @@ impl Plan {
         )?;
         if is_chaos {
             refuse(
-                matches!(format, Format::Scene(_)),
-                "--method chaos draws points, not elements: write a .png, or a .csv of the points",
+                matches!(format, Format::Scene(_)) && format != Format::PLY,
+                "--method chaos draws points, not elements: write a .png, or a .csv or .ply of the points",
             )?;
-            return Ok(Self::Chaos(match format {
-                Format::Table(format) => Some(format),
-                Format::Picture(_) | Format::Scene(_) => None,
-            }));
+            return Ok(match format {
+                Format::Table(format) => Self::Chaos(Some(format)),
+                Format::Scene(_) => Self::Cloud,
+                Format::Picture(_) => Self::Chaos(None),
+            });
         }
         let is_nested = svg.is_instanced();
         refuse(
@@ -211,6 +219,7 @@ impl Plan {
             Self::Picture { format, .. } => format.name(),
             Self::Chaos(None) => render::Format::Png.name(),
             Self::Scene(format) => Format::Scene(*format).name(),
+            Self::Cloud => Format::PLY.name(),
         }
     }
 }

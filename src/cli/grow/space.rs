@@ -1,6 +1,6 @@
-//! Pictures of sets in space.
+//! Pictures of sets in space, and tables of their elements and points.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::anyhow;
 
@@ -10,24 +10,38 @@ use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
-use super::super::{Failure, format, output, readable};
-use super::{Arguments, Format};
+use super::super::{Failure, output, readable, steps};
+use super::Arguments;
+use super::chaos::SpaceGame;
+use super::plan::Plan;
 
-/// Draws a set in space; returns the path, a summary and the number of bytes.
+/// Draws a set in space, or lists its elements or points; returns the path, a summary and the number of bytes.
 pub(super) fn draw(
     arguments: &Arguments,
     loaded: &Loaded,
+    plan: &Plan,
 ) -> Result<(PathBuf, String, u64), Failure> {
-    check(arguments, loaded)?;
-    let default = arguments.rule.file("", "png");
+    let extension = check(arguments, loaded, plan)?;
+    let default = arguments.rule.file("", extension);
     let path = arguments.output.as_ref().unwrap_or(&default);
     let heading = loaded.model.metadata();
     let style = arguments.picture.style(heading);
+    let graph = loaded.model.compile_in_space(false);
+    let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
+    if let Plan::Table(format) = *plan {
+        let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
+        arguments.growth.check(steps, &graph, loaded)?;
+        let (listed, bytes) = arguments.list_step(&graph, steps, loaded, format, path)?;
+        let summary = format!("step {steps} of {}, {listed}", loaded.name);
+        return Ok((path.clone(), summary, bytes));
+    }
+    let game = match plan {
+        Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::new(arguments, loaded)?),
+        _ => None,
+    };
     let steps = arguments
         .steps
         .or(heading.steps.filter(|_| arguments.detail.is_none()));
-    let graph = loaded.model.compile_in_space(false);
-    let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
     let options = render::Options {
         format: render::Format::Png,
         style,
@@ -40,14 +54,22 @@ pub(super) fn draw(
         threads: arguments.growth.threads(),
         labels: labels(
             loaded,
-            &described(arguments, steps),
+            &{ game.as_ref() }.map_or_else(|| described(arguments, steps), SpaceGame::described),
             "grow",
-            told(arguments),
+            told(arguments, game.as_ref()),
         ),
         ..render::Options::default()
     };
     let quiet = arguments.growth.quiet;
     let space = arguments.space.to_options()?;
+    if let Some(game) = game {
+        let (summary, bytes) = output::write(path, quiet, |out, progress| match *plan {
+            Plan::Chaos(Some(format)) => game.list(format, progress, out, path),
+            Plan::Cloud => game.write_ply(&graph, &options.style, progress, out, path),
+            _ => game.draw(&graph, options, &space, progress, out, path),
+        })?;
+        return Ok((path.clone(), summary, bytes));
+    }
     let (picture, bytes) = output::write(path, quiet, |mut out, _| {
         write_space(&graph, steps, &options, &space, None, &mut out)
             .map_err(|error| output::explain(error, path))
@@ -80,9 +102,12 @@ fn described(arguments: &Arguments, steps: Option<u32>) -> String {
 }
 
 /// Returns the options of the picture, with their values.
-fn told(arguments: &Arguments) -> Vec<(&'static str, String)> {
+fn told(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static str, String)> {
     let mut options: Vec<(&'static str, String)> = Vec::new();
-    options.extend(arguments.steps.map(|steps| ("steps", steps.to_string())));
+    match game {
+        Some(game) => options.extend(game.options()),
+        None => options.extend(arguments.steps.map(|steps| ("steps", steps.to_string()))),
+    }
     options.extend(
         arguments
             .detail
@@ -94,22 +119,21 @@ fn told(arguments: &Arguments) -> Vec<(&'static str, String)> {
     options
 }
 
-/// Refuses options and formats that pictures of sets in space do not have.
-fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
-    let path = arguments
-        .output
-        .as_deref()
-        .filter(|path| *path != Path::new("-"));
-    let png = Format::Picture(render::Format::Png);
-    let asked = match (arguments.format, path) {
-        (None, None) => png,
-        (asked, path) => format::choose(asked, path)?,
-    };
+/// Returns the extension of the file, and refuses options and formats that sets in space do not have.
+fn check(arguments: &Arguments, loaded: &Loaded, plan: &Plan) -> Result<&'static str, Failure> {
     let name = &loaded.name;
-    if asked != png {
+    let extension = match plan {
+        // Without a file or a format, it is a PNG here.
+        Plan::Picture { .. } if arguments.format.is_none() && !arguments.names_file() => {
+            render::Format::Png.name()
+        }
+        plan => plan.extension(),
+    };
+    if let Plan::Picture { .. } = plan
+        && extension != render::Format::Png.name()
+    {
         let message = format!(
-            "{name} lies in space, and is drawn as .png, not as .{}",
-            asked.name()
+            "{name} lies in space, and is written as .png, as a table or as a scene, not as .{extension}"
         );
         return Err(Failure::Usage(message));
     }
@@ -118,7 +142,6 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
         ("--svg instanced", arguments.svg.is_instanced()),
         ("--zoom", arguments.zoom.is_asked()),
         ("--view", arguments.picture.has_view()),
-        ("--method chaos", arguments.chaos.is_asked()),
         ("sizes in millimetres", arguments.size.unit != Unit::Pixel),
     ];
     let lines = arguments.picture.of_lines();
@@ -128,5 +151,5 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
             return Err(Failure::Usage(message));
         }
     }
-    arguments.picture.refuse_hits()
+    Ok(extension)
 }

@@ -15,6 +15,7 @@ mod copies;
 mod descent;
 mod forms;
 mod place;
+mod points;
 mod relief;
 mod round;
 mod scene;
@@ -25,6 +26,7 @@ mod stamp;
 mod tints;
 
 pub use camera::{Camera, CameraError};
+pub use points::{colours_of_maps, write_points_in_space};
 pub(super) use shade::ink;
 pub use shade::{Light, Shade};
 pub use slice::Slice;
@@ -34,6 +36,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
+use crate::chaos::GameError;
 use crate::geometry::{Frame3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::WalkError;
@@ -85,6 +88,9 @@ pub enum SpaceError {
         .0[0], .0[1]
     )]
     NothingLeft([f64; 2]),
+    /// The chaos game cannot be played.
+    #[error(transparent)]
+    Game(#[from] GameError),
 }
 
 /// Options of pictures in space, beside those of all pictures.

@@ -26,6 +26,19 @@ pub(super) fn place(
     size: Size,
     margin: f64,
 ) -> Result<Placement, SpaceError> {
+    place_with(graph, search, &[], camera, within, size, margin)
+}
+
+/// Places a set as [`place`] does, together with other points.
+pub(super) fn place_with(
+    graph: &Graph<Frame3>,
+    search: &Search<'_>,
+    others: &[DVec3],
+    camera: &Camera,
+    within: &[HalfSpace],
+    size: Size,
+    margin: f64,
+) -> Result<Placement, SpaceError> {
     let steps = search.steps;
     camera.check()?;
     let rotation = camera.rotation()?;
@@ -35,7 +48,8 @@ pub(super) fn place(
             let own = extent_along(graph, rows, Some(steps)).ok_or(SpaceError::NoBounds)?;
             bounds.get_or_insert(Bounds::EMPTY).add_all(&own);
         }
-        let bounds = bounds.ok_or(SpaceError::NoBounds)?;
+        let mut bounds = bounds.ok_or(SpaceError::NoBounds)?;
+        { others.iter() }.for_each(|point| bounds.add(rows * *point));
         if bounds.is_empty() {
             return Err(NoRoom::Nothing.into());
         }

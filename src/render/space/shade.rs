@@ -110,6 +110,25 @@ impl Inks {
         }
     }
 
+    /// Returns the colour of a sample, which is transparent if it shows nothing. `tint` is its colour if it is tinted.
+    #[inline]
+    pub(super) fn sample(&self, key: u32, tint: Option<&Colour>) -> [f64; 4] {
+        let Some(depth) = depth_of(key) else {
+            return [0.0; 4];
+        };
+        let class = (key & ((1 << super::buffer::CLASS_BITS) - 1)) as usize;
+        let ink = match tint {
+            Some(colour) => colour.rgba().map(f64::from),
+            None => self.inks[class % self.inks.len()],
+        };
+        let intensity = match self.shade.cues_depth() {
+            true => 1.0 - f64::from(depth) / STEPS,
+            false => 1.0,
+        };
+        let share = intensity * ink[3] / 255.0;
+        [ink[0] * share, ink[1] * share, ink[2] * share, ink[3]]
+    }
+
     /// Returns the colour of the samples of a pixel together, which is transparent where there are none, and
     /// the least depth; `rows` are the keys of the rows of samples, and `tints` their colours where they are
     /// tinted.
@@ -123,24 +142,12 @@ impl Inks {
         let mut tints = tints.into_iter().flatten().flatten();
         for key in rows.into_iter().flatten() {
             let tint = tints.next();
-            let Some(depth) = depth_of(*key) else {
+            if *key == EMPTY {
                 continue;
-            };
-            nearest = nearest.min(*key);
-            let class = (*key & ((1 << super::buffer::CLASS_BITS) - 1)) as usize;
-            let ink = match tint {
-                Some(colour) => colour.rgba().map(f64::from),
-                None => self.inks[class % self.inks.len()],
-            };
-            let intensity = match self.shade.cues_depth() {
-                true => 1.0 - f64::from(depth) / STEPS,
-                false => 1.0,
-            };
-            let share = intensity * ink[3] / 255.0;
-            for (sum, part) in sum.iter_mut().zip(&ink[..3]) {
-                *sum += part * share;
             }
-            sum[3] += ink[3];
+            nearest = nearest.min(*key);
+            let own = self.sample(*key, tint);
+            sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
         }
         #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
         let all = (SAMPLES * SAMPLES) as f64;
@@ -149,7 +156,7 @@ impl Inks {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "there are few classes")]
-fn class_colour(palette: &Palette, class: usize, most: usize) -> Colour {
+pub(super) fn class_colour(palette: &Palette, class: usize, most: usize) -> Colour {
     let last = most.saturating_sub(1).max(1);
     palette.at(class as f64 / last as f64)
 }

@@ -1,0 +1,248 @@
+//! Random iteration in space: pictures, tables and PLY files of points.
+
+use std::collections::VecDeque;
+use std::io::Write;
+use std::path::Path;
+
+use crate::chaos::{ClassBy, Game, RandomPoint, RandomPoints, Start, WeightedMaps};
+use crate::export::{self, Surface, TableFormat};
+use crate::geometry::{Bounds, DAffine3, DVec3, Frame3};
+use crate::graph::Graph;
+use crate::grow::Progress;
+use crate::model::Model;
+use crate::render::space::{SpaceOptions, colours_of_maps, write_points_in_space};
+use crate::render::{Options, RenderError};
+use crate::style::{ColorBy, Style};
+
+use super::super::super::Failure;
+use super::super::super::output;
+use super::super::super::readable::counted;
+use super::super::super::rule::Loaded;
+use super::super::Arguments;
+use super::{DRAWN, LISTED, check_rows, classes, color_by, refuse_steps};
+
+/// Number of points from which normals are computed.
+const SURFACE: usize = 1_000_000;
+
+/// Game in space that is ready to be played.
+pub(in crate::cli::grow) struct SpaceGame<'a> {
+    arguments: &'a Arguments,
+    loaded: &'a Loaded,
+    system: WeightedMaps<DAffine3>,
+    start: Start<DVec3>,
+    color_by: ColorBy,
+    /// Number of steps for which first maps are distinguished.
+    steps: u32,
+}
+
+impl<'a> SpaceGame<'a> {
+    /// Returns the game that the options request.
+    pub(in crate::cli::grow) fn new(
+        arguments: &'a Arguments,
+        loaded: &'a Loaded,
+    ) -> Result<Self, Failure> {
+        let Model::IfsInSpace(source) = &loaded.model else {
+            return Err(Failure::Usage(format!(
+                "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}",
+                loaded.name,
+                loaded.model.kind().name()
+            )));
+        };
+        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
+            let error = anyhow::Error::new(error);
+            error.context(format!(
+                "{} cannot be drawn by random iteration",
+                loaded.name
+            ))
+        })?;
+        let color_by = color_by(&arguments.picture, source.metadata())?;
+        refuse_steps(arguments.steps, color_by)?;
+        let steps = arguments.steps.or(source.metadata().steps);
+        Ok(Self {
+            arguments,
+            loaded,
+            system,
+            start: arguments.chaos.start(|start| start.place),
+            color_by,
+            steps: steps.unwrap_or(8),
+        })
+    }
+
+    /// Returns the number of points.
+    fn points(&self, default: u64) -> u64 {
+        self.arguments.chaos.points.unwrap_or(default)
+    }
+
+    /// Describes the points of a picture.
+    pub(in crate::cli::grow) fn described(&self) -> String {
+        counted(&self.points(DRAWN).into(), "point")
+    }
+
+    /// Returns the options of a picture, with their values.
+    pub(in crate::cli::grow) fn options(&self) -> Vec<(&'static str, String)> {
+        let chaos = &self.arguments.chaos;
+        let mut options = chaos.options(self.points(DRAWN), self.color_by, self.steps);
+        options.extend(self.arguments.growth.options());
+        options
+    }
+
+    /// Plays the game, draws it and returns a summary.
+    pub(in crate::cli::grow) fn draw(
+        &self,
+        graph: &Graph<Frame3>,
+        mut options: Options,
+        space: &SpaceOptions,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        if space.slice.is_some() || !space.cuts.is_empty() {
+            let message = "--slice and --cut apply to elements, and --method chaos draws points";
+            return Err(Failure::Usage(message.into()));
+        }
+        options.style.color_by = self.color_by;
+        let growth = &self.arguments.growth;
+        let game = Game {
+            points: self.points(DRAWN),
+            seed: growth.seed,
+            start: self.start.clone(),
+            classes: classes(self.color_by, self.steps),
+            threads: growth.threads(),
+            cancel: None,
+            progress,
+        };
+        let tone = self.arguments.chaos.tone.unwrap_or_default();
+        let drawn =
+            write_points_in_space(graph, &self.system, &game, tone, &options, space, &mut out);
+        let [width, height] = drawn.map_err(|error| self.explain(error, path))?;
+        Ok(format!(
+            "{}, {}, {width} x {height} pixels",
+            self.loaded.name,
+            self.described()
+        ))
+    }
+
+    /// Lists the points as a table and returns a summary.
+    pub(in crate::cli::grow) fn list(
+        &self,
+        format: TableFormat,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let (points, all) = self.walk(progress)?;
+        let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
+        export::write_points(all, format, None, progress, &mut out)
+            .map_err(|error| self.explain(error.into(), path))?;
+        Ok(self.listed(points))
+    }
+
+    /// Writes the points as a PLY file and returns a summary.
+    pub(in crate::cli::grow) fn write_ply(
+        &self,
+        graph: &Graph<Frame3>,
+        style: &Style,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let (points, mut all) = self.walk(progress)?;
+        let cloud = || RandomPoints::new(&self.system, &self.start, !self.arguments.growth.seed);
+        let cloud = || cloud().take(SURFACE).map(|point| point.place);
+        let bounds = match (graph.limit_bounds(), &self.start) {
+            (Some(bounds), Start::Attractor) => bounds,
+            _ => {
+                let mut bounds = Bounds::EMPTY;
+                cloud().for_each(|place| bounds.add(place));
+                bounds
+            }
+        };
+        let surface = Surface::of(&bounds, cloud());
+        let mut style = style.clone();
+        style.color_by = match (self.color_by, self.arguments.picture.asked_color_by()) {
+            (ColorBy::Hits, None) => ColorBy::LastMap,
+            (ColorBy::Hits, Some(_)) => {
+                let message = "--color-by hits counts the points of pixels, and a .ply has none: use last-map or \
+                               first-map";
+                return Err(Failure::Usage(message.into()));
+            }
+            (other, _) => other,
+        };
+        let colours = colours_of_maps(&style, graph, &self.system);
+        let mut past = Past::new(classes(style.color_by, self.steps), &self.start);
+        if self.start == Start::Attractor {
+            // The maps before the first point.
+            { all.by_ref().take(past.ago) }.for_each(|point| {
+                past.add(&point);
+            });
+        }
+        let colour = |point: &RandomPoint<DVec3>| colours[past.add(point) % colours.len()];
+        export::write_ply(all, points, &surface, colour, None, progress, &mut out)
+            .map_err(|error| self.explain(error.into(), path))?;
+        Ok(self.listed(points))
+    }
+
+    /// Returns the number of points of a list, and a walk without end.
+    fn walk(
+        &self,
+        progress: Option<&Progress>,
+    ) -> Result<(u64, RandomPoints<'_, DAffine3>), Failure> {
+        let growth = &self.arguments.growth;
+        let points = self.points(LISTED);
+        check_rows(points, growth.max_elements())?;
+        if let Some(progress) = progress {
+            progress.expect(points);
+        }
+        let all = RandomPoints::new(&self.system, &self.start, growth.seed);
+        Ok((points, all))
+    }
+
+    fn listed(&self, points: u64) -> String {
+        format!("{}, {}", self.loaded.name, counted(&points.into(), "point"))
+    }
+
+    /// Returns the failure for which `path` has not been written.
+    fn explain(&self, error: RenderError, path: &Path) -> Failure {
+        output::explain(error, path)
+    }
+}
+
+/// The recent maps of a walk.
+struct Past {
+    maps: VecDeque<usize>,
+    /// Number of steps ago of the map that counts.
+    ago: usize,
+    /// Number of steps of a walk from a given start; 0 for walks on the attractor.
+    walk: usize,
+    taken: usize,
+}
+
+impl Past {
+    fn new(classes: ClassBy, start: &Start<DVec3>) -> Self {
+        Self {
+            maps: VecDeque::new(),
+            ago: match classes {
+                ClassBy::Map { ago } => ago.into(),
+                ClassBy::One => 0,
+            },
+            walk: match start {
+                Start::Attractor => 0,
+                Start::Points { steps, .. } => steps.get() as usize,
+            },
+            taken: 0,
+        }
+    }
+
+    /// Adds a point; returns the map that counts for it, the first one of a walk that is shorter.
+    fn add(&mut self, point: &RandomPoint<DVec3>) -> usize {
+        if self.walk > 0 && self.taken.is_multiple_of(self.walk) {
+            self.maps.clear();
+        }
+        self.taken += 1;
+        self.maps.push_back(point.map);
+        if self.maps.len() > self.ago + 1 {
+            self.maps.pop_front();
+        }
+        self.maps[0]
+    }
+}

@@ -1,0 +1,427 @@
+//! Pictures of the chaos game in space: the nearest of many points in every pixel.
+//!
+//! The points fall into a depth buffer of one key a pixel, with the camera, the depths and the colours of the exact
+//! descent.
+
+use std::io::Write;
+
+use tiny_skia::Pixmap;
+
+use crate::chaos::{
+    DepthPicture, DepthWindow, Game, RandomPoints, Seen, WeightedMaps, play_in_space,
+};
+use crate::geometry::{DAffine3, DMat3, DVec3, Frame3};
+use crate::graph::Graph;
+use crate::render::png::{TooManyPixels, write_pixels};
+use crate::render::{Options, RenderError, Tone};
+use crate::style::{ColorBy, Colour, Style};
+
+use super::buffer::{CLASS_BITS, EMPTY, MAX_CLASS, SAMPLES, STEPS, TILE};
+use super::camera::{Placement, Projection};
+use super::relief::Relief;
+use super::scene::ClassBy;
+use super::shade::{self, Inks, class_colour};
+use super::slice::Search;
+use super::solid::depth_of;
+use super::{PAPER, SpaceError, SpaceOptions, TILE_SIZE, place};
+
+/// Number of points from which the extent of the ways from given starts is estimated.
+const PILOT: usize = 20_000;
+
+/// Plays the chaos game in space and writes the picture of its points as PNG. `graph` is that of the system, whose
+/// limit set determines the placement and the depths; walks from given starts extend them. Returns the width and the
+/// height in pixels.
+///
+/// The classes of the game have to be those of the colours of the style. Colours by hits are placed in the palette by
+/// `tone`, for the number of points of a pixel at any depth.
+///
+/// # Errors
+///
+/// As for [`write_space`](super::write_space), and if the game cannot be played.
+pub fn write_points_in_space(
+    graph: &Graph<Frame3>,
+    system: &WeightedMaps<DAffine3>,
+    game: &Game<'_, DVec3>,
+    tone: Tone,
+    options: &Options,
+    space: &SpaceOptions,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let (pixmap, _) = draw(graph, system, game, tone, options, space)?;
+    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
+    let mut bytes = Vec::new();
+    write_pixels(&pixmap, &options.labels, options.png, &mut bytes)?;
+    out.write_all(&bytes)?;
+    Ok([pixmap.width(), pixmap.height()])
+}
+
+/// Returns the colours of points in a style, by the number of the map that counts or of the condensation set after
+/// the maps; one colour if they do not differ.
+#[must_use]
+pub fn colours_of_maps(
+    style: &Style,
+    graph: &Graph<Frame3>,
+    system: &WeightedMaps<DAffine3>,
+) -> Vec<Colour> {
+    if !matches!(style.color_by, ColorBy::FirstMap | ColorBy::LastMap) {
+        return vec![shade::ink(style)];
+    }
+    let maps = Maps::of(graph, system);
+    let colour = |map| class_colour(&style.palette, maps.number(map), maps.count + maps.before);
+    (0..system.classes()).map(colour).collect()
+}
+
+/// Numbers of maps among colours, which begin with condensation sets if there are any, as in the descent.
+struct Maps {
+    count: usize,
+    before: usize,
+}
+
+impl Maps {
+    fn of(graph: &Graph<Frame3>, system: &WeightedMaps<DAffine3>) -> Self {
+        let count = graph.origins();
+        Self {
+            count,
+            before: usize::from(system.classes() > count),
+        }
+    }
+
+    fn number(&self, map: usize) -> usize {
+        if map < self.count {
+            map + self.before
+        } else {
+            0
+        }
+    }
+
+    /// Returns a key with the number of its class.
+    fn numbered(&self, key: u32) -> u32 {
+        let class = self.number((key & u32::from(MAX_CLASS)) as usize);
+        let class = u16::try_from(class).unwrap_or(MAX_CLASS).min(MAX_CLASS);
+        key >> CLASS_BITS << CLASS_BITS | u32::from(class)
+    }
+}
+
+/// Draws the picture into memory; returns it with the depths of the pixels.
+pub(super) fn draw(
+    graph: &Graph<Frame3>,
+    system: &WeightedMaps<DAffine3>,
+    game: &Game<'_, DVec3>,
+    tone: Tone,
+    options: &Options,
+    space: &SpaceOptions,
+) -> Result<(Pixmap, Vec<Option<u32>>), RenderError> {
+    let ways: Vec<DVec3> = match game.start {
+        crate::chaos::Start::Attractor => Vec::new(),
+        crate::chaos::Start::Points { .. } => {
+            let points = RandomPoints::new(system, &game.start, 0).take(PILOT);
+            points.map(|point| point.place).collect()
+        }
+    };
+    // Nothing is cut off, and the box of the limit set needs no search.
+    let search = Search {
+        parts: &[],
+        start: &[],
+        steps: None,
+    };
+    let placement = place::place_with(
+        graph,
+        &search,
+        &ways,
+        &space.camera,
+        &[],
+        options.size,
+        options.view.margin,
+    )?;
+    let size @ [width, height] = placement.size;
+    let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+    let style = &options.style;
+    let by_hits = style.color_by == ColorBy::Hits;
+    let picture =
+        play_in_space(system, &window(&placement), by_hits, game).map_err(SpaceError::from)?;
+    let mut keys = picture.keys().to_vec();
+    let inks = if by_hits {
+        by_tone(&mut keys, picture.hits(), tone);
+        // The colours of as many classes as there are tones.
+        Inks::of(
+            style,
+            ClassBy::LastMap,
+            usize::from(MAX_CLASS) + 1,
+            space.shade,
+        )
+    } else {
+        let class_by = ClassBy::of(style.color_by)?;
+        let maps = Maps::of(graph, system);
+        for key in keys.iter_mut().filter(|key| **key != EMPTY) {
+            *key = maps.numbered(*key);
+        }
+        Inks::of(style, class_by, maps.count + maps.before, space.shade)
+    };
+    for (pixel, key) in pixmap.pixels_mut().iter_mut().zip(&keys) {
+        *pixel = shade::premultiplied(inks.sample(*key, None));
+    }
+    let depths: Vec<Option<u32>> = keys.iter().map(|key| depth_of(*key)).collect();
+    if space.shade.has_relief() {
+        let relief = Relief::new(&placement, &space.camera, space.light);
+        let mut relief = relief.map_err(SpaceError::from)?;
+        add_depths(&mut relief, size, &depths);
+        relief.light(&mut pixmap);
+    }
+    let background = Some(style.background.unwrap_or(PAPER));
+    let pixels = pixmap.pixels_mut().iter_mut();
+    pixels.for_each(|pixel| *pixel = shade::over(background, *pixel));
+    Ok((pixmap, depths))
+}
+
+/// Adds the depths of all pixels, tile by tile.
+fn add_depths(relief: &mut Relief, [width, height]: [u32; 2], depths: &[Option<u32>]) {
+    let mut tile = vec![None; TILE * TILE];
+    for row in 0..height.div_ceil(TILE_SIZE) {
+        for column in 0..width.div_ceil(TILE_SIZE) {
+            let left = (column * TILE_SIZE) as usize;
+            let columns = TILE.min(width as usize - left);
+            for (line, own) in tile.chunks_exact_mut(TILE).enumerate() {
+                let from = ((row * TILE_SIZE) as usize + line) * width as usize + left;
+                if let Some(depths) = depths.get(from..from + columns) {
+                    own[..columns].copy_from_slice(depths);
+                }
+            }
+            relief.add([column, row], &tile);
+        }
+    }
+}
+
+/// Scale by which a fitted picture lies inside its edges.
+const INSIDE: f64 = 1.0 - 1e-6;
+
+/// Returns the window of a placement, in pixels.
+fn window(placement: &Placement) -> DepthWindow {
+    const { assert!(CLASS_BITS == DepthPicture::CLASS_BITS && EMPTY == DepthPicture::EMPTY) };
+    #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+    let samples = SAMPLES as f64;
+    let Placement {
+        map,
+        projection,
+        range,
+        size,
+    } = *placement;
+    // Points on the right and lower edges belong to the last pixels.
+    let across = INSIDE / samples;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a whole number below 2²²"
+    )]
+    let steps = STEPS as u32;
+    match projection {
+        Projection::Parallel => {
+            let scale = 1.0 / samples;
+            let pixels = DVec3::new(across, across, scale);
+            let pixels = DAffine3::from_mat3(DMat3::from_diagonal(pixels));
+            DepthWindow {
+                to_window: pixels * map,
+                seen: Seen::Parallel,
+                range: range.map(|z| z * scale),
+                steps,
+                size,
+            }
+        }
+        Projection::Central { focus, middle } => DepthWindow {
+            to_window: map,
+            seen: Seen::Central {
+                focus: focus * across,
+                middle: middle.map(|at| at * across),
+            },
+            range,
+            steps,
+            size,
+        },
+    }
+}
+
+/// Replaces the classes of keys by the tones of the numbers of hits.
+fn by_tone(keys: &mut [u32], hits: &[u32], tone: Tone) {
+    let most = hits.iter().copied().max().unwrap_or_default().into();
+    for (key, hits) in keys.iter_mut().zip(hits) {
+        if *hits > 0 {
+            let class = tone.of((*hits).into(), most) * f64::from(MAX_CLASS);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a tone lies between 0 and 1"
+            )]
+            let class = class.round() as u32;
+            *key = *key >> CLASS_BITS << CLASS_BITS | class;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZero;
+
+    use super::*;
+    use crate::catalogue::Catalogue;
+    use crate::chaos::{ClassBy as Classes, Start};
+    use crate::diagnostic::Source;
+    use crate::document::Document;
+    use crate::model::Model;
+    use crate::render::Size;
+    use crate::render::space::{Camera, Shade, pixels_in_space};
+    use crate::style::Colour;
+
+    const FERN: &str = "{kind: ifs, space: 3, maps: [
+        {matrix: [[0, 0, 0], [0, 0.18, 0], [0, 0, 0]], weight: 1},
+        {matrix: [[0.85, 0, 0], [0, 0.85, 0.1], [0, -0.1, 0.85]], translate: [0, 1.6, 0], weight: 85},
+        {matrix: [[0.2, -0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], translate: [0, 0.8, 0], weight: 7},
+        {matrix: [[-0.2, 0.2, 0], [0.2, 0.2, 0], [0, 0, 0.3]], translate: [0, 0.8, 0], weight: 7}]}";
+    const TETRAHEDRON: &str = "{kind: ifs, space: 3, vertices: {solid: tetrahedron, shrink: 1/2}}";
+    /// Cubes in a row, larger and larger, none of which touches the next.
+    const RECURRENT: &str = "{kind: ifs, space: 3, vertices: {solid: cube, shrink: 0.4}}";
+
+    fn of(text: &str) -> (Graph<Frame3>, WeightedMaps<DAffine3>) {
+        let source = Source::new("test", text.to_owned());
+        let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+        let model = document.resolve(&[]).unwrap().0;
+        let graph = model.compile_in_space(false).unwrap();
+        let Model::IfsInSpace(system) = model else {
+            panic!("not in space");
+        };
+        (graph, WeightedMaps::of(system.ifs()).unwrap())
+    }
+
+    fn options(side: u32, color_by: ColorBy) -> Options {
+        let mut options = Options::default().size(Size::Long(side));
+        options.style.background = Some(Colour::BLACK);
+        options.style.fill = Some(Colour::grey(255));
+        options.style.color_by = color_by;
+        options.view.margin = 0.0;
+        options
+    }
+
+    /// Depth as brightness: a point is drawn where the descent draws, and at its depth.
+    #[test]
+    fn points_are_drawn_where_the_descent_draws() {
+        const SIDE: u32 = 64;
+        /// Size of the exact picture, whose pixels are means, relative to that of points.
+        const FINE: usize = 8;
+        for (text, covered) in [(TETRAHEDRON, 0.97), (RECURRENT, 0.97), (FERN, 0.8)] {
+            let (graph, system) = of(text);
+            for perspective in [None, Some(50.0)] {
+                let coarse = options(SIDE, ColorBy::None);
+                let camera = Camera::default().perspective(perspective);
+                let space = SpaceOptions::default().camera(camera);
+                let game = Game::default().points(400_000);
+                let points = draw(&graph, &system, &game, Tone::Log, &coarse, &space);
+                let points = points.unwrap().0;
+                let fine = options(SIDE * 8, ColorBy::None);
+                let pixels_of = |space: &SpaceOptions| {
+                    let drawn = pixels_in_space(&graph, None, &fine, space, None);
+                    drawn.unwrap().0
+                };
+                let descent = pixels_of(&space);
+                // White ink on black: the share of a pixel that is covered.
+                let cover = pixels_of(&space.clone().shade(Shade::None));
+                let (width, height) = (points.width() as usize, points.height() as usize);
+                let [columns, rows] = descent.size().map(|side| side as usize);
+                // Greatest brightness within a pixel, of the part that is covered.
+                let exact = |x: usize, y: usize| {
+                    let near = (FINE * y..(FINE * (y + 1)).min(rows)).flat_map(|y| {
+                        (FINE * x..(FINE * (x + 1)).min(columns))
+                            .map(move |x| 4 * (y * columns + x))
+                    });
+                    let bright = near.map(|at| {
+                        let [own, cover] =
+                            [&descent, &cover].map(|it| i32::from(it.premultiplied()[at]));
+                        own * 255 / cover.max(1)
+                    });
+                    bright.max().unwrap_or(0)
+                };
+                let (mut ink, mut hits, mut far) = (0, 0, 0);
+                for (at, pixel) in points.pixels().iter().enumerate() {
+                    let (x, y) = (at % width, at / width);
+                    let own = exact(x, y);
+                    ink += u32::from(own > 24);
+                    if pixel.red() == 0 {
+                        continue;
+                    }
+                    let columns = x.saturating_sub(1)..(x + 2).min(width);
+                    let near = columns.flat_map(|x| {
+                        (y.saturating_sub(1)..(y + 2).min(height)).map(move |y| exact(x, y))
+                    });
+                    let most = near.max().unwrap();
+                    // Two pixels in depth; nothing is nearer than the exact picture has it.
+                    let pixels = 2 * 255 / i32::try_from(SIDE).unwrap();
+                    let seen = i32::from(pixel.red());
+                    assert!(
+                        most > 0 && seen <= most + pixels,
+                        "{text} {x} {y}: {seen} {most}"
+                    );
+                    hits += u32::from(own > 24);
+                    far += u32::from(own > 24 && seen < own - 2 * pixels);
+                }
+                let share = f64::from(hits) / f64::from(ink);
+                assert!(
+                    ink > 500 && share > covered,
+                    "{text} {perspective:?}: {ink} {share}"
+                );
+                assert!(
+                    f64::from(far) < 0.05 * f64::from(ink),
+                    "{text}: {far} of {ink}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn threads_do_not_change_a_picture() {
+        let (graph, system) = of(FERN);
+        for (color_by, classes) in [
+            (ColorBy::LastMap, Classes::Map { ago: 0 }),
+            (ColorBy::FirstMap, Classes::Map { ago: 5 }),
+            (ColorBy::Hits, Classes::One),
+        ] {
+            let mut options = options(48, color_by);
+            options.style.palette = crate::style::Palette::default();
+            let drawn = [1, 3].map(|threads| {
+                let game = Game::default()
+                    .points(3_000_000)
+                    .classes(classes)
+                    .threads(NonZero::new(threads).unwrap());
+                let space = SpaceOptions::default();
+                draw(&graph, &system, &game, Tone::Log, &options, &space).unwrap()
+            });
+            assert!(drawn[0] == drawn[1]);
+        }
+    }
+
+    #[test]
+    fn ways_from_starts_are_in_the_picture() {
+        let (graph, system) = of(TETRAHEDRON);
+        let start = Start::Points {
+            points: vec![DVec3::new(9.0, 0.0, 0.0)],
+            steps: NonZero::new(8).unwrap(),
+        };
+        let game = Game::default().points(200_000).start(start);
+        let space = SpaceOptions::default().camera(Camera::default().from([0.0, 0.0]));
+        let drawn = draw(
+            &graph,
+            &system,
+            &game,
+            Tone::Log,
+            &options(64, ColorBy::None),
+            &space,
+        );
+        let drawn = drawn.unwrap().0;
+        // The first step leads to x = (9 ± 1)/2, and the set reaches from −1 to 1: 6 wide, 2 high.
+        assert_eq!(
+            [drawn.width(), drawn.height()],
+            [64, (64 * 2_u32).div_ceil(6)]
+        );
+        let last = drawn
+            .pixels()
+            .chunks_exact(64)
+            .filter(|row| row[63].red() > 0);
+        assert!(last.count() > 0);
+    }
+}
