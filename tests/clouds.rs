@@ -73,7 +73,7 @@ fn elements_of_the_sponge_are_listed() {
         .collect();
     expected.sort_unstable();
     assert_eq!(origins, expected);
-    // The same rows as JSON, and on one thread.
+    // JSON holds equal rows, on one thread too.
     let json = written("grow menger --steps 2 --format json -q -o - --threads 1");
     let json = String::from_utf8(json).unwrap();
     for (line, row) in json.lines().zip(&rows) {
