@@ -75,15 +75,15 @@
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; estimate: their sizes
+//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; scenes and meshes in space; estimate: their sizes
 //!     ├── figure    figures: the rule itself, approximants side by side, differences
-//!     └── export    tables: CSV, JSON
+//!     └── export    tables of elements and points: CSV, JSON, PLY
 //! ```
 //!
 //! Graphs, walks, forecasts, bounds and draws are generic over the [`Frame`](geometry::Frame) of an element; the
-//! frame of the plane, with lines and curves as outlines, is the default. Iterated function systems lie in the
-//! plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into depth buffers;
-//! models of other kinds lie in the plane.
+//! frame of the plane, with lines and curves as outlines, is the default. Iterated function systems and structures
+//! lie in the plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into depth
+//! buffers; rules and L-systems lie in the plane.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
 //! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s and [`Metadata`]. No room imports one
@@ -93,8 +93,8 @@
 //! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
 //! file is resolved: the model holds what it draws.
 //!
-//! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, which
-//! `render` turns into pictures.
+//! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, or to the
+//! nearest points in space, which `render` turns into pictures.
 //!
 //! Windows of any size are [`zoom`]ed into: a descent in long numbers, between `graph` and `grow`, finds
 //! the elements about a point, as a graph of its own that is drawn like any other.

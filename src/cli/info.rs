@@ -1,5 +1,6 @@
 //! `kfrac info`: describes a rule and forecasts the sizes of its steps.
 
+mod numbers;
 mod space;
 
 use std::fmt::Write as _;
@@ -72,19 +73,19 @@ struct Info<'a> {
     random: bool,
     regular: bool,
     steps: u32,
-    #[serde(serialize_with = "decimals")]
+    #[serde(serialize_with = "numbers::decimals")]
     elements: Option<Vec<Count>>,
-    #[serde(serialize_with = "decimals")]
+    #[serde(serialize_with = "numbers::decimals")]
     fertile: Option<Vec<Count>>,
-    #[serde(serialize_with = "decimals")]
+    #[serde(serialize_with = "numbers::decimals")]
     fractals: Option<Vec<Count>>,
     length: Option<Vec<Option<f64>>>,
     area: Option<Vec<Option<f64>>>,
-    #[serde(serialize_with = "rounded")]
+    #[serde(serialize_with = "numbers::rounded")]
     svg_bytes: Option<Vec<Option<f64>>>,
-    #[serde(serialize_with = "rounded")]
+    #[serde(serialize_with = "numbers::rounded")]
     seconds: Option<Vec<Option<f64>>>,
-    #[serde(serialize_with = "whole")]
+    #[serde(serialize_with = "numbers::whole")]
     instanced_svg_bytes: Option<f64>,
     bounds: Option<Corners>,
     limit_bounds: Option<Corners>,
@@ -97,9 +98,9 @@ struct Info<'a> {
 
 #[derive(Serialize)]
 pub(super) struct Corners {
-    #[serde(serialize_with = "coordinates")]
+    #[serde(serialize_with = "numbers::coordinates")]
     pub(super) min: Vec<f64>,
-    #[serde(serialize_with = "coordinates")]
+    #[serde(serialize_with = "numbers::coordinates")]
     pub(super) max: Vec<f64>,
 }
 
@@ -144,48 +145,6 @@ impl Dimension {
         });
         [Some(similarity.unwrap_or_else(|| "unknown".into())), own]
     }
-}
-
-/// Serializes counts as decimal strings, because they may exceed the numbers that readers of JSON support.
-fn decimals<S: serde::Serializer>(
-    counts: &Option<Vec<Count>>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    match counts {
-        Some(counts) => serializer.collect_seq(counts.iter().map(Decimal)),
-        None => serializer.serialize_none(),
-    }
-}
-
-struct Decimal<'a>(&'a Count);
-
-impl Serialize for Decimal<'_> {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self.0)
-    }
-}
-
-/// Serializes estimates rounded to two digits, which is their precision.
-fn rounded<S: serde::Serializer>(
-    estimates: &Option<Vec<Option<f64>>>,
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    let two_digits = |value| number(readable::two_digits(value));
-    let estimates = estimates.as_ref().map(|estimates| {
-        let rounded = estimates.iter().map(|estimate| estimate.map(two_digits));
-        rounded.collect::<Vec<_>>()
-    });
-    estimates.serialize(serializer)
-}
-
-/// Serializes an estimate that is rounded already.
-fn whole<S: serde::Serializer>(bytes: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-    bytes.map(number).serialize(serializer)
-}
-
-/// Serializes coordinates; whole numbers have no fraction, as in the tables.
-fn coordinates<S: serde::Serializer>(point: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(point.iter().map(|value| number(value + 0.0)))
 }
 
 /// Formats a point to twelve decimals of `unit`.

@@ -13,13 +13,14 @@ use std::sync::Arc;
 use anyhow::anyhow;
 
 use crate::chaos::{
-    ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, WeightedMaps, play,
+    ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, Walked,
+    WeightedMaps, play,
 };
 use crate::export;
 use crate::geometry::{Bounds, DVec3, Homothety};
 use crate::graph::Graph;
 use crate::grow::Progress;
-use crate::ifs;
+use crate::ifs::{self, Ifs};
 use crate::metadata::Metadata;
 use crate::model::Model;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_density};
@@ -205,6 +206,15 @@ fn classes(color_by: ColorBy, steps: u32) -> ClassBy {
     ClassBy::Map { ago }
 }
 
+/// Returns the weighted maps of a system.
+fn weighted<M: Walked>(ifs: &Ifs<M>, loaded: &Loaded) -> Result<WeightedMaps<M>, Failure> {
+    let weighted = WeightedMaps::of(ifs).map_err(|error| {
+        let message = format!("{} cannot be drawn by random iteration", loaded.name);
+        anyhow::Error::new(error).context(message)
+    })?;
+    Ok(weighted)
+}
+
 /// Returns an error if the number of steps is given, and has no meaning for points of a colour.
 fn refuse_steps(steps: Option<u32>, color_by: ColorBy) -> Result<(), Failure> {
     if steps.is_none() || color_by == ColorBy::FirstMap {
@@ -271,13 +281,7 @@ impl<'a> ChaosGame<'a> {
         let source = source
             .within(&place)
             .map_or_else(|| source.clone(), Arc::new);
-        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
-            let error = anyhow::Error::new(error);
-            error.context(format!(
-                "{} cannot be drawn by random iteration",
-                loaded.name
-            ))
-        })?;
+        let system = weighted(source.ifs(), loaded)?;
         let color_by = color_by(picture, source.metadata())?;
         refuse_steps(*steps, color_by)?;
         if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {

@@ -15,7 +15,8 @@ use crate::parallel::map;
 use crate::random::Pcg;
 use crate::saturating::{real, whole};
 
-use super::{GRAZED, LimitSet, Placed, merge};
+use super::cover::GRAZED;
+use super::{LimitSet, Placed, merge};
 
 /// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes, in the plane and in
 /// space, where more copies come near to a box. Counts are exact as long as there are fewer.

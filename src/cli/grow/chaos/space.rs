@@ -19,7 +19,7 @@ use super::super::super::output;
 use super::super::super::readable::counted;
 use super::super::super::rule::Loaded;
 use super::super::Arguments;
-use super::{DRAWN, LISTED, check_rows, classes, color_by, refuse_steps};
+use super::{DRAWN, LISTED, check_rows, classes, color_by, refuse_steps, weighted};
 
 /// Number of points from which normals are computed.
 const SURFACE: usize = 1_000_000;
@@ -48,13 +48,7 @@ impl<'a> SpaceGame<'a> {
                 loaded.model.kind().name()
             )));
         };
-        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
-            let error = anyhow::Error::new(error);
-            error.context(format!(
-                "{} cannot be drawn by random iteration",
-                loaded.name
-            ))
-        })?;
+        let system = weighted(source.ifs(), loaded)?;
         let color_by = color_by(&arguments.picture, source.metadata())?;
         refuse_steps(arguments.steps, color_by)?;
         let steps = arguments.steps.or(source.metadata().steps);
