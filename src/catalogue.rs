@@ -3,6 +3,9 @@
 //! A library folder has the subfolders `rules`, `ifs`, `instancing`, `lsystems`, `initiators`,
 //! `generators` and `base_elements`, which hold YAML files; rules may also lie in the folder itself.
 //! The folder `schema` of the embedded library is for editors only.
+//!
+//! The embedded library has the following files.
+#![doc = include_str!(concat!(env!("OUT_DIR"), "/names.md"))]
 
 mod file;
 

@@ -359,7 +359,7 @@ fn every_mistake_has_its_message() {
                 .element(ElementBuilder::to((1, 0)))
                 .into()
         ),
-        "the first element does not say where it runs from"
+        "the first element has no start point"
     );
     assert_eq!(
         with(ElementsBuilder::from(SEGMENT).closed(true).into()),
@@ -371,7 +371,7 @@ fn every_mistake_has_its_message() {
     );
     assert_eq!(
         mistake(&rule().generator("other", koch())),
-        "the rule has several generators but does not say which one replaces an element"
+        "the rule has several generators and no selection among them"
     );
     assert_eq!(
         mistake(&rule().generator("koch", koch())),

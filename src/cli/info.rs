@@ -149,8 +149,8 @@ impl Dimension {
 
 /// Formats a point to twelve decimals of `unit`.
 pub(super) fn point(coordinates: &[f64], unit: f64) -> String {
-    let told = coordinates.iter().map(|value| decimal(*value, unit));
-    format!("[{}]", told.collect::<Vec<_>>().join(", "))
+    let written = coordinates.iter().map(|value| decimal(*value, unit));
+    format!("[{}]", written.collect::<Vec<_>>().join(", "))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the value is checked")]

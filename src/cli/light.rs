@@ -131,7 +131,7 @@ pub(super) fn first_that_is_light<T>(
 }
 
 /// Reports the lighter picture that is drawn, and the option for the heavier one.
-pub(super) fn tell(drawn: &str, more: &str) {
+pub(super) fn note(drawn: &str, more: &str) {
     text::print_message(&format!(
         "note: {drawn}, to limit the SVG to {} elements and {}; {more}",
         grouped(&MAX_ELEMENTS.into()),
@@ -170,6 +170,6 @@ impl Goal {
             Self::Steps(steps, _) => format!("--steps {steps} draws the whole step"),
             Self::Detail(pixels) => format!("--detail {pixels} draws everything that is visible"),
         };
-        tell(&drawn, &format!("{more}, as does a .png"));
+        note(&drawn, &format!("{more}, as does a .png"));
     }
 }

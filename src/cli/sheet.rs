@@ -128,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let drawn = arguments.draw(&loaded, last, format, sheet_to)?;
     if drawn.step != last && !growth.quiet {
-        light::tell(
+        light::note(
             &format!(
                 "steps {} are drawn instead of {steps}",
                 Several::up_to(drawn.step)
@@ -310,7 +310,7 @@ impl Arguments {
         let drawn = self.draw(loaded, last, format, sheet_to)?;
         let step = drawn.step;
         if step != last && !self.growth.quiet {
-            light::tell(
+            light::note(
                 &format!("step {step} is drawn instead of {last}"),
                 &format!("--steps {last} draws it"),
             );

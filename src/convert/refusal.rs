@@ -12,7 +12,7 @@ pub enum Refusal {
     SameKind(Kind),
     /// Kept elements have other shapes than lines.
     #[error(
-        "its infertile elements are not all lines, and of others the limit set of an L-system is not told"
+        "its infertile elements are not all lines, and with others the limit set of an L-system is not known"
     )]
     NoLines,
     /// Instances have tints.

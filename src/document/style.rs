@@ -21,7 +21,7 @@ pub(super) const STYLE: Shape = Shape {
             "The ends of lines: a half disk, cut off at the end point, or half a width longer.";
         join: Form::variant::<Join>(), "The corners of lines: a disk, cut off, or pointed.";
         color_by: Form::variant::<ColorBy>(),
-            "What the colours of the palette tell: the step of an element's birth, the age or the \
+            "What the colours of the palette mean: the step of an element's birth, the age or the \
              number of its fractal, its rank in it, the generator that it comes from, or its \
              direction.";
         palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),

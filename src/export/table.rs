@@ -235,7 +235,7 @@ impl<F: Listed> Visitor<F> for Collector<'_, F> {
             coordinates,
             fertile: element.fertile,
             direction: element.frame.direction(),
-            visible: self.graph.objects()[element.object].visible,
+            visible: element.visible,
             entries: affine.then_some(entries),
         });
         Ok(())

@@ -91,7 +91,7 @@ impl From<Model> for Fractal {
 }
 
 impl Fractal {
-    /// Returns a fractal of the embedded library; [`Catalogue::entries`] lists the names.
+    /// Returns a fractal of the embedded library; [`catalogue`](crate::catalogue) lists the names.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {

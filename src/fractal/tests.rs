@@ -201,3 +201,14 @@ fn a_set_in_space_is_drawn_and_measured_by_its_own_methods() -> Result<(), Error
     assert!(errors.into_iter().flatten().all(|it| it.is_cancelled()));
     Ok(())
 }
+
+#[test]
+fn elements_know_whether_they_are_drawn() {
+    let text =
+        "initiator: segment\ngenerator: [[0, 0], [1/3, 0], {to: [2/3, 0], visible: false}, [1, 0]]";
+    let gaps = Fractal::parse(text).unwrap().steps(2);
+    let visible = gaps.elements().unwrap().map(|it| it.unwrap().visible);
+    // Visibility belongs to the last generator's elements: what replaces an invisible element may be visible.
+    let expected = [true, false, true].repeat(3);
+    assert_eq!(visible.collect::<Vec<_>>(), expected);
+}

@@ -114,7 +114,7 @@ pub enum OutOfRange {
     /// The model is too far from the origin.
     #[error(
         "it lies {distance:.3e} from the origin, {ratio:.1e} times its extent of {size:.3e}: numbers do not \
-         tell its points apart, and less than {FARTHEST:e} times is right, such as a place at the origin",
+         distinguish its points, and less than {FARTHEST:e} times is right, such as a place at the origin",
         ratio = distance / size
     )]
     Distance {

@@ -200,6 +200,7 @@ impl<F: Frame> Run<'_, F> {
             object: leaf.object,
             born: self.born + leaf.born,
             fertile: self.graph.is_fertile(leaf.object),
+            visible: self.graph.objects()[leaf.object].visible,
             joined: leaf.joined && (number > 0 || self.joined),
         }
     }

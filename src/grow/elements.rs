@@ -24,6 +24,7 @@ impl<F: Frame> Element<F> {
             object: found.object,
             born: found.level,
             fertile: graph.is_fertile(found.object),
+            visible: graph.objects()[found.object].visible,
             joined: found.joined,
         }
     }

@@ -73,6 +73,8 @@ pub struct Element<F: Frame = Frame2> {
     pub born: u32,
     /// Whether it is replaced in the next step.
     pub fertile: bool,
+    /// Whether it is drawn.
+    pub visible: bool,
     /// Whether its first point of traversal joins the last one of the preceding element; the first element
     /// of a fractal joins the last one if the fractal is a ring.
     pub joined: bool,

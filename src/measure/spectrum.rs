@@ -344,15 +344,15 @@ mod tests {
             of(5.0, 0.9, 0.01),
         ];
         Generalised::fall(&mut spectrum);
-        let told: Vec<Estimate> = spectrum.iter().filter_map(|it| it.estimate).collect();
+        let known: Vec<Estimate> = spectrum.iter().filter_map(|it| it.estimate).collect();
         // The errors give 1 and 1.3 four times the weight of 1.2.
         let mean = (4.0 * 1.0 + 1.2 + 4.0 * 1.3) / 9.0;
-        for estimate in &told[..3] {
+        for estimate in &known[..3] {
             assert!((estimate.value - mean).abs() < 1e-12, "{estimate:?}");
         }
-        assert!(told[0].std_error > 0.1 && told[1].std_error > 0.1);
-        assert_eq!(told[3].value, 0.9);
-        assert_eq!(told[3].std_error, 0.01);
+        assert!(known[0].std_error > 0.1 && known[1].std_error > 0.1);
+        assert_eq!(known[3].value, 0.9);
+        assert_eq!(known[3].std_error, 0.01);
     }
 
     #[test]
@@ -373,8 +373,11 @@ mod tests {
         });
         let readings: Vec<Reading> = readings.collect();
         let plain = of(1.0, 1.9, 0.002).estimate.unwrap();
-        let told = with_drift(plain, &readings, 2.0);
-        assert!((told.value - 2.0).abs() < 0.04, "{told:?}");
-        assert!((told.value - 2.0).abs() < 2.0 * told.std_error, "{told:?}");
+        let known = with_drift(plain, &readings, 2.0);
+        assert!((known.value - 2.0).abs() < 0.04, "{known:?}");
+        assert!(
+            (known.value - 2.0).abs() < 2.0 * known.std_error,
+            "{known:?}"
+        );
     }
 }

@@ -80,7 +80,7 @@ pub enum NoRoom {
     )]
     TooClose,
     /// The window is so small that rounding is visible.
-    #[error("the window is too small: numbers are not precise enough to tell its pixels apart")]
+    #[error("the window is too small: numbers are not precise enough to distinguish its pixels")]
     TooFine,
     /// The bounding box is not finite.
     #[error("what is to be drawn has no finite size")]

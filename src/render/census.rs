@@ -20,6 +20,7 @@ fn element(kind: &Kind, born: u32) -> Element {
         object: kind.object,
         born,
         fertile: false,
+        visible: true,
         joined: false,
     }
 }

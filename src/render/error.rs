@@ -61,7 +61,7 @@ pub enum NoDetail {
     #[error("its elements do not get smaller than any length")]
     DoesNotShrink,
     /// The graph is time-indexed: every number of steps has its own initiator.
-    #[error("every step of it starts anew, so that the detail cannot tell how many there are")]
+    #[error("every step of it starts anew, so that the detail does not determine their number")]
     StartsAnew,
     /// The bounding box shrinks with the elements, which fill the picture at every step.
     #[error("all that is drawn gets as small as its elements")]
@@ -80,7 +80,7 @@ pub enum NoDetail {
 pub enum NoZoom {
     /// Elements far from the window are not counted, so that ranks and fractal numbers are unknown.
     #[error(
-        "elements and fractals far from the window are not counted, so that colours cannot tell their \
+        "elements and fractals far from the window are not counted, so that colours cannot show their \
          numbers; a single colour draws them"
     )]
     Numbers,

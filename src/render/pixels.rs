@@ -12,7 +12,7 @@ use crate::parallel::with_team;
 use super::cells::Way;
 use super::drawing::Drawing;
 use super::error::RenderError;
-use super::options::Options;
+use super::options::{Labels, Options, PngEncoding};
 use super::plot::Plot;
 use super::png::{Png, TooManyPixels, write_pixels};
 
@@ -57,6 +57,23 @@ impl Pixels {
         }
         self.bytes
     }
+
+    /// Encodes the picture as the bytes of a PNG without metadata.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let pixels = kfrac::Fractal::named("koch")?.steps(6).pixels(300)?;
+    /// assert!(pixels.into_png(kfrac::PngEncoding::default())?.starts_with(b"\x89PNG"));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If there is no memory for the encoder.
+    pub fn into_png(self, encoding: PngEncoding) -> Result<Vec<u8>, RenderError> {
+        self.encode(&Labels::default(), encoding)
+    }
 }
 
 impl Pixels {
@@ -76,16 +93,21 @@ impl Pixels {
 
     /// Writes the picture as PNG.
     pub(crate) fn write(self, options: &Options, out: &mut impl Write) -> Result<(), RenderError> {
+        // The encoder does not pass on why writing to `out` fails, so it writes to memory.
+        let png = self.encode(&options.labels, options.png)?;
+        Ok(out.write_all(&png)?)
+    }
+
+    fn encode(self, labels: &Labels, encoding: PngEncoding) -> Result<Vec<u8>, RenderError> {
         let Self {
             size: size @ [width, height],
             bytes,
         } = self;
         let pixmap = IntSize::from_wh(width, height).and_then(|size| Pixmap::from_vec(bytes, size));
         let pixmap = pixmap.ok_or(TooManyPixels { size })?;
-        // The encoder does not pass on why writing to `out` fails, so it writes to memory.
         let mut png = Vec::new();
-        write_pixels(&pixmap, &options.labels, options.png, &mut png)?;
-        Ok(out.write_all(&png)?)
+        write_pixels(&pixmap, labels, encoding, &mut png)?;
+        Ok(png)
     }
 }
 

@@ -35,7 +35,7 @@ impl<K> Resolver<K> {
         let place = &document.place;
         let Some(steps) = steps.unwrap_or(model.metadata().steps) else {
             if document.steps.is_none() {
-                let message = "this fractal does not say how many steps it is grown by";
+                let message = "this fractal has no number of steps";
                 self.error_with_hint(place, message, "add `steps: 4` beside `fractal`");
             }
             return None;

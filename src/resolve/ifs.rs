@@ -289,7 +289,7 @@ impl Resolver<OfIfs> {
             }
             Verdict::Undecided => {
                 let message = format!(
-                    "products of up to {} maps do not tell whether the system contracts",
+                    "products of up to {} maps do not decide whether the system contracts",
                     contraction.length
                 );
                 let hint = "it can be grown by a number of steps, but its limit is not known";

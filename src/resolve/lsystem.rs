@@ -212,8 +212,7 @@ impl Resolver<OfLSystem> {
             let Some(name) = number.value.as_name() else {
                 if !number.value.is_unknown() {
                     let message = "arguments have names here";
-                    let hint =
-                        "A(w); where one value is meant, a condition says so: A(w) : w == 1 -> F";
+                    let hint = "A(w); where one value is meant, it is written as a condition: A(w) : w == 1 -> F";
                     self.error_with_hint(&number.place, message, hint);
                 }
                 continue;

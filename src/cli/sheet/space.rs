@@ -86,22 +86,22 @@ impl Arguments {
             let values: Vec<_> = values.collect();
             ("set", format!("{}={}", setting.name, values.join(",")))
         });
-        let mut told: Vec<(&'static str, String)> = swept.collect();
+        let mut options: Vec<(&'static str, String)> = swept.collect();
         let steps: Vec<_> = all.iter().flatten().map(u32::to_string).collect();
         if !steps.is_empty() {
-            told.push(("steps", steps.join(",")));
+            options.push(("steps", steps.join(",")));
         }
-        told.push(("size", self.size.to_string()));
-        told.extend(self.columns.map(|columns| ("columns", columns.to_string())));
-        told.extend(self.picture.options());
-        told.extend(self.space.options());
+        options.push(("size", self.size.to_string()));
+        options.extend(self.columns.map(|columns| ("columns", columns.to_string())));
+        options.extend(self.picture.options());
+        options.extend(self.space.options());
         render::Options {
             format: Format::Png,
             style: self.picture.style(heading),
             view: self.picture.view(heading),
             size: self.size,
             threads: self.growth.threads(),
-            labels: labels(first, "A sheet", "sheet", told),
+            labels: labels(first, "A sheet", "sheet", options),
             ..render::Options::default()
         }
     }

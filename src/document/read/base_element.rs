@@ -96,7 +96,7 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
         let control = points.iter().map(|node| reader.point(node)).collect();
         Some(PieceDocument::Curve { to, control })
     } else {
-        let message = "this piece does not say where it ends";
+        let message = "this piece has no end";
         reader.error_with_hint(&node.place.first_line(), message, PIECE.hint);
         None
     }

@@ -17,7 +17,7 @@ mapping! {
     from: Option<WrittenPoint> = Form::Point,
         "Where the element runs from; where the one before it ends, if left out.";
     needed to: WrittenPoint = Form::Point, "Where the element runs to."
-        => "this element does not say where it runs to";
+        => "this element has no end point";
     direction: Option<WrittenNumber> = Form::Whole(1, Some(4)),
         "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
          sides swapped), 3 x reflected (its ends swapped), 4 both.";
@@ -27,7 +27,7 @@ mapping! {
         "Whether the element is drawn. It counts, and is replaced if it is fertile, all the same.";
     connected: bool = Form::Flag(true), "Whether the element may join the one before it.";
     use as generator: Option<Written<String>> = Form::Text,
-        "The generator that replaces this element, whatever `select` says.";
+        "The generator that replaces this element, in place of the one that `select` chooses.";
     base_element: Option<BaseElementDocument> = BASE_ELEMENT_OF,
         "What this element looks like, if not like the others: a name from the library, or a shape \
          of its own.";
@@ -99,7 +99,7 @@ impl FromNode for Vec<Entry> {
             }
             (_, [Entry::Element(first), ..]) if first.from.is_none() => reader.error_with_hint(
                 &first.place.first_line(),
-                "the first element does not say where it runs from",
+                "the first element has no start point",
                 "begin the list with a point, - [0, 0], or give the element `from`",
             ),
             _ => {}

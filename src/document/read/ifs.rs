@@ -284,8 +284,8 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     let way = ways.iter().position(|there| *there);
     let Some(way) = way.and_then(|way| WAYS_TO_PLACE.get(way)) else {
         let message = match rotate {
-            Some(_) => "this map turns, but does not say by how much it shrinks",
-            None => "this map does not say what it does",
+            Some(_) => "this map turns, but has no scale",
+            None => "this map is empty",
         };
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
         return None;

@@ -231,7 +231,7 @@ fn read_master(reader: &mut Reader, fields: &Fields<'_>) -> Option<MasterDocumen
         }
         (None, Some(_)) => Some(MasterDocument::Shape(Box::new(read_set(reader, fields)))),
         (None, None) => {
-            let message = "this instance does not say what it is one of";
+            let message = "this instance names no object";
             reader.error_with_hint(&fields.place.first_line(), message, INSTANCE.hint);
             None
         }

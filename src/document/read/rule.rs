@@ -41,8 +41,8 @@ const RULE_ALONE: [Member; 8] = keys![
         "What replaces an element at every step: a name from the library, a list of points and \
          elements from [0, 0] to [1, 0], or a mapping.";
     generators: Form::Names(&GENERATOR_OF, 1),
-        "Several generators, each under a name; `select`, or `use` on an element, says which one \
-         replaces which element.";
+        "Several generators, each under a name; `select`, or `use` on an element, assigns one \
+         to each element.";
     select: SELECTION_OF,
         "Which of several generators replaces an element: by conditions tried in order, by index, or \
          at random.";

@@ -63,13 +63,13 @@ pub(super) const FORMS: [Member; 14] = keys![
     mesh: Form::Either(&[Form::MeshFile, Form::Mapping(&MESH)]),
         "In space, the faces of a mesh: the name of a file .obj, .stl or .ply, or its points and faces.";
     fractal: Form::Grown,
-        "Another fractal, as it is after some steps: the name of its file, or what that says.";
+        "Another fractal, as it is after some steps: the name of its file, or its content.";
 ];
 
 /// Keys that accompany `fractal`.
 pub(super) const OF_FRACTAL: [Member; 4] = keys![
     steps: Form::Whole(0, Some(MAX_STEPS)),
-        "The number of steps of the fractal; what its file says if left out.";
+        "The number of steps of the fractal; those of its file if left out.";
     seed: Form::Whole(0, None), "What the random draws of the fractal depend on; 0 if left out.";
     set: Form::Names(&Form::Either(&[Form::Number, Form::Point]), 0),
         "Values of the fractal's parameters by name, in place of those of its file.";
@@ -159,7 +159,7 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
         .filter_map(|form| Some((form.name, fields.take(form.name)?)));
     let hint = hint(reader);
     let Some((name, node)) = there.next() else {
-        let message = "this set does not say what it is";
+        let message = "this set has no shape";
         reader.error_with_hint(&place.first_line(), message, hint);
         return ShapeDocument { form: None, place };
     };

@@ -92,8 +92,8 @@ pub(super) fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<Li
     }
     let Some(scale) = scale else {
         let message = match rotate {
-            Some(_) => "this map turns, but does not say by how much it shrinks",
-            None => "this map does not say what it does",
+            Some(_) => "this map turns, but has no scale",
+            None => "this map is empty",
         };
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
         return None;
@@ -190,7 +190,7 @@ fn read_turn(reader: &mut Reader, node: &Node) -> Option<TurnDocument> {
     let mut there = axes.iter().filter(|(key, _)| fields.take(key).is_some());
     let (first, second) = (there.next(), there.next());
     if let Some((key, _)) = second {
-        let message = "this does not say which of the turns comes first";
+        let message = "the order of these turns is open";
         let hint = "write a list: rotate: [{x: 20}, {y: 30}]";
         reader.error_with_hint(fields.place_of(key), message, hint);
         return None;

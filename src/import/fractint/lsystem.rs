@@ -189,7 +189,7 @@ impl<'e> System<'e> {
                 ("AXIOM", _, Some(axiom)) => system.axiom = Some(axiom),
                 ("ANGLE", _, Some(angle)) => system.set_angle(angle, found),
                 ("AXIOM" | "ANGLE", _, None) => {
-                    let message = format!("{} says nothing", word.text.to_ascii_lowercase());
+                    let message = format!("{} has no value", word.text.to_ascii_lowercase());
                     found.push(Diagnostic::error(message).at(&word.place));
                 }
                 (_, Some(symbol), _)
@@ -200,10 +200,9 @@ impl<'e> System<'e> {
                 _ => {
                     let message = format!("'{}' is not understood", word.written());
                     let place = Diagnostic::error(message).at(&word.place);
-                    found
-                        .push(place.hint(
-                            "a line says Angle n, Axiom string, or X=string, without blanks",
-                        ));
+                    found.push(
+                        place.hint("a line is Angle n, Axiom string, or X=string, without blanks"),
+                    );
                     words = &entry.words[entry.words.len() - rest.len()..];
                 }
             }

@@ -6,7 +6,7 @@ use crate::saturating::{real, whole};
 
 /// Error of a set whose cover takes more points than are allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("it takes more than {most} points to tell the set that exactly")]
+#[error("it takes more than {most} points to resolve the set that exactly")]
 pub struct TooMany {
     /// Maximum number of points.
     pub most: usize,

@@ -48,7 +48,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         }
         let ways = edges.iter().map(|edge| outer[edge.from].len());
         if ways.sum::<usize>() > MAX_WAYS {
-            let message = "there are too many ways to tell whether all loops contract";
+            let message = "there are too many ways to decide whether all loops contract";
             let place = &document.heading.place;
             self.warn(place, message, UNKNOWN);
             return Some(());
@@ -74,7 +74,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             }
             Verdict::Undecided => {
                 let message = format!(
-                    "ways of up to {} instances do not tell whether all loops contract",
+                    "ways of up to {} instances do not decide whether all loops contract",
                     contraction.length
                 );
                 self.warn(place, message, UNKNOWN);

@@ -142,11 +142,10 @@ impl Resolver<OfRule> {
                     select: [{when: ..., use: ...}, {use: ...}], or `use: NAME` on every fertile \
                     element";
         if some_decide {
-            let message = "nothing says which of the generators replaces this element";
+            let message = "no selection among the generators that replace this element";
             self.error_with_hint(&undecided, message, hint);
         } else {
-            let message =
-                "the rule has several generators but does not say which one replaces an element";
+            let message = "the rule has several generators and no selection among them";
             self.error_with_hint(&second.place, message, hint);
         }
     }
