@@ -973,3 +973,34 @@ fn who_ends_the_program_leaves_nothing_behind() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(files(folder.path()), [""; 0]);
 }
+
+#[test]
+fn a_picture_and_its_depths_are_written_together_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let grow = |arguments: &[&str]| {
+        let common = ["grow", "menger", "--steps", "2", "--size", "40"];
+        run(folder.path(), &[&common, arguments].concat())
+    };
+    for chaos in [&[][..], &["--method", "chaos", "--points", "2000"]] {
+        let common = [
+            "grow", "menger", "--size", "40", "-o", "a.png", "--depth", "b.png",
+        ];
+        run(folder.path(), &[&common[..], chaos].concat()).success();
+        assert_eq!(files(folder.path()), ["a.png", "b.png"]);
+        let depths = fs::read(folder.path().join("b.png")).unwrap();
+        assert_eq!(depths[24..26], [16, 0]); // 16 bits, grey
+        fs::remove_file(folder.path().join("a.png")).unwrap();
+        fs::remove_file(folder.path().join("b.png")).unwrap();
+    }
+    for wrong in [
+        ["-o", "a.png", "--depth", "a.png"],
+        ["-o", "a.png", "--depth", "none/b.png"],
+        ["-o", "none/a.png", "--depth", "b.png"],
+        ["-o", "a.csv", "--depth", "b.png"],
+    ] {
+        grow(&wrong).failure();
+        assert!(files(folder.path()).is_empty(), "{wrong:?}");
+    }
+    let plane = run(folder.path(), &["grow", "koch", "--depth", "b.png"]).failure();
+    assert!(stderr(&plane).contains("--depth applies to sets in space"));
+}

@@ -48,6 +48,9 @@ pub(super) struct SpaceArguments {
     /// Intensity of what the light of relief does not reach, from 0 to 1 [default: 0.15]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     ambient: Option<f64>,
+    /// Darken what is enclosed by its surroundings, by the depths of the pixels
+    #[arg(long)]
+    occlusion: bool,
 }
 
 impl SpaceArguments {
@@ -69,6 +72,7 @@ impl SpaceArguments {
             ("shade", self.shade.map(|it| it.name().into())),
             ("light", self.light.map(angles)),
             ("ambient", self.ambient.map(|it| it.to_string())),
+            ("occlusion", self.occlusion.then(String::new)),
         ];
         let given = all
             .into_iter()
@@ -135,6 +139,7 @@ impl SpaceArguments {
             .shade(self.shade.unwrap_or_default())
             .slice(self.slice)
             .cuts(self.cut.clone())
+            .occlusion(self.occlusion)
     }
 }
 

@@ -21,7 +21,7 @@ use crate::graph::Graph;
 use crate::render::RenderError;
 use crate::style::Named;
 
-use super::camera::SpaceArguments;
+use super::camera::{self, SpaceArguments};
 use super::growth::GrowthArguments;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
@@ -86,6 +86,11 @@ pub(super) struct Arguments {
     picture: PictureArguments,
     #[command(flatten)]
     space: SpaceArguments,
+    /// Also write the depths of the pixels of a set in space, as a grey PNG of 16 bits
+    ///
+    /// 65535 at the nearest point of the set, falling linearly to 1 at its farthest; 0 where nothing is shown.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Space")]
+    depth: Option<PathBuf>,
     #[command(flatten)]
     scene: SceneArguments,
     #[command(flatten)]
@@ -153,6 +158,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Ok(());
     }
     arguments.space.refuse_in_plane(&loaded)?;
+    if arguments.depth.is_some() {
+        return Err(camera::in_plane("depth", &loaded));
+    }
     let default = arguments.rule.file("", plan.extension());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (summary, bytes) = match plan {

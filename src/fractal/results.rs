@@ -87,7 +87,7 @@ impl Fractal {
         if let Some(graph) = self.graph_to_draw_in_space(&options)? {
             let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
             let drawn = pixels_in_space(graph, steps, &options, &self.space, cancel);
-            return Ok(drawn.map(|(pixels, _)| pixels)?);
+            return Ok(drawn?.pixels);
         }
         let pixels = self.draw_by(&options, |graph, growth, options| {
             render::pixels(graph, growth, options)
@@ -341,7 +341,7 @@ impl Fractal {
         }
     }
 
-    fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
+    pub(super) fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
         let heading = self.model.metadata();
         let description = &heading.description;
         Ok(Options {

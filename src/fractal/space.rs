@@ -3,7 +3,8 @@
 use crate::geometry::{Bounds, DVec3, Frame3};
 use crate::graph::{Forecast, Graph};
 use crate::grow::{Element, Elements};
-use crate::render::{Detail, Options};
+use crate::render::space::{DepthMap, Shade, pixels_in_space};
+use crate::render::{Detail, Format, NoRoom, Options, RenderError, Size};
 
 use super::goal::steps_of_graph;
 use super::results::forecast;
@@ -73,6 +74,37 @@ impl Fractal {
         let graph = self.graph_in_space("`elements` returns its elements")?;
         let elements = Elements::of(graph, &self.growth(self.steps_in_space(graph)));
         Ok(elements.map(|item| item.map(|(_, element)| element).map_err(Error::from)))
+    }
+
+    /// Returns the depths of the pixels of [`png`](Self::png) for a set in space. `size` is the long side in pixels, or
+    /// width and height.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// let depths = kfrac::Fractal::named("menger")?.steps(3).depth_map((64, 48))?;
+    /// assert_eq!(depths.size(), [64, 48]);
+    /// assert_eq!(depths.depth([0, 0]), None);
+    /// assert!(depths.depth([32, 24]).is_some_and(|depth| depth < 0.5));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// If it lies in the plane, or cannot be drawn.
+    pub fn depth_map(&self, size: impl Into<Size>) -> Result<DepthMap, Error> {
+        let graph = self.graph_in_space("all of its points have the same depth")?;
+        let options = self.options(Format::Png, size.into())?;
+        let space = self.space.clone().shade(Shade::None).occlusion(false);
+        let drawn = pixels_in_space(
+            graph,
+            self.steps_drawn_in_space(),
+            &options,
+            &space.keeps_depths(true),
+            self.cancel.as_deref(),
+        )?;
+        let depths = drawn.depths.ok_or(RenderError::from(NoRoom::Nothing));
+        Ok(depths?)
     }
 
     /// Refuses a set in space; `instead` states what it has.

@@ -157,6 +157,10 @@ impl Plan {
             "a PNG is sized in pixels, not in millimetres: --size 2000 is 2000 pixels; SVG, PDF and DXF \
              support both",
         )?;
+        refuse(
+            arguments.depth.is_some() && is_table,
+            "--depth writes the depths of the pixels of a picture, not of tables and scenes",
+        )?;
         if is_chaos {
             refuse(
                 matches!(format, Format::Scene(_)) && format != Format::PLY,

@@ -1,11 +1,12 @@
 //! Pictures of sets in space, and tables of their elements and points.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 
-use crate::render::space::write_space;
-use crate::render::{self, Detail, Unit};
+use crate::grow::Progress;
+use crate::render::space::{SpacePicture, pixels_in_space};
+use crate::render::{self, Detail, Picture, Unit};
 use crate::style::Named;
 
 use super::super::labels::labels;
@@ -62,16 +63,25 @@ pub(super) fn draw(
     };
     let quiet = arguments.growth.quiet;
     let space = arguments.space.to_options()?;
+    let space = space.keeps_depths(arguments.depth.is_some());
     if let Some(game) = game {
-        let (summary, bytes) = output::write(path, quiet, |out, progress| match *plan {
-            Plan::Chaos(Some(format)) => game.list(format, progress, out, path),
-            Plan::Cloud => game.write_ply(&graph, &options.style, progress, out, path),
-            _ => game.draw(&graph, options, &space, progress, out, path),
+        if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {
+            let (summary, bytes) = output::write(path, quiet, |out, progress| match *plan {
+                Plan::Chaos(Some(format)) => game.list(format, progress, out, path),
+                _ => game.write_ply(&graph, &options.style, progress, out, path),
+            })?;
+            return Ok((path.clone(), summary, bytes));
+        }
+        let (picture, bytes) = write(arguments, path, &options, |progress| {
+            game.draw(&graph, &options, &space, progress, path)
         })?;
+        let [width, height] = picture.size;
+        let points = game.listed(picture.elements);
+        let summary = format!("{points}, {width} x {height} pixels");
         return Ok((path.clone(), summary, bytes));
     }
-    let (picture, bytes) = output::write(path, quiet, |mut out, _| {
-        write_space(&graph, steps, &options, &space, None, &mut out)
+    let (picture, bytes) = write(arguments, path, &options, |_| {
+        pixels_in_space(&graph, steps, &options, &space, None)
             .map_err(|error| output::explain(error, path))
     })?;
     let reached = match steps {
@@ -87,6 +97,46 @@ pub(super) fn draw(
     let elements = readable::counted(&picture.elements.into(), "element");
     let summary = format!("{reached}, {elements} drawn, {width} x {height} pixels");
     Ok((path.clone(), summary, bytes))
+}
+
+/// Writes a picture, and its depths if they are asked for: both files, or none.
+fn write(
+    arguments: &Arguments,
+    path: &Path,
+    options: &render::Options,
+    draw: impl FnOnce(Option<&Progress>) -> Result<SpacePicture, Failure>,
+) -> Result<(Picture, u64), Failure> {
+    let quiet = arguments.growth.quiet;
+    let write = || {
+        let ((picture, depths), bytes) = output::write(path, quiet, |out, progress| {
+            let SpacePicture {
+                pixels,
+                depths,
+                picture,
+                ..
+            } = draw(progress)?;
+            let written = pixels.write(options, out);
+            written.map_err(|error| output::explain(error, path))?;
+            Ok((picture, depths))
+        })?;
+        Ok((depths, (picture, bytes)))
+    };
+    let Some(depth_path) = &arguments.depth else {
+        return write().map(|(_, written)| written);
+    };
+    if depth_path == path {
+        let message = "the picture and its depths are two files: name another one for --depth";
+        return Err(Failure::Usage(message.into()));
+    }
+    let (written, _) = output::write(depth_path, true, |mut out, _| {
+        let (depths, written) = write()?;
+        if let Some(depths) = depths {
+            let written = depths.write(&mut out);
+            written.map_err(|error| output::failed(error, depth_path))?;
+        }
+        Ok(written)
+    })?;
+    Ok(written)
 }
 
 fn pixels(number: f64) -> String {
@@ -116,6 +166,8 @@ fn told(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static st
     options.push(("size", arguments.size.to_string()));
     options.extend(arguments.picture.options());
     options.extend(arguments.space.options());
+    let depth = arguments.depth.iter();
+    options.extend(depth.map(|path| ("depth", path.display().to_string())));
     options
 }
 

@@ -44,9 +44,9 @@ pub fn write_in_space(
     let mut elements = 0;
     for cell in cells {
         let drawn = pixels_in_space(cell.graph, cell.steps, options, &cell.space, cancel);
-        let (pixels, picture) = drawn?;
-        elements += picture.elements;
-        pictures.push(pixels);
+        let drawn = drawn?;
+        elements += drawn.picture.elements;
+        pictures.push(drawn.pixels);
     }
     let side = |axis: usize| pictures.iter().map(|it| it.size()[axis]).max();
     let largest = [0, 1].map(|axis| side(axis).unwrap_or_default());

@@ -12,8 +12,10 @@
 mod buffer;
 mod camera;
 mod copies;
+mod depth_map;
 mod descent;
 mod forms;
+mod occlusion;
 mod place;
 mod points;
 mod relief;
@@ -26,7 +28,8 @@ mod stamp;
 mod tints;
 
 pub use camera::{Camera, CameraError};
-pub use points::{colours_of_maps, write_points_in_space};
+pub use depth_map::DepthMap;
+pub use points::{colours_of_maps, points_in_space};
 pub(super) use shade::ink;
 pub use shade::{Light, Shade};
 pub use slice::Slice;
@@ -47,7 +50,6 @@ use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
 use self::camera::Placement;
 use self::descent::{Descent, Roots};
 use self::forms::Forms;
-use self::relief::Relief;
 use self::scene::{ClassBy, End};
 use self::shade::Inks;
 use self::slice::Search;
@@ -107,6 +109,10 @@ pub struct SpaceOptions {
     pub slice: Option<Slice>,
     /// Half-spaces to which the picture is confined: what lies before their planes is cut off.
     pub cuts: Vec<HalfSpace>,
+    /// Whether what is enclosed by its surroundings is darker: ambient occlusion, from the depths of the pixels.
+    pub occlusion: bool,
+    /// Whether the depths of the pixels are kept, in [`SpacePicture::depths`].
+    pub keeps_depths: bool,
 }
 
 setters!(SpaceOptions {
@@ -115,6 +121,8 @@ setters!(SpaceOptions {
     light: Light,
     slice: Option<Slice>,
     cuts: Vec<HalfSpace>,
+    occlusion: bool,
+    keeps_depths: bool,
 });
 
 impl SpaceOptions {
@@ -124,6 +132,23 @@ impl SpaceOptions {
         let slabs = slice.flat_map(|slice| slice.half_spaces(slice.thickness.unwrap_or(pixel)));
         slabs.chain(self.cuts.iter().copied()).collect()
     }
+
+    /// Returns whether the colours of pixels, or the caller, need depths.
+    fn needs_depths(&self) -> bool {
+        self.shade.has_relief() || self.occlusion || self.keeps_depths
+    }
+}
+
+/// A picture of a set in space.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SpacePicture {
+    /// The pixels.
+    pub pixels: Pixels,
+    /// The depths of the pixels, if they are [kept](SpaceOptions::keeps_depths).
+    pub depths: Option<DepthMap>,
+    /// Description of the picture.
+    pub picture: Picture,
 }
 
 /// White: the paper of pictures whose style has no background.
@@ -144,9 +169,9 @@ pub fn write_space(
     cancel: Option<&AtomicBool>,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
-    let (pixels, picture) = pixels_in_space(graph, steps, options, space, cancel)?;
-    pixels.write(options, out)?;
-    Ok(picture)
+    let drawn = pixels_in_space(graph, steps, options, space, cancel)?;
+    drawn.pixels.write(options, out)?;
+    Ok(drawn.picture)
 }
 
 /// Draws a set in space as [`write_space`] does, as pixels in memory. [`Options::format`], [`Options::labels`] and
@@ -161,9 +186,13 @@ pub fn pixels_in_space(
     options: &Options,
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
-) -> Result<(Pixels, Picture), RenderError> {
-    let (pixmap, picture) = draw(graph, steps, options, space, cancel)?;
-    Ok((Pixels::of(pixmap), picture))
+) -> Result<SpacePicture, RenderError> {
+    let (pixmap, depths, picture) = draw(graph, steps, options, space, cancel)?;
+    Ok(SpacePicture {
+        pixels: Pixels::of(pixmap),
+        depths: depths.filter(|_| space.keeps_depths),
+        picture,
+    })
 }
 
 /// Piece of work: a tile of the picture.
@@ -245,7 +274,7 @@ fn draw(
     options: &Options,
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
-) -> Result<(Pixmap, Picture), RenderError> {
+) -> Result<(Pixmap, Option<DepthMap>, Picture), RenderError> {
     const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
     let parts = scene::parts(graph, steps);
@@ -301,13 +330,7 @@ fn draw(
     };
     let size @ [width, height] = placement.size;
     let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
-    let mut relief = match space.shade.has_relief() {
-        true => Some(
-            Relief::new(&scene.placement, &space.camera, space.light).map_err(SpaceError::from)?,
-        ),
-        false => None,
-    };
-    let background = Some(style.background.unwrap_or(PAPER));
+    let mut depths = { space.needs_depths() }.then(|| DepthMap::new(&scene.placement));
     let (mut drawn, mut deepest) = (0, 0);
     let mut take = |tile: &mut Tile<'_>| {
         if scene.is_cancelled() {
@@ -315,8 +338,8 @@ fn draw(
         }
         drawn += tile.descent.drawn;
         deepest = deepest.max(tile.descent.deepest);
-        if let Some(relief) = &mut relief {
-            relief.add(tile.at, &tile.depths);
+        if let Some(depths) = &mut depths {
+            depths.add(tile.at, &tile.depths);
         }
         copy(tile, &mut pixmap);
         Ok(())
@@ -339,23 +362,40 @@ fn draw(
         }
         line.finish(&mut take)
     })?;
-    if let Some(relief) = &relief {
-        relief.light(&mut pixmap);
+    finish(&mut pixmap, depths.as_ref(), options, space)?;
+    let picture = described(size, steps.unwrap_or(deepest), drawn);
+    Ok((pixmap, depths, picture))
+}
+
+/// Lights the pixels by their depths, and puts them on the background.
+fn finish(
+    pixmap: &mut Pixmap,
+    depths: Option<&DepthMap>,
+    options: &Options,
+    space: &SpaceOptions,
+) -> Result<(), RenderError> {
+    if let Some(depths) = depths {
+        relief::light(pixmap, depths, space, options.threads.get()).map_err(SpaceError::from)?;
     }
+    let background = Some(options.style.background.unwrap_or(PAPER));
     let pixels = pixmap.pixels_mut().iter_mut();
     pixels.for_each(|pixel| *pixel = shade::over(background, *pixel));
-    let picture = Picture {
+    Ok(())
+}
+
+/// Describes a picture of elements or points.
+fn described(size: [u32; 2], steps: u32, elements: u64) -> Picture {
+    Picture {
         size,
-        steps: steps.unwrap_or(deepest),
-        elements: drawn,
+        steps,
+        elements,
         is_limit: false,
         fractals: 1,
         is_part: true,
         empty: None,
         plotted: None,
         instanced: None,
-    };
-    Ok((pixmap, picture))
+    }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]

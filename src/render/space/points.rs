@@ -3,8 +3,6 @@
 //! The points fall into a depth buffer of one key a pixel, with the camera, the depths and the colours of the exact
 //! descent.
 
-use std::io::Write;
-
 use tiny_skia::Pixmap;
 
 use crate::chaos::{
@@ -12,25 +10,24 @@ use crate::chaos::{
 };
 use crate::geometry::{DAffine3, DMat3, DVec3, Frame3};
 use crate::graph::Graph;
-use crate::render::png::{TooManyPixels, write_pixels};
-use crate::render::{Options, RenderError, Tone};
+use crate::render::png::TooManyPixels;
+use crate::render::{Options, Pixels, RenderError, Tone};
 use crate::style::{ColorBy, Colour, Style};
 
-use super::buffer::{CLASS_BITS, EMPTY, MAX_CLASS, SAMPLES, STEPS, TILE};
+use super::buffer::{CLASS_BITS, EMPTY, MAX_CLASS, SAMPLES, STEPS};
 use super::camera::{Placement, Projection};
-use super::relief::Relief;
+use super::depth_map::DepthMap;
 use super::scene::ClassBy;
 use super::shade::{self, Inks, class_colour};
 use super::slice::Search;
 use super::solid::depth_of;
-use super::{PAPER, SpaceError, SpaceOptions, TILE_SIZE, place};
+use super::{SpaceError, SpaceOptions, SpacePicture, described, finish, place};
 
 /// Number of points from which the extent of the ways from given starts is estimated.
 const PILOT: usize = 20_000;
 
-/// Plays the chaos game in space and writes the picture of its points as PNG. `graph` is that of the system, whose
-/// limit set determines the placement and the depths; walks from given starts extend them. Returns the width and the
-/// height in pixels.
+/// Plays the chaos game in space and draws its points as pixels in memory. `graph` is that of the system, whose limit
+/// set determines the placement and the depths; walks from given starts extend them.
 ///
 /// The classes of the game have to be those of the colours of the style. Colours by hits are placed in the palette by
 /// `tone`, for the number of points of a pixel at any depth.
@@ -38,21 +35,21 @@ const PILOT: usize = 20_000;
 /// # Errors
 ///
 /// As for [`write_space`](super::write_space), and if the game cannot be played.
-pub fn write_points_in_space(
+pub fn points_in_space(
     graph: &Graph<Frame3>,
     system: &WeightedMaps<DAffine3>,
     game: &Game<'_, DVec3>,
     tone: Tone,
     options: &Options,
     space: &SpaceOptions,
-    out: &mut impl Write,
-) -> Result<[u32; 2], RenderError> {
-    let (pixmap, _) = draw(graph, system, game, tone, options, space)?;
-    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
-    let mut bytes = Vec::new();
-    write_pixels(&pixmap, &options.labels, options.png, &mut bytes)?;
-    out.write_all(&bytes)?;
-    Ok([pixmap.width(), pixmap.height()])
+) -> Result<SpacePicture, RenderError> {
+    let (pixmap, depths) = draw(graph, system, game, tone, options, space)?;
+    let size = [pixmap.width(), pixmap.height()];
+    Ok(SpacePicture {
+        pixels: Pixels::of(pixmap),
+        depths: Some(depths).filter(|_| space.keeps_depths),
+        picture: described(size, 0, game.points),
+    })
 }
 
 /// Returns the colours of points in a style, by the number of the map that counts or of the condensation set after
@@ -102,7 +99,7 @@ impl Maps {
     }
 }
 
-/// Draws the picture into memory; returns it with the depths of the pixels.
+/// Draws the picture into memory.
 pub(super) fn draw(
     graph: &Graph<Frame3>,
     system: &WeightedMaps<DAffine3>,
@@ -110,7 +107,7 @@ pub(super) fn draw(
     tone: Tone,
     options: &Options,
     space: &SpaceOptions,
-) -> Result<(Pixmap, Vec<Option<u32>>), RenderError> {
+) -> Result<(Pixmap, DepthMap), RenderError> {
     let ways: Vec<DVec3> = match game.start {
         crate::chaos::Start::Attractor => Vec::new(),
         crate::chaos::Start::Points { .. } => {
@@ -160,35 +157,9 @@ pub(super) fn draw(
     for (pixel, key) in pixmap.pixels_mut().iter_mut().zip(&keys) {
         *pixel = shade::premultiplied(inks.sample(*key, None));
     }
-    let depths: Vec<Option<u32>> = keys.iter().map(|key| depth_of(*key)).collect();
-    if space.shade.has_relief() {
-        let relief = Relief::new(&placement, &space.camera, space.light);
-        let mut relief = relief.map_err(SpaceError::from)?;
-        add_depths(&mut relief, size, &depths);
-        relief.light(&mut pixmap);
-    }
-    let background = Some(style.background.unwrap_or(PAPER));
-    let pixels = pixmap.pixels_mut().iter_mut();
-    pixels.for_each(|pixel| *pixel = shade::over(background, *pixel));
+    let depths = DepthMap::of(&placement, keys.iter().map(|key| depth_of(*key)));
+    finish(&mut pixmap, Some(&depths), options, space)?;
     Ok((pixmap, depths))
-}
-
-/// Adds the depths of all pixels, tile by tile.
-fn add_depths(relief: &mut Relief, [width, height]: [u32; 2], depths: &[Option<u32>]) {
-    let mut tile = vec![None; TILE * TILE];
-    for row in 0..height.div_ceil(TILE_SIZE) {
-        for column in 0..width.div_ceil(TILE_SIZE) {
-            let left = (column * TILE_SIZE) as usize;
-            let columns = TILE.min(width as usize - left);
-            for (line, own) in tile.chunks_exact_mut(TILE).enumerate() {
-                let from = ((row * TILE_SIZE) as usize + line) * width as usize + left;
-                if let Some(depths) = depths.get(from..from + columns) {
-                    own[..columns].copy_from_slice(depths);
-                }
-            }
-            relief.add([column, row], &tile);
-        }
-    }
 }
 
 /// Scale by which a fitted picture lies inside its edges.
@@ -317,7 +288,7 @@ mod tests {
                 let fine = options(SIDE * 8, ColorBy::None);
                 let pixels_of = |space: &SpaceOptions| {
                     let drawn = pixels_in_space(&graph, None, &fine, space, None);
-                    drawn.unwrap().0
+                    drawn.unwrap().pixels
                 };
                 let descent = pixels_of(&space);
                 // White ink on black: the share of a pixel that is covered.
@@ -389,7 +360,8 @@ mod tests {
                     .classes(classes)
                     .threads(NonZero::new(threads).unwrap());
                 let space = SpaceOptions::default();
-                draw(&graph, &system, &game, Tone::Log, &options, &space).unwrap()
+                let drawn = draw(&graph, &system, &game, Tone::Log, &options, &space);
+                drawn.unwrap().0
             });
             assert!(drawn[0] == drawn[1]);
         }

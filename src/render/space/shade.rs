@@ -64,6 +64,12 @@ impl Light {
     pub(super) fn towards(&self) -> DVec3 {
         direction(self.from)
     }
+
+    /// Returns the intensity on a surface: `cosine` is that of the angle between its normal and the light.
+    pub(super) fn intensity(&self, cosine: f64) -> f64 {
+        let ambient = self.ambient.clamp(0.0, 1.0);
+        ambient + (1.0 - ambient) * cosine.max(0.0)
+    }
 }
 
 impl Shade {

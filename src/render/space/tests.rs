@@ -400,3 +400,80 @@ fn a_cut_shows_what_lies_behind_its_plane() {
     let nearest = seen.pixels()[0];
     assert!(seen.pixels().iter().all(|pixel| *pixel == nearest));
 }
+
+/// The depth of a ball is that of a sphere, and grey levels fall from 65535 at the nearest point to 1 at the farthest.
+#[test]
+fn a_depth_map_of_a_ball_is_analytic() {
+    let graph = graph_of("{kind: instancing, space: 3, objects: {a: [{sphere: {}}]}, scene: [a]}");
+    let options = Options::default().size(Size::Long(101));
+    let space = SpaceOptions::default().keeps_depths(true);
+    let drawn = pixels_in_space(&graph, Some(1), &options, &space, None).unwrap();
+    let depths = drawn.depths.unwrap();
+    assert_eq!(depths.size(), [101, 101]);
+    let mut file = Vec::new();
+    depths.write(&mut file).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file))
+        .read_info()
+        .unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(
+        (info.color_type, info.bit_depth),
+        (png::ColorType::Grayscale, png::BitDepth::Sixteen)
+    );
+    for (at, grey) in (0u32..).zip(bytes.chunks_exact(2)) {
+        let grey = f64::from(u16::from_be_bytes([grey[0], grey[1]]));
+        let [x, y] = [at % 101, at / 101];
+        // The nearest of the samples of a pixel, from the middle of the picture in units of the radius.
+        let across = [x, y].map(|at| ((f64::from(at) - 50.0).abs() - 0.375).max(0.125) / 50.5);
+        let square = across[0] * across[0] + across[1] * across[1];
+        match depths.depth([x, y]) {
+            Some(depth) => {
+                let expected = (1.0 - (1.0 - square).sqrt()) / 2.0;
+                assert!(
+                    (depth - expected).abs() < 1e-6,
+                    "{x} {y}: {depth} {expected}"
+                );
+                assert!((grey - (65535.0 - depth * 65534.0)).abs() <= 0.5);
+            }
+            None => assert!(square > 1.0 - 1e-9 && grey == 0.0, "{x} {y}"),
+        }
+    }
+}
+
+/// Surroundings do not darken a plane from any direction of view; they darken the bottom of a pit.
+#[test]
+fn a_pit_is_occluded_and_a_plane_is_not() {
+    let wall = |from: &str, to: &str| format!("{{box: {{from: {from}, to: {to}}}}}");
+    let plate = wall("[-4, -4, -1]", "[4, 4, 0]");
+    let walls = [
+        wall("[-1, -1, 0]", "[1, -0.3, 0.4]"),
+        wall("[-1, 0.3, 0]", "[1, 1, 0.4]"),
+        wall("[-1, -1, 0]", "[-0.3, 1, 0.4]"),
+        wall("[0.3, -1, 0]", "[1, 1, 0.4]"),
+    ];
+    let brightness = |scene: &str, camera: Camera| {
+        let graph = graph_of(&format!(
+            "{{kind: instancing, space: 3, objects: {{a: [{scene}]}}, scene: [a]}}"
+        ));
+        let options = Options::default().size(Size::Long(200));
+        let space = SpaceOptions::default()
+            .camera(camera.look_at(Some(DVec3::ZERO)))
+            .shade(Shade::None)
+            .occlusion(true);
+        let seen = draw(&graph, Some(1), &options, &space, None).unwrap().0;
+        let middle = (seen.height() / 2 * seen.width() + seen.width() / 2) as usize;
+        seen.pixels()[middle].red()
+    };
+    for camera in [
+        Camera::default().from([0.0, 0.0]),
+        Camera::default().from([50.0, 20.0]),
+        Camera::default().from([0.0, 60.0]).perspective(Some(50.0)),
+    ] {
+        let seen = brightness(&plate, camera);
+        assert!(seen >= 254, "{camera:?}: {seen}");
+    }
+    let pit = format!("{plate}, {}", walls.join(", "));
+    let dark = brightness(&pit, Camera::default().from([0.0, 0.0]));
+    assert!((40..180).contains(&dark), "{dark}");
+}

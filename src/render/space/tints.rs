@@ -128,7 +128,7 @@ mod tests {
             .view(View::default());
         let camera = Camera::default().from([0.0, 0.0]);
         let space = SpaceOptions::default().camera(camera).shade(Shade::None);
-        let (pixmap, _) = draw(&graph, Some(1), &options, &space, None).unwrap();
+        let (pixmap, ..) = draw(&graph, Some(1), &options, &space, None).unwrap();
         assert_eq!(pixmap.width(), u32::from(SIDE));
         let tint = |[red, green, blue]: [u8; 3]| {
             let colour = Colour::of_rgba([red, green, blue, 255]);

@@ -10,7 +10,7 @@ use crate::geometry::{Bounds, DAffine3, DVec3, Frame3};
 use crate::graph::Graph;
 use crate::grow::Progress;
 use crate::model::Model;
-use crate::render::space::{SpaceOptions, colours_of_maps, write_points_in_space};
+use crate::render::space::{SpaceOptions, SpacePicture, colours_of_maps, points_in_space};
 use crate::render::{Options, RenderError};
 use crate::style::{ColorBy, Style};
 
@@ -80,20 +80,20 @@ impl<'a> SpaceGame<'a> {
         options
     }
 
-    /// Plays the game, draws it and returns a summary.
+    /// Plays the game and draws it.
     pub(in crate::cli::grow) fn draw(
         &self,
         graph: &Graph<Frame3>,
-        mut options: Options,
+        options: &Options,
         space: &SpaceOptions,
         progress: Option<&Progress>,
-        mut out: &mut dyn Write,
         path: &Path,
-    ) -> Result<String, Failure> {
+    ) -> Result<SpacePicture, Failure> {
         if space.slice.is_some() || !space.cuts.is_empty() {
             let message = "--slice and --cut apply to elements, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
+        let mut options = options.clone();
         options.style.color_by = self.color_by;
         let growth = &self.arguments.growth;
         let game = Game {
@@ -106,14 +106,8 @@ impl<'a> SpaceGame<'a> {
             progress,
         };
         let tone = self.arguments.chaos.tone.unwrap_or_default();
-        let drawn =
-            write_points_in_space(graph, &self.system, &game, tone, &options, space, &mut out);
-        let [width, height] = drawn.map_err(|error| self.explain(error, path))?;
-        Ok(format!(
-            "{}, {}, {width} x {height} pixels",
-            self.loaded.name,
-            self.described()
-        ))
+        points_in_space(graph, &self.system, &game, tone, &options, space)
+            .map_err(|error| self.explain(error, path))
     }
 
     /// Lists the points as a table and returns a summary.
@@ -191,7 +185,8 @@ impl<'a> SpaceGame<'a> {
         Ok((points, all))
     }
 
-    fn listed(&self, points: u64) -> String {
+    /// Describes a number of points of the system.
+    pub(in crate::cli::grow) fn listed(&self, points: u64) -> String {
         format!("{}, {}", self.loaded.name, counted(&points.into(), "point"))
     }
 

@@ -1,0 +1,134 @@
+//! Depth maps: the nearest depth of every pixel of a picture in space.
+
+use std::io;
+
+use crate::geometry::DVec3;
+
+use super::TILE_SIZE;
+use super::buffer::{SAMPLES, STEPS, TILE};
+use super::camera::{Placement, Projection};
+
+/// Depth of a pixel that shows nothing.
+const NOTHING: u32 = u32::MAX;
+
+/// Depths of the pixels of a picture: those of the nearest point that each shows.
+#[derive(Clone, Debug)]
+pub struct DepthMap {
+    /// In multiples of 2⁻²² of the range, from the near end.
+    depths: Vec<u32>,
+    placement: Placement,
+}
+
+impl DepthMap {
+    /// Creates a map that shows nothing.
+    pub(super) fn new(placement: &Placement) -> Self {
+        let [width, height] = placement.size;
+        Self {
+            depths: vec![NOTHING; width as usize * height as usize],
+            placement: *placement,
+        }
+    }
+
+    /// Creates a map of depths in rows.
+    pub(super) fn of(placement: &Placement, depths: impl Iterator<Item = Option<u32>>) -> Self {
+        Self {
+            depths: depths.map(|depth| depth.unwrap_or(NOTHING)).collect(),
+            placement: *placement,
+        }
+    }
+
+    /// Adds the depths of a tile.
+    pub(super) fn add(&mut self, at: [u32; 2], depths: &[Option<u32>]) {
+        let [width, height] = self.placement.size;
+        let [left, top] = at.map(|at| at * TILE_SIZE);
+        let columns = TILE_SIZE.min(width - left) as usize;
+        for row in 0..TILE_SIZE.min(height - top) as usize {
+            let start = (top as usize + row) * width as usize + left as usize;
+            let from = &depths[row * TILE..row * TILE + columns];
+            for (depth, own) in self.depths[start..start + columns].iter_mut().zip(from) {
+                *depth = own.unwrap_or(NOTHING);
+            }
+        }
+    }
+
+    /// Returns the width and the height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.placement.size
+    }
+
+    /// Returns the depth of a pixel, counted from the upper left corner: 0 at the nearest point of the set, 1 at its
+    /// farthest, measured along the direction of view. `None` if the pixel shows nothing, or lies outside.
+    #[must_use]
+    pub fn depth(&self, [x, y]: [u32; 2]) -> Option<f64> {
+        let depth = self.steps(x as usize, y as usize)?;
+        Some(f64::from(depth) / STEPS)
+    }
+
+    fn steps(&self, x: usize, y: usize) -> Option<u32> {
+        let [width, height] = self.placement.size.map(|side| side as usize);
+        if x >= width || y >= height {
+            return None;
+        }
+        let depth = self.depths[y * width + x];
+        (depth != NOTHING).then_some(depth)
+    }
+
+    /// Returns the point that a pixel shows, in view coordinates: x to the right, y upwards, z towards the viewer;
+    /// `None` if it shows nothing.
+    #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
+    pub(super) fn point(&self, x: usize, y: usize) -> Option<DVec3> {
+        let depth = self.steps(x, y)?;
+        let [far, near] = self.placement.range;
+        let z = near - f64::from(depth) / STEPS * (near - far);
+        let [right, down] = [x, y].map(|at| (at as f64 + 0.5) * SAMPLES as f64);
+        Some(match self.placement.projection {
+            Projection::Parallel => DVec3::new(right, -down, z),
+            Projection::Central { focus, middle } => {
+                let across = [(right - middle[0]) / focus, (down - middle[1]) / focus];
+                DVec3::new(-z * across[0], z * across[1], z)
+            }
+        })
+    }
+
+    /// Returns the placement of the picture.
+    pub(super) fn placement(&self) -> &Placement {
+        &self.placement
+    }
+
+    /// Writes the map as a PNG of grey levels of 16 bits: 65535 at the nearest point of the set, falling linearly to 1
+    /// at its farthest, and 0 where nothing is shown.
+    ///
+    /// # Errors
+    ///
+    /// If `out` fails.
+    pub fn write(&self, out: &mut impl io::Write) -> io::Result<()> {
+        let [width, height] = self.placement.size;
+        let grey = |depth: u32| match depth {
+            NOTHING => 0,
+            depth => grey(f64::from(depth) / STEPS),
+        };
+        let bytes: Vec<u8> = { self.depths.iter() }
+            .flat_map(|depth| grey(*depth).to_be_bytes())
+            .collect();
+        // The encoder does not pass on why writing to `out` fails, so it writes to memory.
+        let mut png = Vec::new();
+        let mut encoder = png::Encoder::new(&mut png, width, height);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.set_depth(png::BitDepth::Sixteen);
+        let mut writer = encoder.write_header().map_err(io::Error::other)?;
+        writer.write_image_data(&bytes).map_err(io::Error::other)?;
+        writer.finish().map_err(io::Error::other)?;
+        out.write_all(&png)
+    }
+}
+
+/// Returns the grey level of a depth from 0, the nearest, to 1.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the value is in range"
+)]
+fn grey(depth: f64) -> u16 {
+    (65535.0 - depth * 65534.0).round() as u16
+}
