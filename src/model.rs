@@ -1,5 +1,6 @@
 //! Validated models of the four kinds of linear fractals, and their compilation to graphs.
 
+mod drawn;
 mod ifs;
 mod instancing;
 mod lsystem;
@@ -9,12 +10,13 @@ mod space;
 
 pub use crate::graph::OutOfRange;
 pub use crate::kind::Kind;
+pub use drawn::{DrawnError, DrawnInSpace, MAX_HELD};
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::{DAffine3, Homothety};
+use crate::geometry::{DAffine3, Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
 use crate::instancing::Instancing;
@@ -67,6 +69,8 @@ macro_rules! models {
 models! {
     /// Production rule.
     Rule: Rule(Rule);
+    /// Production rule in space.
+    RuleInSpace: Rule(Rule<Frame3>);
     /// Iterated function system.
     Ifs: Ifs(System);
     /// Iterated function system in space.

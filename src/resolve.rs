@@ -26,10 +26,11 @@ use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::{Document, KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
-use crate::geometry::{DAffine2, DAffine3};
+use crate::geometry::{DAffine2, DAffine3, Frame2, Frame3};
 use crate::metadata::Metadata;
 use crate::model::Model;
 use instancing::OfInstancing;
+use rule::OfRule;
 
 /// Number of mistakes after which expressions and names are not checked further.
 const MAX_MISTAKES: usize = 1000;
@@ -83,8 +84,13 @@ fn resolve(
     settings: &[Setting],
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     match document {
+        KindDocument::Rule(document) if document.is_in_space => {
+            resolved(&document.heading, settings, |to, heading| {
+                Some({ to as &mut Resolver<OfRule<Frame3>> }.rule(document, heading))
+            })
+        }
         KindDocument::Rule(document) => resolved(&document.heading, settings, |to, heading| {
-            Some(to.rule(document, heading))
+            Some({ to as &mut Resolver<OfRule<Frame2>> }.rule(document, heading))
         }),
         KindDocument::Ifs(document) if document.is_in_space => {
             resolved(&document.heading, settings, |to, heading| {

@@ -67,9 +67,14 @@ impl WrittenPoint {
         (self.place.text() == name).then(|| self.place.text())
     }
 
-    /// Returns whether the expressions of both coordinates are written alike.
+    /// Returns whether the expressions of all coordinates are written alike; a third one that is left out is 0.
     #[must_use]
     pub fn is_written_like(&self, other: &Self) -> bool {
-        self.x.value == other.x.value && self.y.value == other.y.value
+        let third = match (&self.z, &other.z) {
+            (None, None) => true,
+            (Some(z), None) | (None, Some(z)) => z.value == Expression::number(0.0),
+            (Some(own), Some(other)) => own.value == other.value,
+        };
+        third && self.x.value == other.x.value && self.y.value == other.y.value
     }
 }

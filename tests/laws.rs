@@ -3,6 +3,7 @@
 mod lists;
 mod places;
 pub(crate) mod rules;
+mod space;
 
 use std::convert::Infallible;
 use std::num::NonZero;
@@ -15,18 +16,22 @@ use kfrac::document::Document;
 use kfrac::geometry::{Bounds, DVec2, Direction, Frame2};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, FractalInfo, Growth, Progress, Visitor, walk};
+use kfrac::model::Model;
 use kfrac::render::{self, Options, Size};
 use kfrac::rule::Rule;
 use proptest::prelude::*;
 use rules::Features;
 
 fn read(text: &str) -> Arc<Rule> {
+    model(text).into_rule().unwrap()
+}
+
+fn model(text: &str) -> Model {
     let source = Source::new("random.yaml", text);
     let document =
         Document::read(&source, &Catalogue::embedded()).unwrap_or_else(|e| panic!("{e}{text}"));
     let resolved = document.resolve(&[]);
-    let (model, _) = resolved.unwrap_or_else(|e| panic!("{e}{text}"));
-    model.into_rule().unwrap()
+    resolved.unwrap_or_else(|e| panic!("{e}{text}")).0
 }
 
 /// A visitor that records everything that a walk reports.

@@ -75,8 +75,8 @@ fn check(file: &str, text: &str) -> usize {
             .resolve(&[])
             .unwrap_or_else(|diagnostics| panic!("{name}: {diagnostics:#?}"));
         assert!(warnings.is_empty(), "{name}: {warnings:#?}");
-        let count = match model.compile_in_space(false) {
-            Some(graph) => visible(&graph),
+        let count = match model.graph_in_space(2) {
+            Some(graph) => visible(&graph.unwrap()),
             None => visible(&model.compile(2).unwrap()),
         };
         assert!(count > 0, "{name}: nothing is to be seen at step 2");

@@ -162,13 +162,11 @@ impl Arguments {
             return Err(Failure::Usage(message.into()));
         }
         let compiled = both.map(|loaded| {
-            let graph = loaded.model.compile_in_space(false);
-            graph.map(|graph| One { loaded, graph })
+            let graph = loaded.drawn_in_space(self.steps, false)?.graph;
+            Ok::<_, Failure>(One { loaded, graph })
         });
-        let [Some(a), Some(b)] = compiled else {
-            return Err(anyhow!("one of the two lies in the plane").into());
-        };
-        let both = [a, b];
+        let [a, b] = compiled;
+        let both = [a?, b?];
         let subjects = self.subjects(&both)?;
         let (comparison, distance) = self.compare(&both, &subjects, 1.0, corners)?;
         output::print_as(self.json, &comparison, || described(&comparison, &distance))

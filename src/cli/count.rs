@@ -66,7 +66,7 @@ struct Found<'a> {
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { rule, growth, .. } = arguments;
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
-    if let Some(graph) = loaded.model.compile_in_space(false) {
+    if let Some(graph) = loaded.in_space(arguments.steps)? {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         growth.check(steps, &graph, &loaded)?;
         return arguments.count(&loaded, &graph, steps);

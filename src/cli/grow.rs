@@ -150,6 +150,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let plan = Plan::of(arguments)?;
     let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
     if loaded.model.is_in_space() {
+        let loaded = loaded.grown(&arguments.growth);
         let (path, summary, bytes) = match plan {
             Plan::Scene(format) => scene::write(arguments, &loaded, format)?,
             plan => space::draw(arguments, &loaded, &plan)?,

@@ -164,7 +164,7 @@ fn number(value: f64) -> serde_json::Value {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
-    if let Some(graph) = loaded.model.compile_in_space(false) {
+    if let Some(graph) = loaded.in_space(arguments.steps)? {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;
         let info = space::info(&loaded, &graph, steps);

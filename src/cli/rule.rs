@@ -11,11 +11,12 @@ use etcetera::BaseStrategy;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Severity, Source};
 use crate::document::{Document, Setting};
-use crate::geometry::Homothety;
+use crate::geometry::{Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
+use crate::grow::Growth;
 use crate::ifs::{AffineMap, System};
 use crate::lsystem::RewriteError;
-use crate::model::Model;
+use crate::model::{DrawnError, DrawnInSpace, MAX_HELD, Model};
 use crate::style::{ColorBy, Named};
 
 use super::family::{self, Assignment};
@@ -131,6 +132,48 @@ impl Loaded {
     fn compiled(&self, model: &Model, steps: u32) -> Result<Graph, Failure> {
         self.graph_of(model, steps)
             .map_err(|error| self.failure(&error))
+    }
+
+    /// Returns the graph of the elements of a set in space, resolved for the number of steps that is given or proposed;
+    /// `None` for a set of the plane.
+    pub(super) fn in_space(&self, steps: Option<u32>) -> Result<Option<Graph<Frame3>>, Failure> {
+        let graph = self.model.graph_in_space(self.steps_in_space(steps));
+        graph.transpose().map_err(|error| self.failure(&error))
+    }
+
+    /// Returns the graph of a set in space as it is drawn after a number of steps, or in the limit.
+    pub(super) fn drawn_in_space(
+        &self,
+        steps: Option<u32>,
+        records_last: bool,
+    ) -> Result<DrawnInSpace, Failure> {
+        let (seed, max_elements) = self.growth;
+        let growth = Growth {
+            seed,
+            max_elements,
+            ..Growth::steps(self.steps_in_space(steps))
+        };
+        let Some(drawn) = self.model.drawn_in_space(steps, &growth, records_last) else {
+            return Err(anyhow::anyhow!("{} lies in the plane", self.name).into());
+        };
+        drawn.map_err(|error| match error {
+            DrawnError::Compile(error) => self.failure(&error),
+            error => {
+                let message = format!(
+                    "step {} of {}: {error}; elements that depend on draws, or that are placed as the initiator, are held in \
+                     memory, and --max-elements allows up to {MAX_HELD}",
+                    growth.steps, self.name
+                );
+                anyhow::anyhow!(message).into()
+            }
+        })
+    }
+
+    /// Returns the number of steps for which graphs in space are resolved.
+    fn steps_in_space(&self, steps: Option<u32>) -> u32 {
+        const SOON: u32 = 16;
+        let proposed = self.model.metadata().steps;
+        steps.or(proposed).unwrap_or(SOON)
     }
 
     /// Returns an error of compiling as a mistake in the file.

@@ -86,6 +86,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     arguments.picture.refuse_hits()?;
     let (growth, rule) = (&arguments.growth, &arguments.rule);
     let family = rule.load_family(catalogue, growth.quiet, arguments.samples)?;
+    let grown = |(settings, loaded): Member| (settings, loaded.grown(growth));
+    let family: Vec<_> = family.into_iter().map(grown).collect();
     if family
         .first()
         .is_some_and(|(_, first)| first.model.is_in_space())
@@ -94,9 +96,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     }
     if let Some((_, first)) = family.first() {
         arguments.space.refuse_in_plane(first)?;
-        let grown = |(settings, loaded): Member| (settings, loaded.grown(growth));
         let format = format::choose(arguments.format, arguments.output.as_deref())?;
-        let family: Vec<_> = family.into_iter().map(grown).collect();
         return arguments.draw_family(family, format, start);
     }
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);

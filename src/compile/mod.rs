@@ -5,5 +5,6 @@ mod instancing;
 mod lsystem;
 mod rule;
 mod state;
+mod surfaces;
 
 pub(crate) use lsystem::Chords;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::draws::Path;
 use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
-use crate::geometry::DVec2;
-use crate::rule::{ElementContext, Part, Placement, Rule, Selection};
+use crate::geometry::Point;
+use crate::rule::{ElementContext, Part, Placement, Rule, RuleFrame, Selection};
 
 use super::state::{Class, Dependences, State};
 use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
@@ -24,13 +24,13 @@ const MAX_WORK: usize = 20_000_000;
 /// Limit of the number of objects up to which a graph is resolved for more steps than were requested.
 const SOON: usize = 4_096;
 
-impl Graph {
+impl<F: RuleFrame> Graph<F> {
     /// Compiles a rule to its graph, resolved for at least `steps` steps.
     ///
     /// # Errors
     ///
     /// If a generator yields points that are not finite within these steps.
-    pub fn compile(rule: &Arc<Rule>, steps: u32) -> Result<Self, CompileError> {
+    pub fn compile(rule: &Arc<Rule<F>>, steps: u32) -> Result<Self, CompileError> {
         let dependences = Dependences::of(rule);
         if !dependences.index_is_free {
             match Compiler::new(rule, dependences, steps).run() {
@@ -62,19 +62,19 @@ enum Stop {
     Error(CompileError),
 }
 
-struct Compiler<'r> {
-    rule: &'r Arc<Rule>,
+struct Compiler<'r, F: RuleFrame> {
+    rule: &'r Arc<Rule<F>>,
     depends: Dependences,
     steps: u32,
     kinds: BTreeMap<Option<usize>, usize>,
     numbers: FastMap<(Class, State), usize>,
     /// Class and state of every object, in the order of their numbers.
     keys: Vec<(Class, State)>,
-    objects: Vec<Object>,
+    objects: Vec<Object<F>>,
     /// Numbers of behaviours, by fertility, named generator and state.
     behaviours: FastMap<(bool, Option<usize>, State), usize>,
     /// Replacements of behaviours, as far as known.
-    replacements: FastMap<usize, Replacement>,
+    replacements: FastMap<usize, Replacement<F>>,
     /// Number of instances and amount of work so far.
     instances: usize,
     work: usize,
@@ -82,8 +82,8 @@ struct Compiler<'r> {
     columns: FastMap<(u32, u32), Vec<Vec<u32>>>,
 }
 
-impl<'r> Compiler<'r> {
-    fn new(rule: &'r Arc<Rule>, depends: Dependences, steps: u32) -> Self {
+impl<'r, F: RuleFrame> Compiler<'r, F> {
+    fn new(rule: &'r Arc<Rule<F>>, depends: Dependences, steps: u32) -> Self {
         // Kind 0 contains the infertile elements; other kinds differ in the selection of their generator.
         let mut kinds = BTreeMap::new();
         let listed = rule
@@ -111,7 +111,7 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    fn run(mut self) -> Result<Graph, Stop> {
+    fn run(mut self) -> Result<Graph<F>, Stop> {
         let rule = self.rule;
         let state = State {
             length: if self.depends.length {
@@ -169,8 +169,12 @@ impl<'r> Compiler<'r> {
             counts_index: self.depends.counts_index,
             draws: rule.is_random(),
             seeds,
-            middle: DVec2::new(0.5, 0.0),
-            ..Graph::of(self.objects, rule.base_elements(), vec![whole.body])
+            middle: F::Point::of_coordinates([0.5, 0.0, 0.0]),
+            ..Graph::of(
+                self.objects,
+                F::outlines(rule.base_elements()),
+                vec![whole.body],
+            )
         })
     }
 
@@ -318,7 +322,7 @@ impl<'r> Compiler<'r> {
         }
     }
 
-    fn replacement(&mut self, number: usize) -> Result<Replacement, Stop> {
+    fn replacement(&mut self, number: usize) -> Result<Replacement<F>, Stop> {
         let behaviour = self.objects[number].behaviour;
         if let Some(known) = self.replacements.get(&behaviour) {
             return Ok(known.clone());
@@ -328,7 +332,7 @@ impl<'r> Compiler<'r> {
         Ok(replacement)
     }
 
-    fn new_replacement(&mut self, number: usize) -> Result<Replacement, Stop> {
+    fn new_replacement(&mut self, number: usize) -> Result<Replacement<F>, Stop> {
         let (class, state) = self.keys[number].clone();
         if !class.fertile {
             return Ok(Replacement::Kept);
@@ -415,9 +419,13 @@ impl<'r> Compiler<'r> {
 
     /// Returns the points of a generator that does not depend on the element; zeros for a generator that
     /// draws or that is evaluated for each element.
-    fn fixed_points(&self, generator: usize, moment: &ElementContext) -> Result<Vec<DVec2>, Stop> {
+    fn fixed_points(
+        &self,
+        generator: usize,
+        moment: &ElementContext,
+    ) -> Result<Vec<F::Point>, Stop> {
         let listed = &self.rule.generators()[generator];
-        let mut points = vec![DVec2::ZERO; listed.points.len()];
+        let mut points = vec![F::Point::ZERO; listed.points.len()];
         if self.is_fixed(generator) {
             listed.evaluate(moment, Path::of_seed(0), &mut Vec::new(), &mut points);
             if !points.iter().all(|point| point.is_finite()) {

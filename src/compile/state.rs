@@ -1,7 +1,9 @@
 //! Class and state of an element, which together determine its subtree, and the dependences of a rule.
 
 use crate::expression::{Dependence, Program, gcd};
-use crate::rule::{ElementContext, Generator, ListedElement, Placement, Rule, Selection};
+use crate::rule::{
+    ElementContext, Generator, ListedElement, Placement, Rule, RuleFrame, Selection,
+};
 
 /// Properties of an element that do not depend on place and time: elements of one class in one state have
 /// equal subtrees.
@@ -59,7 +61,7 @@ pub(super) struct Dependences {
 const LARGEST_MODULUS: u32 = 64;
 
 impl Dependences {
-    pub(super) fn of(rule: &Rule) -> Self {
+    pub(super) fn of<F: RuleFrame>(rule: &Rule<F>) -> Self {
         let mut all = Self {
             age: false,
             step: false,

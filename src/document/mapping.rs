@@ -120,10 +120,17 @@ variants! {
 }
 
 /// Makes a document, the definition of its keys, and its reader from a table: `keys!` with the type of each value
-/// behind the name. `KEY as FIELD` names the field otherwise than the key.
+/// behind the name. `KEY as FIELD` names the field otherwise than the key. Alternative sets of keys may follow the help
+/// text.
 macro_rules! mapping {
     ($(#[$doc:meta])* struct $name:ident: $shape:ident = $what:literal, $hint:expr; $($table:tt)*) => {
-        mapping!(@ {$(#[$doc])* $name $shape $what $hint} [] $($table)*);
+        mapping!(@ {$(#[$doc])* $name $shape $what $hint, &[]} [] $($table)*);
+    };
+    (
+        $(#[$doc:meta])* struct $name:ident: $shape:ident = $what:literal, $hint:expr, $ways:expr;
+        $($table:tt)*
+    ) => {
+        mapping!(@ {$(#[$doc])* $name $shape $what $hint, $ways} [] $($table)*);
     };
     (@ $head:tt [$($done:tt)*] needed $($rest:tt)+) => {
         mapping!(# Always $head [$($done)*] $($rest)*);
@@ -141,7 +148,7 @@ macro_rules! mapping {
         mapping!(# $needed $head $done $key as $key: $($rest)*);
     };
     (
-        @ {$(#[$doc:meta])* $name:ident $shape:ident $what:literal $hint:expr}
+        @ {$(#[$doc:meta])* $name:ident $shape:ident $what:literal $hint:expr, $ways:expr}
         [$({
             $needed:ident $key:ident $field:ident ($type:ty) ($form:expr) ($about:expr) [$($absent:tt)*]
         })*]
@@ -163,7 +170,7 @@ macro_rules! mapping {
                 needed: $crate::document::shape::Needed::$needed,
                 absent: $crate::document::shape::keys!(? $($absent)*),
             }),*]],
-            ways: &[],
+            ways: $ways,
             hint: $hint,
         };
 

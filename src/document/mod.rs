@@ -42,8 +42,8 @@ pub use lsystem::{
 pub use metadata::{MetadataDocument, ParameterDocument};
 pub use read::{
     BaseElementDocument, CaseDocument, CuboidDocument, DiskDocument, EllipseDocument,
-    EllipsoidDocument, InitiatorDocument, Listed, MoveDocument, ShaftDocument, SphereDocument,
-    TintDocument,
+    EllipsoidDocument, InSpace, InitiatorDocument, Listed, MoveDocument, RotateDocument,
+    ShaftDocument, SphereDocument, SurfaceDocument, TintDocument,
 };
 pub use rule::{
     Entry, GeneratorDocument, PartDocument, PieceDocument, RuleDocument, SelectDocument,

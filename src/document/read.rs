@@ -20,11 +20,11 @@ mod vertices;
 mod word;
 
 pub(super) use base_element::BASE_ELEMENT;
-pub use base_element::BaseElementDocument;
+pub use base_element::{BaseElementDocument, SurfaceDocument};
 pub(super) use elements::{ELEMENTS, INITIATOR};
 pub use elements::{InitiatorDocument, Listed};
 pub(super) use generator::GENERATOR;
-pub use generator::MoveDocument;
+pub use generator::{MoveDocument, RotateDocument};
 pub use instancing::TintDocument;
 pub(super) use metadata::{DESCRIPTION, check_description, read_heading};
 pub(super) use parameters::{PARAMETER, PARAMS};
@@ -32,6 +32,7 @@ pub(super) use rule::RULE;
 pub use select::CaseDocument;
 pub use set::{DiskDocument, EllipseDocument};
 pub use solid::{CuboidDocument, EllipsoidDocument, ShaftDocument, SphereDocument};
+pub use space::InSpace;
 
 use super::MetadataDocument;
 use super::reader::{Fields, Reader};

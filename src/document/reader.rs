@@ -294,7 +294,8 @@ impl Reader {
             let hint = match count {
                 _ if self.is_in_space => "a point in space is written [x, y, z]",
                 3 if self.may_lie_in_space => {
-                    "the file lies in the plane, where a point is written [x, y]: `space: 3` puts it into space"
+                    "the file lies in the plane: a point is written [x, y], decimals with a point: 0.5; `space: 3` \
+                     puts it into space"
                 }
                 3 => {
                     "the file lies in the plane: a point is written [x, y], decimals with a point: 0.5"

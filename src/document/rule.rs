@@ -14,6 +14,8 @@ use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 pub struct RuleDocument {
     /// Metadata of the file.
     pub heading: MetadataDocument,
+    /// Whether it lies in space.
+    pub is_in_space: bool,
     /// Initiator.
     pub initiator: InitiatorDocument,
     /// Generators by name. A single `generator` has the name `generator`.
@@ -21,7 +23,7 @@ pub struct RuleDocument {
     /// Selection of generators.
     pub select: Option<SelectDocument>,
     /// Base element of all elements without their own.
-    pub base_element: Option<BaseElementDocument>,
+    pub base_element: Option<Box<BaseElementDocument>>,
 }
 
 /// A generator as written.
@@ -105,6 +107,11 @@ pub enum PieceDocument {
 }
 
 impl PieceDocument {
+    /// Returns whether the piece is an arc or a curve.
+    pub(crate) fn is_curved(&self) -> bool {
+        !matches!(self, Self::Line(_))
+    }
+
     /// Returns the end point.
     pub(crate) fn end(&self) -> &WrittenPoint {
         match self {

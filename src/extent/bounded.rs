@@ -3,6 +3,7 @@
 use crate::geometry::{Affine, Frame, Frame3};
 use crate::graph::{Graph, Instance};
 use crate::ifs::sum_of_products;
+use crate::rule::RuleFrame;
 
 /// Precision of polygons as approximations of the convex hulls.
 #[derive(Clone, Copy)]
@@ -60,7 +61,7 @@ pub trait Hulls<F: Frame> {
 
 /// Frames whose graphs are bounded: by ratios of lengths and the stretch of products of maps, or more closely where
 /// the frames of a kind have hulls of subtrees.
-pub trait Bounded: Frame {
+pub trait Bounded: RuleFrame {
     /// Returns convex sets that contain the subtrees of objects: at every step, or in the limit if `drawn`
     /// states which objects are drawn there. `None` if there are none.
     fn hulls(

@@ -217,7 +217,8 @@ impl Fractal {
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
         self.check_cancelled()?;
-        if let Some(graph) = self.model.compile_in_space(false) {
+        if let Some(graph) = self.model.graph_in_space(STEPS) {
+            let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
             return self.dimension_of(&graph);
         }
         let model = self.model.of_limit();

@@ -35,12 +35,10 @@ impl Frame2 {
     pub fn between(from: DVec2, to: DVec2, direction: Direction) -> Self {
         let along = to - from;
         let across = along.perp();
-        let (x_axis, y_axis, origin) = match direction {
-            Direction::Normal => (along, across, from),
-            Direction::YReflected => (along, -across, from),
-            Direction::XReflected => (-along, across, to),
-            Direction::BothReflected => (-along, -across, to),
-        };
+        // A reflection of z does nothing in the plane.
+        let [x, y, _] = direction.reflected();
+        let (x_axis, origin) = if x { (-along, to) } else { (along, from) };
+        let y_axis = if y { -across } else { across };
         let linear = DMat2::from_cols(x_axis, y_axis);
         Self::new(DAffine2::from_mat2_translation(linear, origin), direction)
     }

@@ -33,7 +33,7 @@ pub use corners::Corners2;
 pub use direction::Direction;
 pub use frame::{BEYOND, Corners, Frame, Outline};
 pub use frame2::Frame2;
-pub use frame3::Frame3;
+pub use frame3::{Attitude, Frame3};
 pub use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 pub use homothety::Homothety;
 pub(crate) use linear::eigen;
@@ -42,7 +42,7 @@ pub use mesh::Mesh;
 pub use point::Point;
 pub use polygon::{MAX_POINTS, PolygonError, polygon};
 pub use round::Round;
-pub use solid::{HalfSpace, Solid};
+pub use solid::{HalfSpace, Side, Solid};
 
 pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;

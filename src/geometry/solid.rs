@@ -22,6 +22,15 @@ pub struct HalfSpace {
     pub distance: f64,
 }
 
+/// The front of a flat solid that is a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Side {
+    /// Vector of length 1 across the surface, to its front; it may be given other than it is, for shading.
+    pub normal: DVec3,
+    /// Whether the back is a surface too; if not, no light falls on it.
+    pub is_double: bool,
+}
+
 /// A convex solid: a polyhedron, or an affine image of a [`Round`] primitive. It may be flat: a polygon, a disk, a
 /// segment or a point.
 ///
@@ -37,6 +46,7 @@ pub struct Solid {
     corners: Arc<[DVec3]>,
     /// Surface in its place; of a flat solid, both sides.
     surface: f64,
+    side: Option<Side>,
 }
 
 impl Solid {
@@ -49,6 +59,7 @@ impl Solid {
             round: Some(primitive),
             corners: Arc::default(),
             surface: primitive.surface(&place.matrix3),
+            side: None,
         }
     }
 
@@ -77,6 +88,7 @@ impl Solid {
             round: None,
             corners: corners.collect(),
             surface: 2.0 * (sides.x * sides.y + sides.y * sides.z + sides.z * sides.x),
+            side: None,
         }
     }
 
@@ -116,6 +128,7 @@ impl Solid {
             surface: solid.surface * size * size,
             faces: solid.faces,
             round: None,
+            side: None,
         }
     }
 
@@ -162,6 +175,7 @@ impl Solid {
             round: None,
             corners: corners.into(),
             surface,
+            side: None,
         }
     }
 
@@ -199,6 +213,7 @@ impl Solid {
             round: None,
             corners: around.iter().map(|point| place(*point)).collect(),
             surface: 2.0 * area,
+            side: None,
         }
     }
 
@@ -218,7 +233,43 @@ impl Solid {
             round: None,
             corners: vec![from, to].into(),
             surface: 0.0,
+            side: None,
         }
+    }
+
+    /// Returns the image under a similarity.
+    #[must_use]
+    pub fn transformed(&self, map: &DAffine3) -> Self {
+        let linear = map.matrix3;
+        let ratio = linear.x_axis.length();
+        let corners = { self.corners.iter() }.map(|corner| map.transform_point3(*corner));
+        Self {
+            place: *map * self.place,
+            faces: Arc::clone(&self.faces),
+            round: self.round,
+            corners: corners.collect(),
+            surface: self.surface * ratio * ratio,
+            side: self.side.map(|side| Side {
+                normal: linear * side.normal / ratio * linear.determinant().signum(),
+                ..side
+            }),
+        }
+    }
+
+    /// Returns a flat solid as a surface with a front.
+    #[must_use]
+    pub fn with_side(self, side: Side) -> Self {
+        Self {
+            side: Some(side),
+            ..self
+        }
+    }
+
+    /// Returns the front of a surface; `None` for a solid with an inside, and for a flat one both sides of which are
+    /// alike.
+    #[must_use]
+    pub fn side(&self) -> Option<Side> {
+        self.side
     }
 
     /// Returns the map that places the intersection of the [faces](Self::faces) and the [round
@@ -270,8 +321,8 @@ impl Solid {
         bounds
     }
 
-    /// Returns the faces: the corners of each, counter-clockwise from outside. A solid in a plane has one face, and
-    /// one on a line none.
+    /// Returns the faces: the corners of each, counter-clockwise from outside. A solid in a plane has one face,
+    /// counter-clockwise from its [front](Self::side), and one on a line none.
     #[must_use]
     pub fn polygons(&self) -> Vec<Vec<DVec3>> {
         let hull = Self::hull(&self.corners);
@@ -279,7 +330,15 @@ impl Solid {
         let near = |corner: &DVec3| (*corner - hull.place.translation) / size;
         match hull.corners.len() {
             0..3 => Vec::new(),
-            _ if hull.place.matrix3.determinant() == 0.0 => vec![hull.corners.to_vec()],
+            _ if hull.place.matrix3.determinant() == 0.0 => {
+                let mut face = hull.corners.to_vec();
+                let [from, middle, to] = [face[0], face[1], face[2]];
+                let normal = (middle - from).cross(to - from);
+                if self.side.is_some_and(|side| side.normal.dot(normal) < 0.0) {
+                    face.reverse();
+                }
+                vec![face]
+            }
             _ => {
                 let corners: Vec<DVec3> = self.corners.iter().map(near).collect();
                 let around = |it: &HalfSpace| {
@@ -340,8 +399,9 @@ fn main_axes(points: &[DVec3]) -> (DMat3, usize) {
 }
 
 impl Outline<Frame3> for Solid {
+    /// Returns `false` for a segment, which is a line.
     fn is_closed(&self) -> bool {
-        true
+        self.round.is_some() || self.corners.len() != 2
     }
 
     /// Returns the number of axes along which the solid extends.
@@ -355,11 +415,11 @@ impl Outline<Frame3> for Solid {
     }
 
     fn is_line(&self) -> bool {
-        false
+        self.ends_meet_frame() == [true; 2]
     }
 
     fn ends_meet_frame(&self) -> [bool; 2] {
-        [false; 2]
+        [DVec3::ZERO, DVec3::X].map(|end| !self.is_closed() && self.corners.contains(&end))
     }
 
     fn signed_area(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
-use crate::rule::{ElementContext, Rule};
+use crate::rule::{ElementContext, Rule, RuleFrame};
 
 /// Error: a model cannot be compiled or grown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -52,7 +52,7 @@ impl CompileError {
 
     /// Converts the error to a diagnostic of the file from which the rule was read.
     #[must_use]
-    pub fn diagnostic(&self, rule: &Rule) -> Diagnostic {
+    pub fn diagnostic<F: RuleFrame>(&self, rule: &Rule<F>) -> Diagnostic {
         let Self::NotFinite {
             generator,
             index,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::geometry::{DVec2, Frame, Frame2};
+use crate::geometry::{Frame, Frame2, Point as _};
 use crate::instancing::{Thickness, Tint};
-use crate::rule::{Part, Placement};
+use crate::rule::{Part, Placement, RuleFrame};
 use crate::style::Colour;
 
 /// Object: a class of elements in a state that determines their subtrees.
@@ -191,12 +191,12 @@ impl<F: Frame> Successor<F> {
     }
 }
 
-impl Successor {
+impl<F: RuleFrame> Successor<F> {
     /// Overwrites the successor with that of a generator whose points have been evaluated, and reuses
     /// its memory.
     ///
     /// `objects` are the objects of the generator's elements by position.
-    pub(crate) fn set(&mut self, parts: &[Part], points: &[DVec2], objects: &[usize]) {
+    pub(crate) fn set(&mut self, parts: &[Part], points: &[F::Point], objects: &[usize]) {
         let mut seeds = std::mem::take(&mut self.seeds).into_iter();
         self.body.instances.clear();
         self.body.meets_frame = [false; 2];
@@ -219,7 +219,7 @@ impl Successor {
             for element in &part.elements {
                 let (from, to) = (points[element.from], points[element.to]);
                 instances.push(Instance {
-                    frame: Frame2::between(from, to, element.direction),
+                    frame: F::placed(element, points),
                     length: (to - from).length(),
                     joined: element.joined,
                     position,

@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use crate::draws::Path;
 use crate::expression::Interval;
-use crate::geometry::{DVec2, Frame, Frame2};
-use crate::rule::{ElementContext, Extent, Part, Rule};
+use crate::geometry::{Frame, Point as _};
+use crate::rule::{ElementContext, Extent, Part, Rule, RuleFrame};
 
 use super::{Alternative, CompileError, Successor};
 
@@ -29,8 +29,11 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
     /// finite power (see `Generator::means`).
     fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent>;
 
-    /// Returns the rule, if a rule of the plane is the source.
-    fn rule(&self) -> Option<&Rule> {
+    /// Returns the rule, if a rule is the source.
+    fn rule(&self) -> Option<&Rule<F>>
+    where
+        F: RuleFrame,
+    {
         None
     }
 }
@@ -42,14 +45,14 @@ pub(crate) struct Buffers<F: Frame> {
     pub(crate) points: Vec<F::Point>,
 }
 
-impl Source<Frame2> for Rule {
+impl<F: RuleFrame> Source<F> for Rule<F> {
     fn evaluate(
         &self,
         alternatives: &[Alternative],
         path: Path,
         context: &ElementContext,
-        Buffers { slots, points }: &mut Buffers<Frame2>,
-        successor: &mut Successor,
+        Buffers { slots, points }: &mut Buffers<F>,
+        successor: &mut Successor<F>,
     ) -> Result<(), CompileError> {
         let alternative = if let [only] = alternatives {
             only
@@ -62,7 +65,7 @@ impl Source<Frame2> for Rule {
         };
         let generator = &self.generators()[alternative.generator];
         generator.evaluate(context, path, slots, points);
-        if !points.iter().all(|point: &DVec2| point.is_finite()) {
+        if !points.iter().all(|point| point.is_finite()) {
             return Err(CompileError::not_finite(generator.name(), context));
         }
         successor.set(generator.parts(), points, &alternative.objects);
@@ -77,7 +80,7 @@ impl Source<Frame2> for Rule {
         self.generators()[generator].extents(power, moments)
     }
 
-    fn rule(&self) -> Option<&Rule> {
+    fn rule(&self) -> Option<&Rule<F>> {
         Some(self)
     }
 }

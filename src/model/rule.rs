@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::geometry::Frame3;
 use crate::graph::{CompileError, Graph};
 use crate::metadata::Metadata;
 use crate::rule::Rule;
@@ -29,5 +30,19 @@ impl OfKind for Arc<Rule> {
 
     fn normalised(&self, graph: Graph, steps: u32) -> Option<Graph> {
         graph.in_units_of(steps)
+    }
+}
+
+impl OfKind for Arc<Rule<Frame3>> {
+    fn metadata(&self) -> &Metadata {
+        &self.heading
+    }
+
+    fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
+        Err(CompileError::InSpace)
+    }
+
+    fn diagnostic(&self, error: &CompileError) -> Diagnostic {
+        error.diagnostic(self)
     }
 }

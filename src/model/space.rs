@@ -46,10 +46,26 @@ impl Model {
     /// Returns whether the model lies in space; [`compile_in_space`](Self::compile_in_space) compiles it then.
     #[must_use]
     pub fn is_in_space(&self) -> bool {
-        matches!(self, Self::IfsInSpace(_) | Self::InstancingInSpace(_))
+        matches!(
+            self,
+            Self::RuleInSpace(_) | Self::IfsInSpace(_) | Self::InstancingInSpace(_)
+        )
     }
 
-    /// Compiles a model in space to its graph; `None` for a model of the plane. Objects of a system record the map
+    /// Compiles a model in space to the graph of its elements, which is resolved for at least `steps` steps; `None` for
+    /// a model of the plane.
+    ///
+    /// # Errors
+    ///
+    /// If a generator yields points that are not finite within these steps.
+    pub fn graph_in_space(&self, steps: u32) -> Option<Result<Graph<Frame3>, CompileError>> {
+        match self {
+            Self::RuleInSpace(rule) => Some(Graph::compile(rule, steps)),
+            _ => self.compile_in_space(false).map(Ok),
+        }
+    }
+
+    /// Compiles a system or a structure in space to its graph; `None` for other models. Objects of a system record the map
     /// that is applied last if `records_last`, unless there are too many for it.
     #[must_use]
     pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {

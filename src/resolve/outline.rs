@@ -13,7 +13,8 @@ impl<K> Resolver<K> {
         &mut self,
         document: &BaseElementDocument,
     ) -> Option<(DVec2, Vec<Piece>)> {
-        let mut pieces = document.pieces.iter();
+        let written = document.pieces.as_deref().unwrap_or_default();
+        let mut pieces = written.iter();
         let start = match pieces.next() {
             Some(PieceDocument::Line(point)) => self.constant_point(point)?,
             Some(PieceDocument::Arc { to, .. } | PieceDocument::Curve { to, .. }) => {
@@ -61,10 +62,10 @@ impl<K> Resolver<K> {
             from = outline.last().map_or(from, Piece::end);
         }
         // `closed: true` implies a straight last side; only a curved one is written.
-        let round = !matches!(document.pieces.last(), Some(PieceDocument::Line(_)));
+        let round = !matches!(written.last(), Some(PieceDocument::Line(_)));
         if from == start
             && !(document.closed && round)
-            && let Some(last) = document.pieces.last()
+            && let Some(last) = written.last()
         {
             let hint = if round {
                 "write `closed: true`"

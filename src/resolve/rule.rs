@@ -1,7 +1,10 @@
 //! Resolution of production rules.
 
+mod attitude;
 mod base_element;
+mod body;
 mod elements;
+mod frame;
 mod generator;
 mod random;
 mod selection;
@@ -10,21 +13,23 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place};
-use crate::document::RuleDocument;
+use crate::document::{RuleDocument, WrittenPoint};
+use crate::geometry::Point as _;
 use crate::metadata::Metadata;
-use crate::rule::{BaseElement, ElementContext, Rule, Selection};
+use crate::rule::{ElementContext, Rule, Selection, constant};
 
 use generator::loops_shrink;
 
 use super::Resolver;
-use super::numbers::values;
+pub(super) use frame::ResolvedFrame;
 
 /// State that is specific to rules.
-#[derive(Default)]
-pub(super) struct OfRule {
-    base_elements: Vec<BaseElement>,
+pub(super) struct OfRule<F: ResolvedFrame> {
+    base_elements: Vec<F::BaseElement>,
     /// Places of base elements, with their indices.
     base_element_places: Vec<(Place, usize)>,
+    /// Vectors and angles to which the attitudes of elements refer, until they follow the points.
+    vectors: Vec<WrittenPoint>,
     generator_names: Vec<String>,
     generator_numbers: HashMap<String, usize>,
     /// Warnings of elements that are not shorter than those they replace. The warnings are dropped if
@@ -32,14 +37,27 @@ pub(super) struct OfRule {
     growing: Vec<Diagnostic>,
 }
 
-impl Resolver<OfRule> {
-    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Metadata) -> Rule {
+impl<F: ResolvedFrame> Default for OfRule<F> {
+    fn default() -> Self {
+        Self {
+            base_elements: Vec::new(),
+            base_element_places: Vec::new(),
+            vectors: Vec::new(),
+            generator_names: Vec::new(),
+            generator_numbers: HashMap::new(),
+            growing: Vec::new(),
+        }
+    }
+}
+
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
+    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Metadata) -> Rule<F> {
         match &document.base_element {
             Some(document) => {
                 self.base_element(document);
             }
             None => {
-                self.kind.base_elements.push(BaseElement::line());
+                self.kind.base_elements.push(F::line());
             }
         }
         let names = document.generators.iter().map(|(name, _)| &name.value);
@@ -69,7 +87,7 @@ impl Resolver<OfRule> {
         }
         Rule {
             heading,
-            points: values(&written_points),
+            points: values::<F>(&written_points),
             written_points,
             initiator,
             generators,
@@ -77,4 +95,12 @@ impl Resolver<OfRule> {
             base_elements: std::mem::take(&mut self.kind.base_elements),
         }
     }
+}
+
+/// Returns the values of points; NaN for one whose coordinates are not constants.
+fn values<F: ResolvedFrame>(points: &[F::Coordinates]) -> Vec<F::Point> {
+    let values = points.iter().map(constant::<F>);
+    values
+        .map(|it| it.unwrap_or(F::Point::splat(f64::NAN)))
+        .collect()
 }

@@ -32,8 +32,26 @@ impl<K> Resolver<K> {
         [x, y, z.unwrap_or(Program::constant(0.0))]
     }
 
+    /// Compiles the axis of a turn in a scope. Reports an axis without length.
+    pub(super) fn axis_in_scope(&mut self, axis: &WrittenPoint, scope: &Scope) -> [Program; 3] {
+        let compiled = self.point_in_scope(axis, scope);
+        if value(&compiled) == Some(DVec3::ZERO) {
+            self.report_no_axis(axis);
+        }
+        compiled
+    }
+
+    fn report_no_axis(&mut self, axis: &WrittenPoint) {
+        let message = "an axis has a direction, and this one has no length";
+        self.error_with_hint(&axis.place, message, "axis: [0, 1, 0]");
+    }
+
     /// Evaluates a point in space, or takes another where it is left out.
-    fn constant_in_space(&mut self, point: Option<&WrittenPoint>, absent: DVec3) -> Option<DVec3> {
+    pub(super) fn constant_in_space(
+        &mut self,
+        point: Option<&WrittenPoint>,
+        absent: DVec3,
+    ) -> Option<DVec3> {
         point.map_or(Some(absent), |point| value(&self.point_in_space(point)?))
     }
 
@@ -53,8 +71,7 @@ impl<K> Resolver<K> {
     ) -> Option<Affine<Program, 3>> {
         let along = self.constant_in_space(Some(&document.axis), DVec3::ZERO)?;
         let Some(unit) = { along.try_normalize() }.filter(|unit| unit.is_finite()) else {
-            let message = "an axis has a direction, and this one has no length";
-            self.error_with_hint(&document.axis.place, message, "axis: [0, 1, 0]");
+            self.report_no_axis(&document.axis);
             return None;
         };
         let axis = unit.to_array().map(Program::constant);
@@ -157,7 +174,7 @@ impl<K> Resolver<K> {
         Some(DAffine3::from_mat3_translation(linear, from))
     }
 
-    fn constants_in_space(&mut self, points: &[WrittenPoint]) -> Option<Vec<DVec3>> {
+    pub(super) fn constants_in_space(&mut self, points: &[WrittenPoint]) -> Option<Vec<DVec3>> {
         let points = points.iter();
         let points = points.map(|it| self.constant_in_space(Some(it), DVec3::ZERO));
         // All mistakes are reported.

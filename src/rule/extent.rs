@@ -1,8 +1,9 @@
 //! Bounds on the positions and lengths of a generator's elements over all random draws.
 
 use crate::expression::{Dependence, Interval, Program};
-use crate::geometry::DVec2;
+use crate::geometry::DVec3;
 
+use super::frame::{Place, RuleFrame};
 use super::generator::{ElementContext, Generator, ListedElement, Move};
 
 /// Limit of the number of parts into which the ranges of all drawn variables together are divided.
@@ -20,10 +21,7 @@ pub(crate) struct Extent {
     pub(crate) length: f64,
 }
 
-/// Box that contains a point.
-type Place = [Interval; 2];
-
-impl Generator {
+impl<F: RuleFrame> Generator<F> {
     /// Returns upper bounds of the power means (E[xᵖ])^(1/p), p being `power`, of the quantities x of
     /// [`Extent`], for each element by position; of their maxima over all draws if the power is infinite. They
     /// hold at all moments within the given limits, up to rounding.
@@ -63,7 +61,7 @@ impl Generator {
         let ends = [element.from, element.to];
         let moves = self.moves.iter();
         let moves = moves.filter(|moving| ends.iter().any(|end| moving.points.contains(end)));
-        let own = ends.iter().flat_map(|&end| &self.points[end]);
+        let own = ends.iter().flat_map(|&end| self.points[end].as_ref());
         let mut programs: Vec<&Program> = own.chain(moves.flat_map(Move::programs)).collect();
         let mut parts = vec![1; self.variables.len()];
         let mut free = 0;
@@ -92,8 +90,8 @@ impl Generator {
 }
 
 /// Recursion over the parts of the variables' ranges.
-struct Cover<'g> {
-    generator: &'g Generator,
+struct Cover<'g, F: RuleFrame> {
+    generator: &'g Generator<F>,
     element: &'g ListedElement,
     parts: Vec<usize>,
     /// Exponent of the power means; infinite for maxima.
@@ -101,7 +99,7 @@ struct Cover<'g> {
     extent: Extent,
 }
 
-impl Cover<'_> {
+impl<F: RuleFrame> Cover<'_, F> {
     /// Recurses into the parts of the next variable's range; `likely` is the probability of the parts so
     /// far.
     fn go_on(&mut self, slots: &mut Vec<Interval>, likely: f64) {
@@ -120,10 +118,10 @@ impl Cover<'_> {
         let [from, to] = [self.element.from, self.element.to].map(|number| {
             let moves = self.generator.moves.iter();
             let moves = moves.filter(|moving| moving.points.contains(&number));
-            let written = place(&self.generator.points[number], slots);
+            let written = place(self.generator.points[number].as_ref(), slots, 0.0);
             moves.fold(written, |place, moving| moving.image(place, slots))
         });
-        let middle = [Interval::point(1.0), Interval::point(0.0)];
+        let middle = [1.0, 0.0, 0.0].map(Interval::point);
         let away = far(minus(plus(from, to), middle)) / 2.0;
         let length = far(minus(to, from));
         let power = self.power;
@@ -139,35 +137,35 @@ impl Cover<'_> {
     }
 }
 
-impl Move {
+impl<F: RuleFrame> Move<F> {
     /// Returns a box of the images of a point under the move.
     fn image(&self, point: Place, slots: &[Interval]) -> Place {
-        let angle = self.rotate.range(slots);
-        let (sine, cosine) = (angle.sine(), angle.cosine());
-        let about = place(&self.about, slots);
-        let [width, height] = place(&self.scale, slots);
-        let [x, y] = minus(point, about);
-        let (x, y) = (x * width, y * height);
-        let turned = [cosine * x - sine * y, sine * x + cosine * y];
-        plus(plus(turned, about), place(&self.shift, slots))
+        let about = place(self.about.as_ref(), slots, 0.0);
+        let scale = place(self.scale.as_ref(), slots, 1.0);
+        let away = minus(point, about);
+        let scaled = [0, 1, 2].map(|axis: usize| away[axis] * scale[axis]);
+        let turned = F::turned(&self.rotate, scaled, slots);
+        plus(plus(turned, about), place(self.shift.as_ref(), slots, 0.0))
     }
 }
 
-fn place([x, y]: &[Program; 2], slots: &[Interval]) -> Place {
-    [x.range(slots), y.range(slots)]
+/// Returns the ranges of coordinates; `absent` is that of a third one in the plane.
+fn place(coordinates: &[Program], slots: &[Interval], absent: f64) -> Place {
+    let range = |axis: usize| coordinates.get(axis).map(|program| program.range(slots));
+    [0, 1, 2].map(|axis| range(axis).unwrap_or(Interval::point(absent)))
 }
 
 fn plus(a: Place, b: Place) -> Place {
-    [a[0] + b[0], a[1] + b[1]]
+    [0, 1, 2].map(|axis: usize| a[axis] + b[axis])
 }
 
 fn minus(a: Place, b: Place) -> Place {
-    [a[0] - b[0], a[1] - b[1]]
+    [0, 1, 2].map(|axis: usize| a[axis] - b[axis])
 }
 
 /// Returns the largest distance of a point in a box from the origin.
-fn far([x, y]: Place) -> f64 {
-    DVec2::new(x.magnitude(), y.magnitude()).length()
+fn far(place: Place) -> f64 {
+    DVec3::from(place.map(Interval::magnitude)).length()
 }
 
 #[cfg(test)]

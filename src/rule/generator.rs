@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
-use crate::expression::{Affine, Dependence, Doubles, Evaluation, Program};
-use crate::geometry::{DAffine2, DVec2, Direction};
+use crate::expression::{Affine, Dependence, Evaluation, Program};
+use crate::geometry::{Direction, Frame2};
 use crate::written::WrittenPoint;
 
 use crate::draws::{Path, Variable};
+
+use super::frame::{RuleFrame, evaluated};
 
 /// Values that the expressions of a generator and of a selection see of the element that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,22 +49,29 @@ impl ElementContext {
 /// Points are scaled and rotated about a centre, then translated. Angles are in degrees, positive
 /// counter-clockwise; lengths are in units of the unit frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Move {
-    pub(crate) rotate: Program,
-    pub(crate) scale: [Program; 2],
-    pub(crate) shift: [Program; 2],
-    pub(crate) about: [Program; 2],
+pub struct Move<F: RuleFrame = Frame2> {
+    pub(crate) rotate: F::Turns,
+    pub(crate) scale: F::Coordinates,
+    pub(crate) shift: F::Coordinates,
+    pub(crate) about: F::Coordinates,
     /// Numbers of the points that move; moves of equal points share the allocation.
     pub(crate) points: Arc<[usize]>,
+    /// Numbers of the normals that move: those of elements both ends of which move.
+    pub(crate) normals: Vec<usize>,
+}
+
+impl<F: RuleFrame> Move<F> {
+    /// Iterates over the expressions of the move.
+    pub(super) fn programs(&self) -> impl Iterator<Item = &Program> {
+        let vectors = [&self.scale, &self.shift, &self.about].into_iter();
+        let vectors = vectors.flat_map(|vector| vector.as_ref());
+        F::programs_of_turns(&self.rotate)
+            .into_iter()
+            .chain(vectors)
+    }
 }
 
 impl Move {
-    /// Iterates over the expressions of the move.
-    pub(super) fn programs(&self) -> impl Iterator<Item = &Program> {
-        let pairs = [&self.scale, &self.shift, &self.about].into_iter();
-        std::iter::once(&self.rotate).chain(pairs.flatten())
-    }
-
     /// Evaluates the map of the points.
     #[inline]
     pub(crate) fn map<A: Evaluation>(
@@ -101,6 +110,20 @@ impl Placement {
     }
 }
 
+/// Turn of a listed element about itself; in the plane there is none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum ListedAttitude {
+    /// The frame is that of the least turn.
+    #[default]
+    Least,
+    /// The z axis of the frame lies on the side of the vector of this number, among the points.
+    Normal(usize),
+    /// The frame of the least turn is turned by an angle in degrees: the first coordinate of the point of this number.
+    Roll(usize),
+    /// The z axis of the frame lies on the side of the normal of the polygon with these points.
+    Face(Vec<usize>),
+}
+
 /// Element as listed in an initiator or a generator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedElement {
@@ -110,6 +133,8 @@ pub struct ListedElement {
     pub to: usize,
     /// Direction.
     pub direction: Direction,
+    /// Turn about itself.
+    pub attitude: ListedAttitude,
     /// Whether the element is fertile: replaced in the next step.
     pub fertile: bool,
     /// Whether the element is drawn.
@@ -138,7 +163,7 @@ pub struct Part {
 #[derive(Clone, Debug)]
 pub(crate) struct Origin {
     pub(crate) name: Place,
-    /// Points as written.
+    /// Points as written, and the vectors and angles to which attitudes refer.
     pub(crate) points: Vec<WrittenPoint>,
 }
 
@@ -154,16 +179,17 @@ impl PartialEq for Origin {
 /// The coordinates of its points are those of the unit frame, in which the replaced element runs from (0,
 /// 0) to (1, 0).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Generator {
+pub struct Generator<F: RuleFrame = Frame2> {
     pub(crate) origin: Origin,
     pub(crate) name: String,
     pub(crate) variables: Vec<Variable>,
-    pub(crate) points: Vec<[Program; 2]>,
-    pub(crate) moves: Vec<Move>,
+    /// Points, followed by the vectors and angles to which attitudes refer.
+    pub(crate) points: Vec<F::Coordinates>,
+    pub(crate) moves: Vec<Move<F>>,
     pub(crate) parts: Vec<Part>,
 }
 
-impl Generator {
+impl<F: RuleFrame> Generator<F> {
     /// Returns the name by which selections and elements refer to the generator.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -184,10 +210,12 @@ impl Generator {
         moment: &ElementContext,
     ) -> Option<(&Place, Vec<(&'static str, f64)>)> {
         let slots = moment.slots();
-        let written = self.points.iter().flatten();
-        let places = self.origin.points.iter();
-        let places = places.flat_map(|point| [&point.x.place, &point.y.place]);
-        let mut written = written.zip(places);
+        let points = self.points.iter().zip(&self.origin.points);
+        let mut written = points.flat_map(|(point, written)| {
+            let third = written.z.as_ref().map_or(&written.place, |z| &z.place);
+            let places = [&written.x.place, &written.y.place, third];
+            point.as_ref().iter().zip(places)
+        });
         let (program, place) = written
             .find(|(program, _)| !program.eval(&slots).is_finite())
             .filter(|_| !self.is_random())?;
@@ -228,7 +256,8 @@ impl Generator {
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
         let moves = self.moves.iter().flat_map(Move::programs);
         let drawn = self.variables.iter().flat_map(Variable::programs);
-        self.points.iter().flatten().chain(moves).chain(drawn)
+        let points = self.points.iter().flat_map(|point| point.as_ref());
+        points.chain(moves).chain(drawn)
     }
 
     /// Evaluates the points for one replacement: draws the variables, evaluates the coordinates, applies
@@ -241,7 +270,7 @@ impl Generator {
         moment: &ElementContext,
         path: Path,
         scratch: &mut Vec<f64>,
-        points: &mut Vec<DVec2>,
+        points: &mut Vec<F::Point>,
     ) {
         let draw = |variable: &Variable, slots: &[f64]| variable.draw(path, slots);
         self.evaluate_with(moment, draw, scratch, points);
@@ -249,7 +278,7 @@ impl Generator {
 
     /// Returns the points for representative draws (see [`Variable::typical`]).
     #[must_use]
-    pub fn typical(&self, moment: &ElementContext) -> Vec<DVec2> {
+    pub fn typical(&self, moment: &ElementContext) -> Vec<F::Point> {
         let (mut scratch, mut points) = (Vec::new(), Vec::new());
         self.evaluate_with(moment, Variable::typical, &mut scratch, &mut points);
         points
@@ -263,7 +292,7 @@ impl Generator {
         moment: &ElementContext,
         draw: impl Fn(&Variable, &[f64]) -> f64,
         scratch: &mut Vec<f64>,
-        points: &mut Vec<DVec2>,
+        points: &mut Vec<F::Point>,
     ) {
         scratch.clear();
         scratch.extend(moment.slots());
@@ -272,17 +301,9 @@ impl Generator {
             scratch.push(value);
         }
         points.clear();
-        points.extend(
-            self.points
-                .iter()
-                .map(|[x, y]| DVec2::new(x.eval(scratch), y.eval(scratch))),
-        );
+        points.extend(self.points.iter().map(|it| evaluated::<F>(it, scratch)));
         for moving in &self.moves {
-            let map = moving.map(&mut Doubles, |_, program| program.eval(scratch));
-            let map = DAffine2::from(map);
-            for &number in &*moving.points {
-                points[number] = map.transform_point2(points[number]);
-            }
+            F::move_points(moving, scratch, points);
         }
     }
 }

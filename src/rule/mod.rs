@@ -5,35 +5,41 @@
 //! evaluated. The initiator has at least one element, and every element that may be fertile has a
 //! generator.
 
+mod body;
 mod extent;
+mod frame;
 mod generator;
 mod selection;
 
 pub use crate::geometry::{BaseElement, Piece, arc};
+pub use body::{Body, Surface};
 pub(crate) use extent::Extent;
+pub use frame::{RuleFrame, Turn};
+pub(crate) use frame::{constant, newell};
 pub(crate) use generator::Origin;
-pub use generator::{ElementContext, Generator, ListedElement, Move, Part, Placement};
+pub use generator::{
+    ElementContext, Generator, ListedAttitude, ListedElement, Move, Part, Placement,
+};
 pub use selection::Selection;
 
-use crate::expression::Program;
-use crate::geometry::DVec2;
+use crate::geometry::Frame2;
 use crate::metadata::{Description, Metadata, Parameter};
 use crate::style::{Style, View};
 
-/// Production rule: an initiator, generators with a selection, and base elements.
+/// Production rule, of the plane or of space: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rule {
+pub struct Rule<F: RuleFrame = Frame2> {
     pub(crate) heading: Metadata,
-    pub(crate) points: Vec<DVec2>,
+    pub(crate) points: Vec<F::Point>,
     /// Points of the initiator as written.
-    pub(crate) written_points: Vec<[Program; 2]>,
+    pub(crate) written_points: Vec<F::Coordinates>,
     pub(crate) initiator: Part,
-    pub(crate) generators: Vec<Generator>,
+    pub(crate) generators: Vec<Generator<F>>,
     pub(crate) selection: Selection,
-    pub(crate) base_elements: Vec<BaseElement>,
+    pub(crate) base_elements: Vec<F::BaseElement>,
 }
 
-impl Rule {
+impl<F: RuleFrame> Rule<F> {
     /// Returns the metadata of the file.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
@@ -58,15 +64,16 @@ impl Rule {
         &self.initiator
     }
 
-    /// Returns the points of the initiator, in the rule's units.
+    /// Returns the points of the initiator, in the rule's units, and the vectors and angles to which the attitudes of
+    /// its elements refer.
     #[must_use]
-    pub fn initiator_points(&self) -> &[DVec2] {
+    pub fn initiator_points(&self) -> &[F::Point] {
         &self.points
     }
 
     /// Returns the generators.
     #[must_use]
-    pub fn generators(&self) -> &[Generator] {
+    pub fn generators(&self) -> &[Generator<F>] {
         &self.generators
     }
 
@@ -78,7 +85,7 @@ impl Rule {
 
     /// Returns the base elements, to which elements refer by number; number 0 is that of the rule.
     #[must_use]
-    pub fn base_elements(&self) -> &[BaseElement] {
+    pub fn base_elements(&self) -> &[F::BaseElement] {
         &self.base_elements
     }
 
@@ -106,7 +113,7 @@ impl Rule {
         &self.heading.style
     }
 
-    /// Returns the view: the part of the plane that is drawn.
+    /// Returns the view: in the plane, the part that is drawn.
     #[must_use]
     pub fn view(&self) -> &View {
         &self.heading.view

@@ -39,14 +39,14 @@ impl Fixed {
         let along = [&to[0] - &from[0], &to[1] - &from[1]];
         let across = [-&along[1], along[0].clone()];
         let minus = |[x, y]: &Vector| [-x, -y];
-        let (axes, origin) = match direction {
-            Direction::Normal => ([along, across], from),
-            Direction::YReflected => ([along, minus(&across)], from),
-            Direction::XReflected => ([minus(&along), across], to),
-            Direction::BothReflected => ([minus(&along), minus(&across)], to),
+        let [x, y, _] = direction.reflected();
+        let (along, origin) = match x {
+            true => (minus(&along), to),
+            false => (along, from),
         };
+        let across = if y { minus(&across) } else { across };
         Self {
-            axes,
+            axes: [along, across],
             origin: origin.clone(),
         }
     }

@@ -2,18 +2,18 @@
 //! replaced as a whole. Slow, and simple enough to be compared with the paper.
 
 use kfrac::Path;
-use kfrac::geometry::{DAffine2, DVec2, Direction, Frame2};
-use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule};
+use kfrac::geometry::{Direction, Frame2, Point as _};
+use kfrac::rule::{ElementContext, ListedElement, Part, Placement, Rule, RuleFrame};
 
 /// An element of a list.
 #[derive(Clone, Debug)]
-pub(crate) struct Item {
+pub(crate) struct Item<F: RuleFrame = Frame2> {
     pub listed: ListedElement,
-    pub frame: Frame2,
+    pub frame: F,
     pub length: f64,
     pub born: u32,
-    /// Frame2 of the initiator element that it descends from.
-    root: Frame2,
+    /// Frame of the initiator element that it descends from.
+    root: F,
     path: Path,
     /// Whether the element is joined to the preceding one (the first to the last), by structure alone.
     pub joined: bool,
@@ -21,23 +21,23 @@ pub(crate) struct Item {
 
 /// A fractal: a list of elements of one age, and the fractals that it has seeded.
 #[derive(Clone, Debug)]
-pub(crate) struct Grown {
+pub(crate) struct Grown<F: RuleFrame = Frame2> {
     pub age: u32,
-    pub items: Vec<Item>,
-    seeds: Vec<Grown>,
+    pub items: Vec<Item<F>>,
+    seeds: Vec<Grown<F>>,
 }
 
-impl Grown {
+impl<F: RuleFrame> Grown<F> {
     /// Returns the fractal and its seeds, depth-first.
-    pub(crate) fn all(&self) -> Vec<&Grown> {
+    pub(crate) fn all(&self) -> Vec<&Self> {
         let mut all = vec![self];
-        all.extend(self.seeds.iter().flat_map(Grown::all));
+        all.extend(self.seeds.iter().flat_map(Self::all));
         all
     }
 }
 
 /// Returns approximant `steps` of a rule.
-pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
+pub(crate) fn grow<F: RuleFrame>(rule: &Rule<F>, steps: u32, seed: u64) -> Grown<F> {
     let points = rule.initiator_points();
     let items = rule
         .initiator()
@@ -45,7 +45,7 @@ pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
         .iter()
         .zip(0..)
         .map(|(listed, position)| {
-            let frame = Frame2::between(points[listed.from], points[listed.to], listed.direction);
+            let frame = F::placed(listed, points);
             Item {
                 listed: listed.clone(),
                 frame,
@@ -67,11 +67,11 @@ pub(crate) fn grow(rule: &Rule, steps: u32, seed: u64) -> Grown {
     first
 }
 
-fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
+fn replace<F: RuleFrame>(rule: &Rule<F>, fractal: &mut Grown<F>, step: u32) {
     for seed in &mut fractal.seeds {
         replace(rule, seed, step);
     }
-    let mut next: Vec<Item> = Vec::new();
+    let mut next: Vec<Item<F>> = Vec::new();
     let mut broken = false;
     for (item, rank) in std::mem::take(&mut fractal.items).into_iter().zip(1u32..) {
         // `broken`: the preceding list does not reach the start of this element.
@@ -110,10 +110,7 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
                         if placement == Placement::SeedsAsInitiator {
                             let [origin, _] = item.frame.ends();
                             parent.length = 1.0;
-                            parent.frame = Frame2::new(
-                                DAffine2::from_mat2_translation(item.root.map().matrix2, origin),
-                                item.root.direction(),
-                            );
+                            parent.frame = item.root.moved_to(origin);
                         }
                         let mut items = place(part, &points, &parent, &mut position, step + 1);
                         turn(&mut items, parent.frame.direction());
@@ -147,15 +144,19 @@ fn replace(rule: &Rule, fractal: &mut Grown, step: u32) {
     fractal.age += 1;
 }
 
-fn place(part: &Part, points: &[DVec2], parent: &Item, position: &mut u32, born: u32) -> Vec<Item> {
+fn place<F: RuleFrame>(
+    part: &Part,
+    points: &[F::Point],
+    parent: &Item<F>,
+    position: &mut u32,
+    born: u32,
+) -> Vec<Item<F>> {
     let mut items = Vec::new();
     for listed in &part.elements {
         let (from, to) = (points[listed.from], points[listed.to]);
         items.push(Item {
             listed: listed.clone(),
-            frame: parent
-                .frame
-                .compose(&Frame2::between(from, to, listed.direction)),
+            frame: parent.frame.compose(&F::placed(listed, points)),
             length: parent.length * (to - from).length(),
             born,
             root: parent.root,
@@ -167,9 +168,9 @@ fn place(part: &Part, points: &[DVec2], parent: &Item, position: &mut u32, born:
     items
 }
 
-/// Puts a list into the order of traversal: backwards for directions 3 and 4. Joints are reversed with their
+/// Puts a list into the order of traversal: backwards for directions 3, 4, 7 and 8. Joints are reversed with their
 /// elements.
-fn turn(items: &mut [Item], direction: Direction) {
+fn turn<F: RuleFrame>(items: &mut [Item<F>], direction: Direction) {
     if direction.is_reversed() {
         let mut joined: Vec<bool> = items.iter().map(|item| item.joined).collect();
         let count = joined.len().min(1);

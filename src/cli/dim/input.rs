@@ -39,7 +39,7 @@ fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
 
 /// Returns the exact dimensions of a rule's limit.
 pub(super) fn exact(loaded: &Loaded) -> Result<GraphDimensions, Failure> {
-    Ok(match loaded.model.compile_in_space(false) {
+    Ok(match loaded.in_space(None)? {
         Some(graph) => dimensions_of_graph(&graph),
         None => dimensions_of_graph(&compiled(loaded)?.0),
     })
@@ -163,7 +163,7 @@ fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> 
         exact: Some(exact(loaded)?),
         ..Measured::default()
     };
-    if let Some(graph) = loaded.model.compile_in_space(false) {
+    if let Some(graph) = loaded.in_space(None)? {
         let weighted = match &loaded.model {
             Model::IfsInSpace(system) => Some(system.ifs()),
             _ => None,

@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use anyhow::anyhow;
-
 use crate::render::{self, MeshOptions, write_mesh, write_usda};
 use crate::style::{ColorBy, Named};
 
@@ -59,8 +57,9 @@ pub(super) fn write(
         return Err(Failure::Usage(message));
     };
     let style = picture.style(heading);
-    let graph = (loaded.model).compile_in_space(style.color_by == ColorBy::LastMap);
-    let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
+    let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
+    let graph = drawn.graph;
+    let levels = drawn.steps.unwrap_or(steps);
     let own = [("steps", steps.to_string())];
     let all = own.into_iter().chain(picture.options());
     let options = render::Options {
@@ -79,19 +78,19 @@ pub(super) fn write(
                 return Err(Failure::Usage(message.into()));
             }
             let (scene, bytes) = output::write(path, growth.quiet, |mut out, _| {
-                write_usda(&graph, steps, &options, None, &mut out)
+                write_usda(&graph, levels, &options, None, &mut out)
                     .map_err(|error| output::explain(error, path))
             })?;
             let objects = readable::counted(&scene.symbols.into(), "object");
             (format!("{step}, {objects} in nested instances"), bytes)
         }
         SceneFormat::Mesh(format) => {
-            growth.check(steps, &graph, loaded)?;
+            growth.check(levels, &graph, loaded)?;
             let mesh = MeshOptions::default()
                 .format(format)
                 .shell(arguments.scene.mesh == Some(Faces::Shell));
             let (mesh, bytes) = output::write(path, growth.quiet, |mut out, progress| {
-                let growth = growth.to(steps, progress);
+                let growth = growth.to(levels, progress);
                 write_mesh(&graph, &growth, &options, mesh, &mut out)
                     .map_err(|error| output::explain(error, path))
             })?;

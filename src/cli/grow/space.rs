@@ -27,9 +27,9 @@ pub(super) fn draw(
     let path = arguments.output.as_ref().unwrap_or(&default);
     let heading = loaded.model.metadata();
     let style = arguments.picture.style(heading);
-    let graph = loaded.model.compile_in_space(false);
-    let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
     if let Plan::Table(format) = *plan {
+        let graph = loaded.in_space(arguments.steps)?;
+        let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
         let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
         arguments.growth.check(steps, &graph, loaded)?;
         let (listed, bytes) = arguments.list_step(&graph, steps, loaded, format, path)?;
@@ -64,6 +64,8 @@ pub(super) fn draw(
     let quiet = arguments.growth.quiet;
     let space = arguments.space.to_options()?;
     let space = space.keeps_depths(arguments.depth.is_some());
+    let drawn = loaded.drawn_in_space(steps, false)?;
+    let graph = drawn.graph;
     if let Some(game) = game {
         if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {
             let (summary, bytes) = output::write(path, quiet, |out, progress| match *plan {
@@ -81,7 +83,7 @@ pub(super) fn draw(
         return Ok((path.clone(), summary, bytes));
     }
     let (picture, bytes) = write(arguments, path, &options, |_| {
-        pixels_in_space(&graph, steps, &options, &space, None)
+        pixels_in_space(&graph, drawn.steps, &options, &space, None)
             .map_err(|error| output::explain(error, path))
     })?;
     let reached = match steps {

@@ -8,6 +8,7 @@ use anyhow::anyhow;
 use crate::figure::sheet::{SpaceCell, write_in_space};
 use crate::geometry::Frame3;
 use crate::graph::Graph;
+use crate::model::DrawnInSpace;
 use crate::render::{self, Format};
 use crate::style::Named;
 
@@ -22,8 +23,9 @@ impl Arguments {
         let (_, first) = &family[0];
         self.refuse_of_plane(&first.name)?;
         let views = self.space.views();
+        let most = self.steps.as_ref().map(steps::Several::largest);
         let graphs = family.iter().map(|(settings, loaded)| {
-            let graph = loaded.model.compile_in_space(false);
+            let graph = loaded.in_space(most)?;
             let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
             Ok((caption(settings), graph))
         });
@@ -36,9 +38,12 @@ impl Arguments {
                 (0..=last.min(steps::MAX_CELLS - 1)).map(Some).collect()
             }
         };
+        let drawn = { family.iter() }
+            .flat_map(|(_, loaded)| { all.iter() }.map(|step| loaded.drawn_in_space(*step, false)));
+        let drawn: Vec<DrawnInSpace> = drawn.collect::<Result<_, Failure>>()?;
         let mut cells = Vec::new();
-        for (member, graph) in &graphs {
-            for step in &all {
+        for (number, (member, graph)) in graphs.iter().enumerate() {
+            for (own, step) in drawn[number * all.len()..].iter().zip(&all) {
                 let count = step.and_then(|step| graph.check_size(step, u64::MAX).ok());
                 let count = count.flatten().map_or_else(String::new, |count| {
                     format!(": {}", readable::counted(&count.into(), "element"))
@@ -52,8 +57,8 @@ impl Arguments {
                     let name: Vec<String> = parts.into_iter().flatten().collect();
                     cells.push(SpaceCell {
                         caption: name.join(", ") + &count,
-                        graph,
-                        steps: *step,
+                        graph: &own.graph,
+                        steps: own.steps,
                         space: space.clone(),
                     });
                 }

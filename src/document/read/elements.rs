@@ -1,26 +1,37 @@
 //! Reading of lists of elements and of initiators.
 
+use std::borrow::Cow;
+
 use crate::diagnostic::Place;
 use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::Entry;
-use crate::document::shape::Form;
+use crate::document::shape::{Form, Way, way};
 use crate::document::{BaseElementDocument, Written, WrittenNumber, WrittenPoint};
 
 use super::base_element::BASE_ELEMENT_OF;
+use super::space::{InSpace, only_in_space};
 
 mapping! {
     /// An element of a list, as written.
     struct Listed: ELEMENT = "an element",
-        "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]";
-    from: Option<WrittenPoint> = Form::Point,
+        "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]", &WAYS;
+    from: Option<WrittenPoint> = Form::Place,
         "Where the element runs from; where the one before it ends, if left out.";
-    needed to: WrittenPoint = Form::Point, "Where the element runs to."
-        => "this element has no end point";
-    direction: Option<WrittenNumber> = Form::Whole(1, Some(4)),
+    to: Option<WrittenPoint> = Form::Place, "Where the element runs to.";
+    face: Option<Vec<WrittenPoint>> = Form::List(&Form::Place, 3, None),
+        "In space, in place of `from`, `to` and `normal`: a polygon, counter-clockwise from outside. The element runs \
+         from its first point to the second, with its normal; the polygon must be similar to the first surface of the \
+         base element.";
+    normal: Option<WrittenPoint> = Form::Place,
+        "In space, the direction to which the front of the element's surface points, [0, 0, 1] in its own frame. If \
+         left out, the frame is turned as little as possible from the x axis to the element.";
+    roll: Option<WrittenNumber> = Form::Number,
+        "In space, in place of `normal`: an angle in degrees by which the frame is turned about the element.";
+    direction: Option<WrittenNumber> = Form::Whole(1, Some(8)),
         "How the copy that takes its place is flipped: 1 normal (if left out), 2 y reflected (its \
-         sides swapped), 3 x reflected (its ends swapped), 4 both.";
+         sides swapped), 3 x reflected (its ends swapped), 4 both. In space, 5 to 8 are these with z reflected.";
     fertile: bool = Form::Flag(true),
         "Whether the element is replaced; if not, it stays as it is for ever.";
     visible: bool = Form::Flag(true),
@@ -28,14 +39,30 @@ mapping! {
     connected: bool = Form::Flag(true), "Whether the element may join the one before it.";
     use as generator: Option<Written<String>> = Form::Text,
         "The generator that replaces this element, in place of the one that `select` chooses.";
-    base_element: Option<BaseElementDocument> = BASE_ELEMENT_OF,
+    base_element: Option<Box<BaseElementDocument>> = BASE_ELEMENT_OF,
         "What this element looks like, if not like the others: a name from the library, or a shape \
          of its own.";
 }
 
+impl Listed {
+    /// Returns the point where the element runs to; a placeholder if that is missing, which has been reported.
+    pub(crate) fn end(&self) -> Cow<'_, WrittenPoint> {
+        match &self.to {
+            Some(to) => Cow::Borrowed(to),
+            None => Cow::Owned(WrittenPoint::unknown(&self.place)),
+        }
+    }
+}
+
+const WAYS: [Way; 3] = [
+    way(&["to"], &["face", "roll"]),
+    way(&["to"], &["face", "normal"]),
+    way(&["face"], &["from", "to", "normal", "roll"]),
+];
+
 /// A list of elements.
 pub(in crate::document) const ELEMENTS: Form = Form::List(
-    &Form::Either(&[Form::Point, Form::Mapping(&ELEMENT)]),
+    &Form::Either(&[Form::Place, Form::Mapping(&ELEMENT)]),
     1,
     None,
 );
@@ -55,6 +82,7 @@ mapping! {
     struct InitiatorDocument: INITIATOR = "an initiator",
         "a name from the library (initiator: segment), a list of points, or \
          {elements: [...], closed: true}";
+    space: InSpace = Form::Whole(2, Some(3)), "3 for an initiator in space, 2 or nothing for one in the plane.";
     needed elements as entries: Vec<Entry> = ELEMENTS, about_elements!()
         => "an initiator needs `elements`", "elements: [[0, 0], [1, 0]]";
     closed: bool = Form::Flag(false),
@@ -66,6 +94,7 @@ impl InitiatorDocument {
     /// Returns an initiator with nothing but a list; an empty one stands for one that cannot be read.
     pub(super) fn listed(entries: Vec<Entry>, place: &Place) -> Self {
         Self {
+            space: InSpace,
             entries,
             closed: false,
             connected: true,
@@ -116,11 +145,54 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
     let unknown = || Entry::Point(WrittenPoint::unknown(&node.place));
     match &node.value {
         Value::Sequence(_) => Entry::Point(reader.point(node)),
-        Value::Mapping(_) => Listed::from_node(reader, node)
+        Value::Mapping(_) => read_listed(reader, node)
             .map_or_else(unknown, |listed| Entry::Element(Box::new(listed))),
         _ => {
             reader.mismatch(node, "a point or an element", ELEMENT.hint);
             unknown()
         }
     }
+}
+
+/// Reads an element with attributes; its face, if there is one, becomes its ends.
+fn read_listed(reader: &mut Reader, node: &Node) -> Option<Listed> {
+    let mut listed = Listed::from_node(reader, node)?;
+    for key in ["face", "normal", "roll"] {
+        only_in_space(reader, node, key);
+    }
+    if let (Some(_), Some(roll)) = (&listed.normal, &listed.roll) {
+        let message = "`normal` and `roll` cannot stand together";
+        reader.error_with_hint(
+            &roll.place,
+            message,
+            "either of them turns the frame about the element",
+        );
+    }
+    let Some(face) = &listed.face else {
+        if listed.to.is_none() {
+            let message = "this element has no end point";
+            reader.error_with_hint(&node.place.first_line(), message, ELEMENT.hint);
+        }
+        return Some(listed);
+    };
+    for key in ["from", "to", "normal", "roll"] {
+        if let Some(node) = node.get(key) {
+            let message = format!("`{key}` does not go with `face`");
+            let hint = "a face has its own ends, its first two points, and its own normal";
+            reader.error_with_hint(&node.place, message, hint);
+        }
+    }
+    match face.as_slice() {
+        [from, to, _, ..] => {
+            listed.from = Some(from.clone());
+            listed.to = Some(to.clone());
+        }
+        _ => {
+            let message = format!("a face has three points or more, not {}", face.len());
+            let hint = "face: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]";
+            let place = node.get("face").map_or(&node.place, |node| &node.place);
+            reader.error_with_hint(place, message, hint);
+        }
+    }
+    Some(listed)
 }

@@ -6,15 +6,19 @@ use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{GeneratorDocument, PartDocument, WhichPoints};
 use crate::document::shape::{Form, Shape, keys, way};
-use crate::document::{Written, WrittenNumber, WrittenPoint};
+use crate::document::{TurnDocument, Written, WrittenNumber, WrittenPoint};
 use crate::rule::Placement;
 
 use super::elements::{ELEMENTS, about_elements};
 use super::parameters::written;
+use super::space::{
+    FACTORS_HINT, InSpace, SPACE_OF_COMPONENT, TURN, is_turn, read_factors, read_turns,
+};
 
 pub(in crate::document) const GENERATOR: Shape = Shape {
     what: "a generator",
     keys: &[&keys![
+        =SPACE_OF_COMPONENT;
         elements: ELEMENTS, about_elements!();
         parts: Form::List(&Form::Mapping(&PART), 1, None),
             "Several lists, in place of `elements`: parts that take the element's place, and parts \
@@ -56,11 +60,14 @@ const PART: Shape = Shape {
 mapping! {
     /// A move of points of a generator, as written.
     struct MoveDocument: MOVE = "a move", "move: {rotate: tilt, about: [1/2, 1]}";
-    rotate: Option<WrittenNumber> = Form::Number, "An angle in degrees, counter-clockwise.";
-    scale: Option<[WrittenNumber; 2]> = Form::Either(&[Form::Number, Form::Point]),
-        "A factor, or one along x and one along y.";
-    shift: Option<WrittenPoint> = Form::Point, "What is added last: [x, y].";
-    about: Option<WrittenPoint> = Form::Point,
+    rotate: Option<RotateDocument> =
+        Form::Either(&[Form::Number, Form::Mapping(&TURN), Form::List(&Form::Mapping(&TURN), 1, None)]),
+        "An angle in degrees, counter-clockwise; in space about the z axis, or a turn about another, or a list of turns \
+         in order.";
+    scale: Option<Vec<WrittenNumber>> = Form::Either(&[Form::Number, Form::Place]),
+        "A factor, or one along x and one along y; in space also along z.";
+    shift: Option<WrittenPoint> = Form::Place, "What is added last: [x, y], in space [x, y, z].";
+    about: Option<WrittenPoint> = Form::Place,
         "The centre of scaling and turning; [0, 0] if left out.";
     points: WhichPoints =
         Form::Either(&[Form::Words(&[ALL]), Form::List(&Form::Whole(0, None), 0, None)]),
@@ -148,6 +155,7 @@ fn read_generator(reader: &mut Reader, node: &Node) -> GeneratorDocument {
     let Some(fields) = reader.fields(node, &GENERATOR) else {
         return generator;
     };
+    let _: Option<InSpace> = fields.read(reader, "space");
     generator.random = read_random(reader, fields.take("random"));
     generator.moves = read_moves(reader, fields.take("move"));
     let Some(parts) = fields.take("parts") else {
@@ -257,6 +265,49 @@ fn read_move(reader: &mut Reader, node: &Node) -> Option<MoveDocument> {
         reader.error_with_hint(&node.place, "this move moves nothing", MOVE.hint);
     }
     Some(moved)
+}
+
+/// The turn of a move as written.
+#[derive(Clone, Debug)]
+pub enum RotateDocument {
+    /// An angle, counter-clockwise; in space about the z axis.
+    Angle(WrittenNumber),
+    /// In space, turns about axes, in order.
+    Turns(Vec<TurnDocument>),
+}
+
+impl FromNode for RotateDocument {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        match is_turn(node) {
+            true if reader.is_in_space => read_turns(reader, node).map(Self::Turns),
+            true => {
+                let message = "a turn about an axis lies in space";
+                reader.error_with_hint(
+                    &node.place,
+                    message,
+                    "in the plane, a turn is an angle: rotate: 30",
+                );
+                None
+            }
+            false => Some(Self::Angle(reader.number(node))),
+        }
+    }
+}
+
+/// Reads the factors of a move: two in the plane, and two or three in space.
+impl FromNode for Vec<WrittenNumber> {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        match &node.value {
+            Value::Sequence(entries) if reader.is_in_space && entries.len() == 3 => {
+                read_factors(reader, node, "factors", FACTORS_HINT).map(Into::into)
+            }
+            Value::Sequence(_) => Some(reader.pair(node).into()),
+            _ if reader.is_in_space => {
+                read_factors(reader, node, "factors", FACTORS_HINT).map(Into::into)
+            }
+            _ => Some(reader.pair(node).into()),
+        }
+    }
 }
 
 impl FromNode for WhichPoints {

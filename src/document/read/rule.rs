@@ -13,6 +13,7 @@ use super::generator::{GENERATOR_OF, read_generators};
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::select::{SELECTION_OF, read_select};
+use super::space::{SPACE, read_space};
 use super::{KindTable, OfKind};
 
 /// Keys of a production rule.
@@ -27,11 +28,12 @@ pub(in crate::document) const RULE: Shape = Shape {
 };
 
 /// Keys that only a production rule has.
-const RULE_ALONE: [Member; 8] = keys![
+const RULE_ALONE: [Member; 9] = keys![
     kind: Form::Words(&[Kind::Rule.name()]), "The kind of file; may be left out.";
     extends: Form::File(Shelf::RULES),
         "Another rule to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
+    =SPACE;
     =PARAMS;
     alone initiator: Form::Either(&[Form::File(Shelf::Initiators), ELEMENTS, Form::Mapping(&INITIATOR)]),
         "What the growth starts from: a name from the library, a list of points and elements, or a \
@@ -58,16 +60,21 @@ impl OfKind for RuleDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+        let is_in_space = read_space(reader, fields);
+        reader.is_in_space = is_in_space;
         let initiator = match fields.take("initiator") {
             Some(node) => read_initiator(reader, node),
             None => InitiatorDocument::listed(Vec::new(), fields.place),
         };
-        Self {
+        let rule = Self {
             heading,
+            is_in_space,
             initiator,
             generators: read_generators(reader, fields),
             select: fields.take("select").map(|node| read_select(reader, node)),
             base_element: fields.optional(reader, "base_element"),
-        }
+        };
+        (reader.is_in_space, reader.may_lie_in_space) = (false, false);
+        rule
     }
 }

@@ -1,6 +1,7 @@
 //! Reading of what is written otherwise in space than in the plane: maps and vertices of systems.
 
 use crate::document::ifs::{LinearDocument, TurnDocument};
+use crate::document::mapping::FromNode;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys, way};
@@ -23,11 +24,7 @@ pub(super) fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
     match node.value {
         Value::Number(2.0) => return false,
         Value::Number(3.0) => {}
-        _ => {
-            let message = format!("there is no space of dimension {}", node.place.text());
-            let hint = "space: 3, or space: 2 for the plane";
-            reader.error_with_hint(&node.place, message, hint);
-        }
+        _ => report_dimension(reader, node),
     }
     if let Some(Value::Mapping(view)) = fields.take("view").map(|view| &view.value)
         && let Some((key, _)) = view.iter().find(|(key, _)| key.name == "window")
@@ -36,6 +33,57 @@ pub(super) fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
         reader.error_with_hint(&key.place, "a window lies in the plane", hint);
     }
     true
+}
+
+/// Key that puts a component into space.
+pub(super) const SPACE_OF_COMPONENT: Member = key(
+    "space",
+    Form::Whole(2, Some(3)),
+    "3 for a component in space, which only rules in space have; 2, the plane, if left out.",
+);
+
+/// The space of a component as written, which is checked when it is read.
+#[derive(Clone, Copy, Debug)]
+pub struct InSpace;
+
+impl FromNode for InSpace {
+    /// Reports a component of space in a file of the plane; what follows is read as in space then.
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        match node.value {
+            Value::Number(2.0) => {}
+            Value::Number(3.0) if reader.is_in_space => {}
+            Value::Number(3.0) => {
+                let message =
+                    "this component lies in space, and the file that uses it in the plane";
+                let hint = "write `space: 3` at the top of that file";
+                reader.error_with_hint(&node.place, message, hint);
+                reader.is_in_space = true;
+            }
+            _ => report_dimension(reader, node),
+        }
+        Some(Self)
+    }
+
+    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
+        Some(Self)
+    }
+}
+
+fn report_dimension(reader: &mut Reader, node: &Node) {
+    let message = format!("there is no space of dimension {}", node.place.text());
+    let hint = "space: 3, or space: 2 for the plane";
+    reader.error_with_hint(&node.place, message, hint);
+}
+
+/// Reports a key of a mapping that is known in space only, in a file of the plane.
+pub(super) fn only_in_space(reader: &mut Reader, node: &Node, name: &str) {
+    if !reader.is_in_space
+        && let Value::Mapping(entries) = &node.value
+        && let Some((key, _)) = entries.iter().find(|(key, _)| key.name == name)
+    {
+        let message = format!("`{name}` is known in space only");
+        reader.error_with_hint(&key.place, message, "write `space: 3` at the top");
+    }
 }
 
 /// Keys of a turn of space.

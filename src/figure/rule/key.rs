@@ -86,6 +86,10 @@ pub(super) fn notes(rule: &Rule) -> Vec<String> {
                 Direction::YReflected => "y reflected",
                 Direction::XReflected => "x reflected",
                 Direction::BothReflected => "x and y reflected",
+                Direction::ZReflected => "z reflected",
+                Direction::YZReflected => "y and z reflected",
+                Direction::XZReflected => "x and z reflected",
+                Direction::AllReflected => "all reflected",
             };
             format!("{} {name}", direction.number())
         });

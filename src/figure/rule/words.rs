@@ -2,8 +2,8 @@
 
 use crate::diagnostic::Place;
 use crate::document::{
-    CaseDocument, GeneratorDocument, MoveDocument, RuleDocument, SelectDocument, WhichPoints,
-    WrittenPoint,
+    CaseDocument, GeneratorDocument, MoveDocument, RotateDocument, RuleDocument, SelectDocument,
+    WhichPoints, WrittenPoint,
 };
 use crate::expression::{Dependence, Expression};
 use crate::metadata::Parameter;
@@ -151,21 +151,33 @@ fn moving(moving: &MoveDocument, points: &[usize]) -> String {
             names.collect::<Vec<_>>().join(", ")
         }
     };
-    let pair = |point: &WrittenPoint| format!("({}, {})", point.x.value, point.y.value);
+    let pair = |point: &WrittenPoint| match &point.z {
+        Some(z) => format!("({}, {}, {})", point.x.value, point.y.value, z.value),
+        None => format!("({}, {})", point.x.value, point.y.value),
+    };
     let about = moving.about.as_ref();
     let about = about.map_or(String::new(), |point| format!(" about {}", pair(point)));
     let mut verbs = Vec::new();
-    if let Some([x, y]) = &moving.scale {
-        let (x, y) = (&x.value, &y.value);
-        let factors = if x == y {
-            x.to_string()
+    if let Some([first, others @ ..]) = moving.scale.as_deref() {
+        let is_one = others.iter().all(|other| other.value == first.value);
+        let factors = if is_one {
+            first.value.to_string()
         } else {
-            format!("({x}, {y})")
+            let factors = [first].into_iter().chain(others);
+            let factors: Vec<_> = factors.map(|factor| factor.value.to_string()).collect();
+            format!("({})", factors.join(", "))
         };
         verbs.push(format!("scaled by {factors}"));
     }
-    if let Some(angle) = &moving.rotate {
-        verbs.push(format!("turned by {}°", bound(&angle.value)));
+    match &moving.rotate {
+        Some(RotateDocument::Angle(angle)) => {
+            verbs.push(format!("turned by {}°", bound(&angle.value)));
+        }
+        Some(RotateDocument::Turns(turns)) => verbs.extend(turns.iter().map(|turn| {
+            let angle = bound(&turn.angle.value);
+            format!("turned by {angle}° around {}", pair(&turn.axis))
+        })),
+        None => {}
     }
     if let Some(last) = verbs.last_mut() {
         last.push_str(&about);

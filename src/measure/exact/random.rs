@@ -4,9 +4,9 @@
 use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
 use crate::extent::NoLimit;
-use crate::geometry::Frame;
+use crate::geometry::Point as _;
 use crate::graph::{Alternative, Graph, Replacement};
-use crate::rule::{ElementContext, Generator, Placement, Rule, Selection};
+use crate::rule::{ElementContext, Generator, Placement, Rule, RuleFrame, Selection};
 
 use crate::measure::perron::crossing;
 use crate::saturating::real;
@@ -26,7 +26,7 @@ struct Ratio {
 
 /// Returns the dimension of a random rule, for almost all seeds if copies do not overlap, or the reason why
 /// it is not known.
-pub(super) fn expected_dimension<F: Frame>(graph: &Graph<F>) -> Result<f64, String> {
+pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, String> {
     let mut ratios = Vec::new();
     for object in graph.behaviours() {
         match &object.replacement {
@@ -75,7 +75,7 @@ pub(super) fn expected_dimension<F: Frame>(graph: &Graph<F>) -> Result<f64, Stri
 }
 
 /// Adds the ratio of a fertile element, from a behaviour to an object.
-fn push<F: Frame>(
+fn push<F: RuleFrame>(
     ratios: &mut Vec<Ratio>,
     graph: &Graph<F>,
     place: [usize; 2],
@@ -95,8 +95,8 @@ fn push<F: Frame>(
 }
 
 /// Returns generators with their probabilities.
-fn weighted<'a>(
-    rule: &Rule,
+fn weighted<'a, F: RuleFrame>(
+    rule: &Rule<F>,
     alternatives: &'a [Alternative],
 ) -> Result<Vec<(&'a Alternative, f64)>, String> {
     if let [only] = alternatives {
@@ -116,10 +116,10 @@ fn weighted<'a>(
 }
 
 /// Adds the ratios of a generator for the nodes of a quadrature over its draws.
-fn push_draws<F: Frame>(
+fn push_draws<F: RuleFrame>(
     ratios: &mut Vec<Ratio>,
     graph: &Graph<F>,
-    rule: &Rule,
+    rule: &Rule<F>,
     from: usize,
     (alternative, weight): (&Alternative, f64),
 ) -> Result<(), String> {
@@ -161,7 +161,10 @@ fn push_draws<F: Frame>(
 }
 
 /// Returns the nodes of all variables by slot, with weights: a product of quadratures.
-fn draws(generator: &Generator, moment: &ElementContext) -> Result<Vec<(Vec<f64>, f64)>, String> {
+fn draws<F: RuleFrame>(
+    generator: &Generator<F>,
+    moment: &ElementContext,
+) -> Result<Vec<(Vec<f64>, f64)>, String> {
     let mut draws = vec![(moment.slots().to_vec(), 1.0)];
     for variable in generator.variables() {
         let mut next = Vec::new();

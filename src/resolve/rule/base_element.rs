@@ -4,10 +4,10 @@ use crate::document::{BaseElementDocument, WrittenPoint};
 use crate::geometry::{DVec2, Direction, Frame2};
 use crate::resolve::Resolver;
 
-use super::OfRule;
+use super::{OfRule, ResolvedFrame};
 use crate::rule::BaseElement;
 
-impl Resolver<OfRule> {
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     /// Returns the index of a base element, which is resolved if its place is new.
     pub(super) fn base_element(&mut self, document: &BaseElementDocument) -> usize {
         let known = self
@@ -18,9 +18,38 @@ impl Resolver<OfRule> {
         if let Some((_, known)) = known {
             return *known;
         }
+        let made = F::base_element(self, document);
+        // A valid placeholder prevents further reports at other uses.
+        let number = self.known_or_new(made.unwrap_or_else(F::line));
+        self.kind
+            .base_element_places
+            .push((document.place.clone(), number));
+        number
+    }
+
+    /// Returns the index of a base element. Equal base elements share one index.
+    fn known_or_new(&mut self, made: F::BaseElement) -> usize {
+        let known = self
+            .kind
+            .base_elements
+            .iter()
+            .position(|known| *known == made);
+        known.unwrap_or_else(|| {
+            self.kind.base_elements.push(made);
+            self.kind.base_elements.len() - 1
+        })
+    }
+}
+
+impl Resolver<OfRule<Frame2>> {
+    /// Resolves a base element of the plane.
+    pub(super) fn plane_base_element(
+        &mut self,
+        document: &BaseElementDocument,
+    ) -> Option<BaseElement> {
         let before = self.diagnostics.len();
         let (outline, frame) = (self.outline(document), self.base_frame(document));
-        let made = match (outline, frame) {
+        match (outline, frame) {
             (Some((start, pieces)), Some(frame)) if self.diagnostics.len() == before => {
                 let map = frame.map().inverse();
                 let pieces = pieces.iter().map(|piece| piece.transformed(&map)).collect();
@@ -36,26 +65,7 @@ impl Resolver<OfRule> {
                 made
             }
             _ => None,
-        };
-        // A valid placeholder prevents further reports at other uses.
-        let number = self.known_or_new(made.unwrap_or_else(BaseElement::line));
-        self.kind
-            .base_element_places
-            .push((document.place.clone(), number));
-        number
-    }
-
-    /// Returns the index of a base element. Equal base elements share one index.
-    fn known_or_new(&mut self, made: BaseElement) -> usize {
-        let known = self
-            .kind
-            .base_elements
-            .iter()
-            .position(|known| *known == made);
-        known.unwrap_or_else(|| {
-            self.kind.base_elements.push(made);
-            self.kind.base_elements.len() - 1
-        })
+        }
     }
 
     /// Returns the frame that `from` and `to` define in the outline's own coordinates.
@@ -69,18 +79,21 @@ impl Resolver<OfRule> {
             end(&document.to, DVec2::X)?,
         );
         if from == to {
-            let place = document
-                .from
-                .as_ref()
-                .or(document.to.as_ref())
-                .map(|point| &point.place);
-            let place = place.unwrap_or(&document.place).clone();
-            self.error_with_hint(
-                &place,
-                "`from` and `to` of this base element coincide",
-                "they come to lie on (0, 0) and (1, 0)",
-            );
+            self.report_no_base(document);
         }
         Some(Frame2::between(from, to, Direction::Normal))
+    }
+}
+
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
+    /// Reports a base element whose `from` and `to` are one point.
+    pub(super) fn report_no_base(&mut self, document: &BaseElementDocument) {
+        let place = { document.from.as_ref().or(document.to.as_ref()) }.map(|point| &point.place);
+        let place = place.unwrap_or(&document.place).clone();
+        self.error_with_hint(
+            &place,
+            "`from` and `to` of this base element coincide",
+            "they come to lie on (0, 0) and (1, 0)",
+        );
     }
 }

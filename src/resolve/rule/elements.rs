@@ -1,13 +1,15 @@
 //! Resolution of lists of elements and of the initiator.
 
-use crate::document::{Entry, Listed, RuleDocument, WrittenPoint};
-use crate::expression::Program;
+use std::borrow::Cow;
+
+use crate::document::{Entry, Listed, RuleDocument, Written, WrittenPoint};
+use crate::expression::{Expression, Program};
 use crate::geometry::Direction;
 
-use super::OfRule;
-use crate::resolve::numbers::values;
+use super::values;
+use super::{OfRule, ResolvedFrame};
 use crate::resolve::{Resolver, whole_number};
-use crate::rule::{ListedElement, Part, Placement};
+use crate::rule::{ListedAttitude, ListedElement, Part, Placement};
 
 /// A point of a list, with its number.
 struct ListedPoint {
@@ -15,7 +17,7 @@ struct ListedPoint {
     number: usize,
 }
 
-impl Resolver<OfRule> {
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     /// Resolves a list of elements. Its points are appended to `points` and numbered accordingly. With
     /// `initiator`, which is set for initiators and for seed parts, a chain may return to its first
     /// point.
@@ -48,9 +50,10 @@ impl Resolver<OfRule> {
                     last = Some(start);
                     continue;
                 }
-                Entry::Point(point) => (None, point, None),
-                Entry::Element(listed) => (listed.from.as_ref(), &listed.to, Some(listed)),
+                Entry::Point(point) => (None, Cow::Borrowed(point), None),
+                Entry::Element(listed) => (listed.from.as_ref(), listed.end(), Some(listed)),
             };
+            let to = &*to;
             let mut joined = !elements.is_empty();
             let start = match (from, last.take()) {
                 (Some(from), Some(last)) if from.is_written_like(&last.point) => last,
@@ -79,6 +82,11 @@ impl Resolver<OfRule> {
             let mut element = self.listed_element(listed.map(Box::as_ref));
             element.from = start.number;
             element.to = end.number;
+            if let Some(face) = listed.and_then(|listed| listed.face.as_ref()) {
+                let others = face.iter().skip(2).map(|point| add(points, point).number);
+                let numbers = [start.number, end.number].into_iter().chain(others);
+                element.attitude = ListedAttitude::Face(numbers.collect());
+            }
             element.joined = connected && joined && listed.is_none_or(|listed| listed.connected);
             elements.push(element);
             last = Some(end);
@@ -103,6 +111,7 @@ impl Resolver<OfRule> {
             from: 0,
             to: 0,
             direction: Direction::Normal,
+            attitude: ListedAttitude::Least,
             fertile: true,
             visible: true,
             joined: false,
@@ -115,16 +124,39 @@ impl Resolver<OfRule> {
         if let Some(number) = &listed.direction
             && let Some(value) = self.constant(number)
         {
-            let direction = whole_number(value, 4).and_then(Direction::from_number);
+            let direction = whole_number(value, F::DIRECTIONS).and_then(Direction::from_number);
             if direction.is_none() {
-                self.error_with_hint(
-                    &number.place,
-                    "a direction is 1, 2, 3 or 4",
-                    "1 normal, 2 y reflected, 3 x reflected, 4 both reflected",
-                );
+                let (message, hint) = match F::DIRECTIONS {
+                    4 => (
+                        "a direction is 1, 2, 3 or 4",
+                        "1 normal, 2 y reflected, 3 x reflected, 4 both reflected",
+                    ),
+                    _ => (
+                        "a direction is a number from 1 to 8",
+                        "1 normal, 2 y reflected, 3 x reflected, 4 both; 5 to 8 are these with z reflected",
+                    ),
+                };
+                self.error_with_hint(&number.place, message, hint);
             }
             element.direction = direction.unwrap_or_default();
         }
+        // Numbers among the vectors until these follow the points.
+        element.attitude = match (&listed.normal, &listed.roll) {
+            (Some(normal), _) => ListedAttitude::Normal(self.vector(normal.clone())),
+            (None, Some(roll)) => {
+                let zero = Written {
+                    value: Expression::number(0.0),
+                    place: roll.place.clone(),
+                };
+                ListedAttitude::Roll(self.vector(WrittenPoint {
+                    x: roll.clone(),
+                    y: zero,
+                    z: None,
+                    place: roll.place.clone(),
+                }))
+            }
+            (None, None) => ListedAttitude::Least,
+        };
         if let Some(name) = &listed.generator {
             element.generator = self.generator_named(name);
             if !listed.fertile {
@@ -141,21 +173,44 @@ impl Resolver<OfRule> {
         element
     }
 
-    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<[Program; 2]>, Part) {
+    fn vector(&mut self, vector: WrittenPoint) -> usize {
+        self.kind.vectors.push(vector);
+        self.kind.vectors.len() - 1
+    }
+
+    /// Appends the vectors and angles to which the attitudes of elements refer to the points.
+    pub(super) fn append_vectors<'a>(
+        &mut self,
+        elements: impl Iterator<Item = &'a mut ListedElement>,
+        points: &mut Vec<WrittenPoint>,
+    ) {
+        for element in elements {
+            if let ListedAttitude::Normal(number) | ListedAttitude::Roll(number) =
+                &mut element.attitude
+            {
+                *number += points.len();
+            }
+        }
+        points.append(&mut self.kind.vectors);
+    }
+
+    pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<F::Coordinates>, Part) {
         let initiator = &document.initiator;
         let mut written = Vec::new();
-        let elements = self.elements(
+        let mut elements = self.elements(
             &initiator.entries,
             initiator.closed,
             initiator.connected,
             &mut written,
             true,
         );
-        let unknown = || [Program::unknown(), Program::unknown()];
+        self.append_vectors(elements.iter_mut(), &mut written);
+        let unknown = || F::splat(&Program::unknown());
         let programs = written.iter();
-        let programs = programs.map(|point| self.point(point).unwrap_or_else(unknown));
+        let programs = programs.map(|point| F::point(self, point).unwrap_or_else(unknown));
         let programs: Vec<_> = programs.collect();
-        let points = values(&programs);
+        let points = values::<F>(&programs);
+        self.check_attitudes(&elements, &points, &written);
         for element in &elements {
             if points[element.from] == points[element.to] {
                 let place = &written[element.to].place.clone();

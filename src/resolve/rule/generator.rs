@@ -5,19 +5,22 @@ use std::sync::Arc;
 use crate::diagnostic::Diagnostic;
 use crate::digraph::all_loops_shrink;
 use crate::document::{Entry, GeneratorDocument, Written, WrittenNumber, WrittenPoint};
-use crate::expression::{Program, Scope};
+use crate::expression::Scope;
+use crate::geometry::Point as _;
 
-use super::OfRule;
-use crate::resolve::{Resolver, numbers};
-use crate::rule::{Generator, ListedElement, Origin, Part, Placement, Selection};
+use super::{OfRule, ResolvedFrame};
+use crate::resolve::Resolver;
+use crate::rule::{
+    Generator, ListedAttitude, ListedElement, Origin, Part, Placement, Selection, constant,
+};
 
-impl Resolver<OfRule> {
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     pub(super) fn generator(
         &mut self,
         name: &Written<String>,
         document: &GeneratorDocument,
         moment: &Arc<Scope>,
-    ) -> Generator {
+    ) -> Generator<F> {
         let mut scope = Scope::inside(moment);
         let variables = self.variables(document, &mut scope);
         let mut written = Vec::new();
@@ -38,7 +41,7 @@ impl Resolver<OfRule> {
             } else {
                 let meets =
                     |element: Option<&ListedElement>, point: fn(&ListedElement) -> usize, x| {
-                        element.is_some_and(|element| is_written(&written[point(element)], x, 0.0))
+                        element.is_some_and(|element| is_written(&written[point(element)], x))
                     };
                 let first = part.entries.first().is_none_or(|entry| match entry {
                     Entry::Element(listed) => listed.connected,
@@ -72,16 +75,27 @@ impl Resolver<OfRule> {
             .map(|(number, _)| *number);
         let inner = (0..written.len())
             .filter(|number| seeding[*number] || Some(*number) != first && Some(*number) != last);
-        let moves = self.moves(document, &scope, written.len(), inner.collect());
+        let inner = inner.collect();
+        let mut moves = self.moves(document, &scope, written.len(), inner);
+        let listed = parts.iter_mut().flat_map(|part| &mut part.elements);
+        self.append_vectors(listed, &mut written);
+        for moving in &mut moves {
+            let elements = parts.iter().flat_map(|part| &part.elements);
+            moving.normals = normals_of(elements, &moving.points);
+        }
         let points: Vec<_> = written
             .iter()
-            .map(|point| {
-                [
-                    self.program(&point.x, &scope),
-                    self.program(&point.y, &scope),
-                ]
-            })
+            .map(|point| F::point_in(self, point, &scope))
             .collect();
+        // Moves may change what is written.
+        if moves.is_empty() {
+            let known = points.iter().map(constant::<F>);
+            let known: Vec<_> = known
+                .map(|it| it.unwrap_or(F::Point::splat(f64::NAN)))
+                .collect();
+            let elements = parts.iter().flat_map(|part| part.elements.iter().cloned());
+            self.check_attitudes(&elements.collect::<Vec<_>>(), &known, &written);
+        }
         self.doubt_growth(&parts, &points, &written);
         // Moves may separate points that coincide as written.
         if document.moves.is_empty() {
@@ -101,10 +115,15 @@ impl Resolver<OfRule> {
     }
 
     /// Warns of elements without length.
-    fn doubt_length(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[WrittenPoint]) {
+    fn doubt_length(
+        &mut self,
+        parts: &[Part],
+        points: &[F::Coordinates],
+        written: &[WrittenPoint],
+    ) {
         for element in parts.iter().flat_map(|part| &part.elements) {
-            let from = numbers::value(&points[element.from]);
-            if from.is_some() && from == numbers::value(&points[element.to]) {
+            let from = constant::<F>(&points[element.from]);
+            if from.is_some() && from == constant::<F>(&points[element.to]) {
                 let place = &written[element.to].place;
                 self.warn(
                     place,
@@ -116,8 +135,13 @@ impl Resolver<OfRule> {
     }
 
     /// Collects warnings of fertile elements that are not shorter than those they replace.
-    fn doubt_growth(&mut self, parts: &[Part], points: &[[Program; 2]], written: &[WrittenPoint]) {
-        let value = |number: usize| numbers::value(&points[number]);
+    fn doubt_growth(
+        &mut self,
+        parts: &[Part],
+        points: &[F::Coordinates],
+        written: &[WrittenPoint],
+    ) {
+        let value = |number: usize| constant::<F>(&points[number]);
         let relative = parts
             .iter()
             .filter(|part| part.placement != Placement::SeedsAsInitiator);
@@ -148,9 +172,31 @@ impl Resolver<OfRule> {
     }
 }
 
+/// Returns the numbers of the normals of elements both ends of which are among some points.
+fn normals_of<'a>(
+    elements: impl Iterator<Item = &'a ListedElement>,
+    points: &[usize],
+) -> Vec<usize> {
+    let moves = |element: &&ListedElement| {
+        [element.from, element.to]
+            .iter()
+            .all(|end| points.contains(end))
+    };
+    let normals = elements
+        .filter(moves)
+        .filter_map(|element| match element.attitude {
+            ListedAttitude::Normal(number) => Some(number),
+            _ => None,
+        });
+    normals.collect()
+}
+
 /// Returns whether the lengths along every cycle of generators have a product below 1, for every choice
 /// that the selection admits: the largest products of lengths over all paths converge (Bellman 1958).
-pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> bool {
+pub(super) fn loops_shrink<F: ResolvedFrame>(
+    generators: &[Generator<F>],
+    selection: &Selection,
+) -> bool {
     let candidates = selection.candidates();
     let mut ways = Vec::new();
     for (from, generator) in generators.iter().enumerate() {
@@ -159,7 +205,7 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
         let elements = relative.flat_map(|part| &part.elements);
         for element in elements.filter(|element| element.fertile) {
             let ends = [element.from, element.to];
-            let [Some(start), Some(end)] = ends.map(|it| numbers::value(&generator.points[it]))
+            let [Some(start), Some(end)] = ends.map(|it| constant::<F>(&generator.points[it]))
             else {
                 return false;
             };
@@ -173,13 +219,13 @@ pub(super) fn loops_shrink(generators: &[Generator], selection: &Selection) -> b
     all_loops_shrink(generators.len(), &ways, generators.len())
 }
 
-/// Returns whether the coordinates of a point are written as exactly these constants.
-fn is_written(point: &WrittenPoint, x: f64, y: f64) -> bool {
+/// Returns whether the first coordinate of a point is written as exactly this constant, and the others as 0.
+fn is_written(point: &WrittenPoint, x: f64) -> bool {
     let is = |number: &WrittenNumber, value: f64| {
         number
             .value
             .compile(&Scope::new())
             .is_ok_and(|program| program.as_constant() == Some(value))
     };
-    is(&point.x, x) && is(&point.y, y)
+    is(&point.x, x) && is(&point.y, 0.0) && point.z.as_ref().is_none_or(|z| is(z, 0.0))
 }

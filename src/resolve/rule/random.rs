@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::document::{GeneratorDocument, MoveDocument, WhichPoints, WrittenNumber, WrittenPoint};
 use crate::expression::{Program, Scope, Type, is_name, is_reserved};
 
-use super::OfRule;
+use super::{OfRule, ResolvedFrame};
 use crate::draws::{Distribution, Variable};
 use crate::resolve::{Resolver, whole_number};
 use crate::rule::{ElementContext, Move};
@@ -19,7 +19,7 @@ struct Shared {
     inner: Arc<[usize]>,
 }
 
-impl Resolver<OfRule> {
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     pub(super) fn variables(
         &mut self,
         document: &GeneratorDocument,
@@ -83,7 +83,7 @@ impl Resolver<OfRule> {
         scope: &Scope,
         count: usize,
         inner: Vec<usize>,
-    ) -> Vec<Move> {
+    ) -> Vec<Move<F>> {
         if let Some(moving) = document.moves.get(MAX_MOVES) {
             let message = format!(
                 "a generator has 1,000 moves at most, this one has {}",
@@ -102,22 +102,14 @@ impl Resolver<OfRule> {
             .collect()
     }
 
-    fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &Shared) -> Move {
-        let zero = || Program::constant(0.0);
-        let mut pair = |point: &Option<WrittenPoint>| {
-            point.as_ref().map_or([zero(), zero()], |point| {
-                [self.program(&point.x, scope), self.program(&point.y, scope)]
-            })
+    fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &Shared) -> Move<F> {
+        let mut vector = |point: &Option<WrittenPoint>| match point {
+            Some(point) => F::point_in(self, point, scope),
+            None => F::splat(&Program::constant(0.0)),
         };
-        let (shift, about) = (pair(&document.shift), pair(&document.about));
-        let scale = match &document.scale {
-            Some([x, y]) => [self.program(x, scope), self.program(y, scope)],
-            None => [Program::constant(1.0), Program::constant(1.0)],
-        };
-        let rotate = document
-            .rotate
-            .as_ref()
-            .map_or_else(zero, |number| self.program(number, scope));
+        let (shift, about) = (vector(&document.shift), vector(&document.about));
+        let scale = F::factors(self, document.scale.as_deref().unwrap_or_default(), scope);
+        let rotate = F::turns(self, document, scope);
         let points = match &document.points {
             WhichPoints::All => Arc::clone(&shared.all),
             WhichPoints::Inner => Arc::clone(&shared.inner),
@@ -148,6 +140,7 @@ impl Resolver<OfRule> {
             shift,
             about,
             points,
+            normals: Vec::new(),
         }
     }
 }

@@ -4,12 +4,12 @@ use crate::diagnostic::{did_you_mean, listed};
 use crate::document::{CaseDocument, Entry, RuleDocument, SelectDocument, Written, WrittenNumber};
 use crate::expression::Scope;
 
-use super::OfRule;
+use super::{OfRule, ResolvedFrame};
 use crate::diagnostic::Place;
 use crate::resolve::{MAX_MISTAKES, Resolver};
 use crate::rule::Selection;
 
-impl Resolver<OfRule> {
+impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     pub(super) fn generator_named(&mut self, name: &Written<String>) -> Option<usize> {
         let found = self.kind.generator_numbers.get(&name.value).copied();
         if found.is_none()

@@ -1,0 +1,239 @@
+//! Laws of rules in space.
+
+use std::sync::Arc;
+
+use kfrac::Count;
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::document::Document;
+use kfrac::geometry::{
+    Attitude, Bounds, DMat3, DVec3, Direction, Frame as _, Frame2, Frame3, Outline as _,
+};
+use kfrac::graph::Graph;
+use kfrac::grow::{Element, Elements, FractalInfo, Growth};
+use kfrac::model::Model;
+use kfrac::rule::{Rule, RuleFrame};
+use proptest::prelude::*;
+
+use super::rules::{self, Features};
+use super::{lists, model, read};
+
+fn read_in_space(text: &str) -> Arc<Rule<Frame3>> {
+    match model(text) {
+        Model::RuleInSpace(rule) => rule,
+        other => panic!("{:?} {text}", other.kind()),
+    }
+}
+
+type Listed<F> = Vec<(FractalInfo, Element<F>)>;
+
+fn grow<F: RuleFrame>(rule: &Arc<Rule<F>>, steps: u32, seed: u64) -> Listed<F> {
+    let graph = Graph::compile(rule, steps).unwrap();
+    elements(&graph, steps, seed)
+}
+
+fn elements<F: RuleFrame>(graph: &Graph<F>, steps: u32, seed: u64) -> Listed<F> {
+    let growth = Growth::steps(steps).seed(seed).max_elements(20_000);
+    Elements::of(graph, &growth).map_while(Result::ok).collect()
+}
+
+/// Asserts that elements in space are those of the plane, to the last bit.
+fn assert_same(plane: &Listed<Frame2>, space: &Listed<Frame3>, name: &str) {
+    assert_eq!(plane.len(), space.len(), "{name}");
+    for ((fractal, plane), (other, space)) in plane.iter().zip(space) {
+        assert_eq!(fractal, other, "{name}");
+        let (own, linear) = (plane.frame.map(), space.frame.map().matrix3);
+        assert_eq!(linear.x_axis, own.matrix2.x_axis.extend(0.0), "{name}");
+        assert_eq!(linear.y_axis, own.matrix2.y_axis.extend(0.0), "{name}");
+        let origin = own.translation.extend(0.0);
+        assert_eq!(space.frame.origin(), origin, "{name}");
+        assert_eq!(space.frame.direction(), plane.frame.direction(), "{name}");
+        assert_eq!(space.length, plane.length, "{name}");
+        assert_eq!(space.index, plane.index, "{name}");
+        // Which outlines join depends on the base element.
+        assert_eq!(space.fertile, plane.fertile, "{name}");
+        assert_eq!(space.born, plane.born, "{name}");
+    }
+}
+
+/// Returns a file in block style without a key at the top.
+fn without(text: &str, key: &str) -> String {
+    let mut left_out = false;
+    let mut kept = String::new();
+    for line in text.lines() {
+        if !line.starts_with([' ', '-']) {
+            left_out = line.starts_with(key);
+        }
+        if !left_out {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+#[test]
+fn the_rules_of_the_library_are_the_same_in_space() {
+    let catalogue = Catalogue::embedded();
+    let mut compared = 0;
+    for entry in catalogue.entries() {
+        if entry.shelf != Shelf::RULES {
+            continue;
+        }
+        let source = catalogue.open(&entry).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        if document.resolve(&[]).unwrap().0.is_in_space() {
+            continue;
+        }
+        let text = without(&document.to_yaml(), "view:");
+        let plane = read(&text);
+        let space = read_in_space(&format!("space: 3\n{text}"));
+        for steps in [0, 1, 3, 4] {
+            let (plane, space) = (grow(&plane, steps, 7), grow(&space, steps, 7));
+            assert_same(&plane, &space, &entry.name);
+            compared += plane.len();
+        }
+    }
+    assert!(compared > 50_000, "{compared}");
+}
+
+/// Returns a random rule of the plane as one in space: points get a third coordinate, elements directions from 1 to 8 and
+/// attitudes, and turns an axis.
+fn lifted(text: &str) -> String {
+    let mut lifted = String::from("space: 3\n");
+    let third = ["0", "1/5", "-1/3", "2/7", "1/2"];
+    for (number, line) in text.lines().enumerate() {
+        let mut line = line.replace(
+            "rotate: tilt",
+            "rotate: [{axis: [1, 2, -1], angle: tilt}, {y: 20}]",
+        );
+        let is_point = line.trim_start().starts_with("- [") || line.contains("to: [");
+        let is_end = line.contains("[0, 0]") || line.contains("[1, 0]");
+        if is_point && !is_end {
+            let at = line.find("to: [").map_or(0, |at| at + 5);
+            let end = at + line[at..].find(']').unwrap();
+            line.insert_str(end, &format!(", {}", third[number % third.len()]));
+        }
+        if let Some(at) = line.find("direction: ") {
+            let digit = at + "direction: ".len();
+            let own: usize = line[digit..=digit].parse().unwrap();
+            let direction = own + 4 * (number % 2);
+            let attitude = ["", ", roll: 25", ", normal: [1/9, 1, 2]"][number % 3];
+            line.replace_range(digit..=digit, &format!("{direction}{attitude}"));
+        }
+        lifted.push_str(&line);
+        lifted.push('\n');
+    }
+    lifted
+}
+
+fn close(a: DVec3, b: DVec3) -> bool {
+    a.distance(b) <= 1e-11 * (1.0 + a.length())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A rule of the plane has the same elements in space.
+    #[test]
+    fn a_plane_rule_is_the_same_in_space(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
+        let space = read_in_space(&format!("space: 3\n{text}"));
+        assert_same(&grow(&read(&text), steps, seed), &grow(&space, steps, seed), &text);
+    }
+
+    /// The walk over the graph agrees with Kaandorp's algorithm on lists.
+    #[test]
+    fn the_walk_agrees_with_kaandorps_lists(text in rules::rule(Features::ALL), steps in 0..4u32, seed in 0..3u64) {
+        let rule = read_in_space(&lifted(&text));
+        let graph = Graph::compile(&rule, steps).unwrap();
+        let walked = elements(&graph, steps, seed);
+        let grown = lists::grow(&rule, steps, seed);
+        let items = grown.all().into_iter().flat_map(|list| list.items.iter().map(|item| (list.age, item)));
+        let items: Vec<_> = items.collect();
+        prop_assert_eq!(walked.len(), items.len());
+        for ((fractal, element), (age, item)) in walked.iter().zip(items) {
+            prop_assert_eq!(fractal.age, age);
+            prop_assert_eq!(element.frame.direction(), item.frame.direction());
+            let (own, other) = (element.frame.map().matrix3, item.frame.map().matrix3);
+            prop_assert!(own.abs_diff_eq(other, 1e-11), "{} {}", own, other);
+            prop_assert!(close(element.frame.origin(), item.frame.origin()));
+            prop_assert!((element.length - item.length).abs() < 1e-12);
+            prop_assert_eq!(element.fertile, item.listed.fertile);
+            prop_assert_eq!(element.born, item.born);
+            // Frames are similarities, mirrored as their directions say.
+            let ratio = element.frame.length();
+            let square = own.transpose() * own / (ratio * ratio);
+            prop_assert!(square.abs_diff_eq(DMat3::IDENTITY, 1e-9), "{}", square);
+            prop_assert_eq!(own.determinant() < 0.0, element.frame.direction().is_mirrored());
+        }
+    }
+
+    /// The forecast of a regular rule agrees with the walk, in numbers, length and surface.
+    #[test]
+    fn the_forecast_agrees_with_the_walk(text in rules::rule(Features::REGULAR), steps in 0..4u32) {
+        let text = lifted(&text) + "base_element: {solid: cube}\n";
+        let graph = Graph::compile(&read_in_space(&text), steps).unwrap();
+        let Some(mut forecast) = graph.forecast() else { return Ok(()) };
+        for _ in 0..steps {
+            prop_assert!(forecast.advance());
+        }
+        let level = forecast.level();
+        let walked = elements(&graph, steps, 0);
+        prop_assert_eq!(level.elements, Count::from(walked.len()));
+        let sum = |of: fn(f64) -> f64| {
+            let visible = walked.iter().filter(|(_, it)| graph.objects()[it.object].visible);
+            visible.map(|(_, element)| of(element.frame.length())).sum::<f64>()
+        };
+        let all: f64 = walked.iter().map(|(_, element)| element.frame.length()).sum();
+        if let Some(length) = level.length {
+            prop_assert!((length - all).abs() < 1e-9 * (1.0 + all));
+        }
+        if let Some(area) = level.area {
+            let surface = sum(|length| 6.0 * length * length);
+            prop_assert!((area - surface).abs() < 1e-9 * (1.0 + surface), "{} {}", area, surface);
+        }
+    }
+
+    /// The bounds computed from the graph are those of the base elements of the walk.
+    #[test]
+    fn the_bounds_agree_with_the_walk(text in rules::rule(Features::DETERMINISTIC), steps in 0..4u32) {
+        let text = lifted(&text) + "base_element: {solid: tetrahedron}\n";
+        let graph = Graph::compile(&read_in_space(&text), steps).unwrap();
+        let Some(bounds) = graph.bounds(steps) else { return Ok(()) };
+        let mut walked = Bounds::EMPTY;
+        for (_, element) in elements(&graph, steps, 0) {
+            if graph.objects()[element.object].visible {
+                graph.base_elements()[0].add_to(&mut walked, &element.frame, 0.0);
+            }
+        }
+        prop_assert!(close(bounds.min(), walked.min()) && close(bounds.max(), walked.max()),
+            "{:?} {:?}", bounds, walked);
+    }
+
+    /// Growing commutes with a similarity of the initiator.
+    #[test]
+    fn growing_commutes_with_a_similarity(
+        text in rules::rule(Features { seeds: false, ..Features::ALL }),
+        steps in 0..4u32,
+        numbers in proptest::array::uniform3(-1.0..1.0f64),
+    ) {
+        let along = DVec3::from(numbers) + DVec3::new(0.0, 0.0, 1.5);
+        let similarity = Frame3::between(DVec3::X, DVec3::X + along, Direction::Normal, Attitude::Roll(40.0));
+        let lifted = lifted(&text);
+        let (_, generators) = lifted.split_once("generators:").unwrap();
+        let walk_of = |frame: &Frame3| {
+            let at = |point: DVec3| format!("[{}, {}, {}]", point.x, point.y, point.z);
+            let [from, to] = frame.ends().map(at);
+            let normal = at(frame.map().matrix3.z_axis);
+            let initiator = format!("initiator: [{{from: {from}, to: {to}, normal: {normal}}}]");
+            grow(&read_in_space(&format!("space: 3\n{initiator}\ngenerators:{generators}")), steps, 1)
+        };
+        let (plain, moved) = (walk_of(&Frame3::UNIT), walk_of(&similarity));
+        prop_assert_eq!(plain.len(), moved.len());
+        for ((_, plain), (_, moved)) in plain.iter().zip(&moved) {
+            let expected = similarity.compose(&plain.frame);
+            let (own, other) = (expected.map().matrix3, moved.frame.map().matrix3);
+            prop_assert!(own.abs_diff_eq(other, 1e-10), "{} {}", own, other);
+            prop_assert!(close(expected.origin(), moved.frame.origin()));
+        }
+    }
+}
