@@ -22,6 +22,11 @@ pub trait Linear:
     #[must_use]
     fn determinant(&self) -> f64;
 
+    /// Returns the product of the transposed map with a vector: its products with other vectors are those of `vector`
+    /// with their images.
+    #[must_use]
+    fn transposed(&self, vector: Self::Point) -> Self::Point;
+
     /// Returns the largest factor by which the map lengthens a vector: its largest singular value.
     #[must_use]
     fn stretch(&self) -> f64;
@@ -42,6 +47,11 @@ impl Linear for DMat2 {
 
     fn determinant(&self) -> f64 {
         self.determinant()
+    }
+
+    #[inline]
+    fn transposed(&self, vector: DVec2) -> DVec2 {
+        self.transpose() * vector
     }
 
     fn stretch(&self) -> f64 {
@@ -78,6 +88,11 @@ impl Linear for DMat3 {
 
     fn determinant(&self) -> f64 {
         self.determinant()
+    }
+
+    #[inline]
+    fn transposed(&self, vector: DVec3) -> DVec3 {
+        self.transpose() * vector
     }
 
     fn stretch(&self) -> f64 {
