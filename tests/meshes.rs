@@ -1,5 +1,7 @@
 //! Meshes of sets in space have the faces, edges, surfaces and volumes of their elements.
 
+mod scenes;
+
 use std::collections::BTreeMap;
 use std::num::NonZero;
 

@@ -141,6 +141,8 @@ Examples:
       Writes points with colours and normals for other programs
   kfrac grow menger --steps 60 -o menger.usda
       Writes 20^60 cubes as a small scene of nested instances for other programs
+  kfrac grow menger --steps 4 --size 80mm -o menger.3mf
+      Writes 160,000 cubes as components for a printer; a .glb is for viewers, a .pov for POV-Ray
   kfrac grow menger --steps 3 --mesh shell -o menger.stl
       Writes the surface of 8,000 cubes for a printer
 ";

@@ -99,9 +99,23 @@ impl GrowthArguments {
         graph: &Graph<F>,
         loaded: &Loaded,
     ) -> Result<(), Failure> {
+        self.check_or(steps, graph, loaded, "")
+    }
+
+    /// Returns an error, which ends with another way, if a step has too many elements, where the number is known in
+    /// advance.
+    pub(super) fn check_or<F: Frame>(
+        &self,
+        steps: u32,
+        graph: &Graph<F>,
+        loaded: &Loaded,
+        otherwise: &str,
+    ) -> Result<(), Failure> {
         let most = self.max_elements();
         let checked = graph.check_size(steps, most);
-        checked.map_err(|error| anyhow!(too_large(&error, most, &loaded.name, steps, "")))?;
+        checked.map_err(|error| {
+            anyhow!(too_large(&error, most, &loaded.name, steps, "") + otherwise)
+        })?;
         Ok(())
     }
 

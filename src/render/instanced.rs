@@ -9,13 +9,19 @@
 
 mod drawing;
 mod ends;
+mod file;
+mod glb;
+mod nested;
+mod pov;
 mod refusal;
 mod symbols;
 mod text;
+#[cfg(feature = "threemf")]
+mod threemf;
 mod usda;
 
+pub use file::{SceneFormat, write_scene};
 pub use refusal::NotInstanced;
-pub use usda::write_usda;
 
 use std::io::Write;
 

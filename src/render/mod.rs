@@ -60,7 +60,7 @@ pub use canvas::{Canvas, NoRoom, Size};
 pub use density::{Density, Shades, Tone, write_density};
 pub(crate) use drawing::Drawing;
 pub use error::{NoDetail, NoZoom, Remedy, RenderError};
-pub use instanced::{NotInstanced, write_usda};
+pub use instanced::{NotInstanced, SceneFormat, write_scene};
 pub use mesh::{MeshFormat, MeshOptions, Meshed, write_mesh};
 pub use options::{Detail, Format, Labels, Options, PngEncoding};
 pub(crate) use paint::{FINE, Paint, Pen, Position, Stroke, pen, position};

@@ -6,7 +6,8 @@ use crate::common;
 use kfrac::geometry::{DAffine3, DMat3, DVec3, Frame3};
 use kfrac::graph::Graph;
 use kfrac::grow::{Elements, Growth};
-use kfrac::render::{NotInstanced, Options, RenderError, write_usda};
+use kfrac::render::space::SpaceOptions;
+use kfrac::render::{NotInstanced, Options, RenderError, SceneFormat, write_scene};
 use kfrac::style::ColorBy;
 
 fn graph(name: &str, records_last: bool) -> (Options, Graph<Frame3>) {
@@ -17,7 +18,16 @@ fn graph(name: &str, records_last: bool) -> (Options, Graph<Frame3>) {
 
 fn scene(graph: &Graph<Frame3>, steps: u32, options: &Options) -> String {
     let mut bytes = Vec::new();
-    write_usda(graph, steps, options, None, &mut bytes).unwrap();
+    write_scene(
+        graph,
+        steps,
+        options,
+        &SpaceOptions::default(),
+        SceneFormat::Usda,
+        None,
+        &mut bytes,
+    )
+    .unwrap();
     String::from_utf8(bytes).unwrap()
 }
 
@@ -130,7 +140,16 @@ fn a_scene_grows_with_the_steps_not_with_the_elements() {
 fn colours_that_distinguish_elements_of_one_object_are_refused() {
     let (mut options, graph) = graph("menger", false);
     options.style.color_by = ColorBy::Index;
-    let error = write_usda(&graph, 2, &options, None, &mut Vec::new()).unwrap_err();
+    let error = write_scene(
+        &graph,
+        2,
+        &options,
+        &SpaceOptions::default(),
+        SceneFormat::Usda,
+        None,
+        &mut Vec::new(),
+    )
+    .unwrap_err();
     assert!(
         matches!(
             error,

@@ -50,8 +50,8 @@ pub(super) enum Format {
 /// Format of elements in space for other programs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum SceneFormat {
-    /// Nested instances in Universal Scene Description.
-    Usda,
+    /// Nested instances.
+    Nested(render::SceneFormat),
     /// Mesh of the elements of a step.
     Mesh(MeshFormat),
 }
@@ -71,7 +71,22 @@ impl Named for Format {
         ("json", Self::Table(export::TableFormat::JsonLines)),
         ("jsonl", Self::Table(export::TableFormat::JsonLines)),
         ("ndjson", Self::Table(export::TableFormat::JsonLines)),
-        ("usda", Self::Scene(SceneFormat::Usda)),
+        (
+            "usda",
+            Self::Scene(SceneFormat::Nested(render::SceneFormat::Usda)),
+        ),
+        (
+            "3mf",
+            Self::Scene(SceneFormat::Nested(render::SceneFormat::ThreeMf)),
+        ),
+        (
+            "glb",
+            Self::Scene(SceneFormat::Nested(render::SceneFormat::Glb)),
+        ),
+        (
+            "pov",
+            Self::Scene(SceneFormat::Nested(render::SceneFormat::Pov)),
+        ),
         ("stl", Self::Scene(SceneFormat::Mesh(MeshFormat::Stl))),
         ("obj", Self::Scene(SceneFormat::Mesh(MeshFormat::Obj))),
         ("ply", Self::PLY),

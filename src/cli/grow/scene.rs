@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::render::{self, MeshOptions, write_mesh, write_usda};
+use crate::render::{self, MeshOptions, Size, Unit, write_mesh, write_scene};
 use crate::style::{ColorBy, Named};
 
 use super::super::labels::labels;
@@ -64,21 +64,37 @@ pub(super) fn write(
     let all = own.into_iter().chain(picture.options());
     let options = render::Options {
         style,
+        view: picture.view(heading),
+        size: arguments.size.size,
+        unit: arguments.size.unit,
         threads: growth.threads(),
         labels: labels(loaded, &format!("Step {steps}"), "grow", all),
         ..render::Options::default()
     };
+    let takes_length = format == SceneFormat::Nested(render::SceneFormat::ThreeMf)
+        && matches!(arguments.size.size, Size::Long(_));
+    if arguments.size.unit != Unit::Pixel && !takes_length {
+        let message = "only a .3mf has a size in millimetres, that of its long side: --size 80mm";
+        return Err(Failure::Usage(message.into()));
+    }
     let default = arguments.rule.file("", extension);
     let path = arguments.output.as_ref().unwrap_or(&default);
     let step = format!("step {steps} of {name}");
     let (summary, bytes) = match format {
-        SceneFormat::Usda => {
+        SceneFormat::Nested(format) => {
             if arguments.scene.is_asked() {
                 let message = "--mesh applies to meshes: write a .stl, .obj or .ply";
                 return Err(Failure::Usage(message.into()));
             }
+            if !format.stays_nested() {
+                let otherwise = format!(
+                    "; programs that read a .{extension} expand it, and a .usda stays nested"
+                );
+                growth.check_or(levels, &graph, loaded, &otherwise)?;
+            }
+            let space = arguments.space.to_options()?;
             let (scene, bytes) = output::write(path, growth.quiet, |mut out, _| {
-                write_usda(&graph, levels, &options, None, &mut out)
+                write_scene(&graph, levels, &options, &space, format, None, &mut out)
                     .map_err(|error| output::explain(error, path))
             })?;
             let objects = readable::counted(&scene.symbols.into(), "object");

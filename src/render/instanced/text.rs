@@ -1,4 +1,4 @@
-//! Numbers, maps and names as SVG text.
+//! Numbers, maps, names and strings as text.
 
 use std::fmt::Write as _;
 
@@ -180,6 +180,36 @@ pub(super) fn name(mut number: u64) -> String {
         number -= 1;
     }
     letters.iter().rev().copied().map(char::from).collect()
+}
+
+/// Returns a text as a string in double quotes, as in C, of one line; other control characters are left out.
+pub(super) fn quoted(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            '\n' => quoted.push_str("\\n"),
+            '\r' => quoted.push_str("\\r"),
+            '\t' => quoted.push_str("\\t"),
+            _ if letter.is_control() => {}
+            _ => quoted.push(letter),
+        }
+    }
+    quoted + "\""
+}
+
+/// Returns numbers in brackets, with commas between them.
+pub(super) fn list(brackets: [char; 2], numbers: &[f64]) -> String {
+    let mut text = String::from(brackets[0]);
+    for (place, &number) in numbers.iter().enumerate() {
+        if place > 0 {
+            text.push(',');
+        }
+        // Writing to a string cannot fail. The addition turns -0 into 0.
+        let _ = write!(text, "{}", number + 0.0);
+    }
+    text.push(brackets[1]);
+    text
 }
 
 #[cfg(test)]

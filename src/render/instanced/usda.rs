@@ -5,181 +5,66 @@
 //! file and of the scene in memory grow with the graph and the number of steps, not with the number of elements
 //! (Hart 1992, section 2). y points up, and matrices act on rows.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::io::{self, Write};
 
-use crate::geometry::{DAffine3, DVec3, Frame3, Mesh, Round, Solid};
-use crate::graph::{Chain, Graph};
-use crate::grow::WalkError;
-use crate::instancing::Appearance;
+use crate::geometry::{DAffine3, DVec3, Mesh, Round, Solid};
 use crate::style::Colour;
 
-use super::super::colours::Colours;
-use super::super::error::RenderError;
-use super::super::options::Options;
-use super::super::picture::Instanced;
-use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
-use super::{MAX_SYMBOLS, NotInstanced, refusal};
+use super::super::options::Labels;
+use super::nested::{Content, Nest, Nested};
+use super::text::{list, quoted};
 
-/// Writes approximant `steps` of a set in space as nested instances: a scene in Universal Scene Description, as
-/// text. Of the options, the style's colours and the labels apply.
-///
-/// # Errors
-///
-/// If instances cannot represent the approximant or its colours, if it is cancelled, or if `out` fails.
-pub fn write_usda(
-    graph: &Graph<Frame3>,
-    steps: u32,
-    options: &Options,
-    cancel: Option<&AtomicBool>,
-    out: &mut impl Write,
-) -> Result<Instanced, RenderError> {
-    let style = &options.style;
-    refusal::check(graph, style, steps)?;
-    let colours = Colours::of(style, graph, steps)?;
-    let start = Aspect {
-        // The initiator replaces a virtual object that has one more step.
-        steps: steps + 1,
-        part: Part::All,
-        dress: Dress(Appearance::NONE),
-    };
-    let symbols = Symbols::new(graph, style.color_by, colours.classes());
-    let initiator = graph.initiator(steps);
-    let all = symbols.collect(initiator, [start].into_iter(), MAX_SYMBOLS);
-    let all = all.ok_or(NotInstanced::TooManySymbols)?;
-    let mut scene = Scene {
-        graph,
-        steps,
-        options,
-        colours,
-        symbols,
-        written: BTreeMap::new(),
-        shapes: BTreeMap::new(),
-        text: String::new(),
-    };
-    scene.head();
-    for symbol in all {
-        if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
-            return Err(RenderError::Walk(WalkError::Cancelled));
-        }
-        scene.define(symbol);
-        out.write_all(scene.text.as_bytes())?;
-        scene.text.clear();
+/// Writes nested instances as a scene.
+pub(super) fn write(nested: &Nested<'_>, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(head(labels).as_bytes())?;
+    for (number, (_, colour)) in nested.shapes.iter().enumerate() {
+        let shape = shape(nested.solid(number), *colour);
+        write!(out, "class Xform \"e{number}\"\n{{\n{shape}}}\n\n")?;
     }
-    let (world, expanded) = scene.children(initiator, &start);
-    writeln!(out, "{}def Xform \"World\"\n{{\n{world}}}", scene.text)?;
-    Ok(Instanced {
-        symbols: scene.written.len() as u64,
-        expanded,
-    })
+    let Some((whole, nests)) = nested.nests.split_last() else {
+        return Ok(());
+    };
+    for (number, nest) in nests.iter().enumerate() {
+        let instances = instances(nest);
+        write!(out, "class Xform \"o{number}\"\n{{\n{instances}}}\n\n")?;
+    }
+    writeln!(out, "def Xform \"World\"\n{{\n{}}}", instances(whole))
 }
 
-/// Prim that represents a symbol.
-#[derive(Clone, Copy)]
-struct Prim {
-    number: usize,
-    /// Number of elements and instances to which it expands, including itself.
-    expanded: f64,
+fn head(labels: &Labels) -> String {
+    let about = [
+        ("title", &labels.title),
+        ("description", &labels.description),
+        ("provenance", &labels.provenance),
+    ];
+    let about = about.into_iter().filter(|(_, text)| !text.is_empty());
+    let about: String = about
+        .map(|(name, text)| format!("        string {name} = {}\n", quoted(text)))
+        .collect();
+    format!(
+        "#usda 1.0\n(\n    customLayerData = {{\n{about}    }}\n    defaultPrim = \"World\"\n    \
+         metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+    )
 }
 
-/// Scene that is being written.
-struct Scene<'a> {
-    graph: &'a Graph<Frame3>,
-    steps: u32,
-    options: &'a Options,
-    colours: Colours<'a>,
-    symbols: Symbols<'a, Frame3>,
-    /// Prims of symbols that are not empty.
-    written: BTreeMap<Symbol, Prim>,
-    /// Numbers of prims of base elements, by number and colour.
-    shapes: BTreeMap<(usize, [u8; 4]), usize>,
-    text: String,
-}
-
-impl Scene<'_> {
-    fn head(&mut self) {
-        let labels = &self.options.labels;
-        let about = [
-            ("title", &labels.title),
-            ("description", &labels.description),
-            ("provenance", &labels.provenance),
-        ];
-        let about = about.into_iter().filter(|(_, text)| !text.is_empty());
-        let about: String = about
-            .map(|(name, text)| format!("        string {name} = {}\n", quoted(text)))
-            .collect();
-        self.text = format!(
-            "#usda 1.0\n(\n    customLayerData = {{\n{about}    }}\n    defaultPrim = \"World\"\n    \
-             metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+/// Returns references to the prims of the instances of a nest.
+fn instances(nest: &Nest) -> String {
+    let mut text = String::new();
+    for (number, instance) in nest.instances.iter().enumerate() {
+        let target = match instance.content {
+            Content::Nest(number) => format!("o{number}"),
+            Content::Shape(number) => format!("e{number}"),
+        };
+        let map = matrix(&instance.map);
+        // A brace that closes stands on a line of its own.
+        let _ = write!(
+            text,
+            "def \"i{number}\"(instanceable=true;references=</{target}>){{\nmatrix4d xformOp:transform={map}\n\
+             uniform token[] xformOpOrder=[\"xformOp:transform\"]\n}}\n"
         );
     }
-
-    /// Writes the prim of a symbol of an object that is replaced, unless nothing is drawn for it.
-    fn define(&mut self, symbol: Symbol) {
-        let Some(successor) = self.symbols.successor(&symbol) else {
-            return;
-        };
-        let (children, expanded) = self.children(&successor.body, &symbol.aspect);
-        if children.is_empty() {
-            return;
-        }
-        let prim = Prim {
-            number: self.written.len(),
-            expanded: expanded + 1.0,
-        };
-        let name = prim.number;
-        self.text
-            .push_str(&format!("class Xform \"o{name}\"\n{{\n{children}}}\n\n"));
-        self.written.insert(symbol, prim);
-    }
-
-    /// Returns references to the prims of the instances of a chain, and the number of elements and instances to
-    /// which they expand. Writes the prims of base elements that are new.
-    fn children(&mut self, chain: &Chain<Frame3>, of: &Aspect) -> (String, f64) {
-        let (mut text, mut expanded) = (String::new(), 0.0);
-        for instance in &chain.instances {
-            let Some(symbol) = self.symbols.child(instance, of, false) else {
-                continue;
-            };
-            let target = if self.symbols.successor(&symbol).is_some() {
-                let Some(prim) = self.written.get(&symbol) else {
-                    continue;
-                };
-                expanded += prim.expanded + 1.0;
-                format!("o{}", prim.number)
-            } else {
-                expanded += 2.0;
-                format!("e{}", self.shape(&symbol, self.steps + 1 - of.steps))
-            };
-            let map = matrix(instance.frame.map());
-            let position = instance.position;
-            // A brace that closes stands on a line of its own.
-            let _ = write!(
-                text,
-                "def \"i{position}\"(instanceable=true;references=</{target}>){{\nmatrix4d xformOp:transform={map}\n\
-                 uniform token[] xformOpOrder=[\"xformOp:transform\"]\n}}\n"
-            );
-        }
-        (text, expanded)
-    }
-
-    /// Returns the number of the prim of an element that is born in a step, and writes it if it is new.
-    fn shape(&mut self, symbol: &Symbol, born: u32) -> usize {
-        let object = &self.graph.objects()[symbol.object];
-        let Dress(appearance) = symbol.aspect.dress;
-        let colour = self.colours.at(object, born, appearance);
-        let element = object.base_element;
-        let next = self.shapes.len();
-        let number = *self.shapes.entry((element, colour.rgba())).or_insert(next);
-        if number == next {
-            let shape = shape(&self.graph.base_elements()[element], colour);
-            self.text
-                .push_str(&format!("class Xform \"e{number}\"\n{{\n{shape}}}\n\n"));
-        }
-        number
-    }
+    text
 }
 
 /// Returns the prim of a convex solid.
@@ -256,33 +141,14 @@ fn polyhedron(solid: &Solid) -> String {
 }
 
 fn point(point: DVec3) -> String {
-    let [x, y, z] = point.to_array().map(|number| number + 0.0);
-    format!("({x},{y},{z})")
+    list(['(', ')'], &point.to_array())
 }
 
 /// Returns a map as a matrix that acts on rows.
 fn matrix(map: &DAffine3) -> String {
     let linear = map.matrix3;
     let rows = [linear.x_axis, linear.y_axis, linear.z_axis, map.translation];
-    let rows = rows.iter().zip([0, 0, 0, 1]).map(|(row, last)| {
-        // The addition turns -0 into 0.
-        let [x, y, z] = row.to_array().map(|number| number + 0.0);
-        format!("({x},{y},{z},{last})")
-    });
+    let rows = rows.iter().zip([0.0, 0.0, 0.0, 1.0]);
+    let rows = rows.map(|(row, last)| list(['(', ')'], &row.extend(last).to_array()));
     format!("({})", rows.collect::<Vec<_>>().join(","))
-}
-
-/// Returns a text as a string of one line.
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            '\n' => quoted.push_str("\\n"),
-            '\r' => quoted.push_str("\\r"),
-            '\t' => quoted.push_str("\\t"),
-            _ => quoted.push(letter),
-        }
-    }
-    quoted + "\""
 }

@@ -14,6 +14,7 @@ mod camera;
 mod copies;
 mod depth_map;
 mod descent;
+mod eye;
 mod forms;
 mod occlusion;
 mod place;
@@ -29,6 +30,7 @@ mod tints;
 
 pub use camera::{Camera, CameraError};
 pub use depth_map::DepthMap;
+pub(in crate::render) use eye::Eye;
 pub use points::{colours_of_maps, points_in_space};
 pub(super) use shade::ink;
 pub use shade::{Light, Shade};
@@ -81,6 +83,17 @@ pub enum SpaceError {
     TooManyFaces {
         /// Name of what is counted.
         what: &'static str,
+        /// The limit.
+        limit: u64,
+    },
+    /// A file that meshes and nodes make would be too large.
+    #[error(
+        "the file would have some {:.0} MB, more than {} MB: fewer steps are smaller, and a .usda holds any number",
+        .bytes / 1e6, .limit / 1_000_000
+    )]
+    TooLarge {
+        /// Approximate size in bytes.
+        bytes: f64,
         /// The limit.
         limit: u64,
     },
