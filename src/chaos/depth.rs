@@ -152,8 +152,11 @@ impl Counter for Nearest {
     #[inline(always)]
     fn add(&mut self, spots: &[Spot]) {
         for spot in spots {
-            if let Some(key) = self.keys.get_mut(spot.pixel as usize) {
-                *key = (*key).min(spot.key);
+            // Few points are nearer than all before them: a branch is foreseen, and spares storing.
+            if let Some(key) = self.keys.get_mut(spot.pixel as usize)
+                && spot.key < *key
+            {
+                *key = spot.key;
             }
         }
         if !self.hits.is_empty() {
@@ -263,24 +266,32 @@ impl<T: Real> Lens<T> {
         }
     }
 
+    /// Returns the pixels and the depths of points in pixels. Every line is for all lanes at once, so that it can be
+    /// vectorised.
     #[inline(always)]
-    fn spot(&self, x: T, y: T, z: T, class: u32) -> Spot {
+    fn spots(&self, [x, y, z]: &[[T; LANES]; 3]) -> [[u32; LANES]; 2] {
         let [width, height] = self.size;
-        let is_inside = (x >= T::ZERO) & (x < width) & (y >= T::ZERO) & (y < height);
-        let x = if is_inside { x } else { T::ZERO };
-        let y = if is_inside { y } else { T::ZERO };
-        let pixel = y.floor().wrapping_mul(self.row).wrapping_add(x.floor());
-        let depth = (self.near - z) * self.steep;
-        let depth = if depth > T::ZERO { depth } else { T::ZERO };
-        let depth = if depth < self.steps {
-            depth
-        } else {
-            self.steps
-        };
-        Spot {
-            pixel: if is_inside { pixel } else { self.all },
-            key: depth.floor() << DepthPicture::CLASS_BITS | class,
+        let mut pixels = [0; LANES];
+        for lane in 0..LANES {
+            let (x, y) = (x[lane], y[lane]);
+            let is_inside = (x >= T::ZERO) & (x < width) & (y >= T::ZERO) & (y < height);
+            let x = if is_inside { x } else { T::ZERO };
+            let y = if is_inside { y } else { T::ZERO };
+            let pixel = y.floor().wrapping_mul(self.row).wrapping_add(x.floor());
+            pixels[lane] = if is_inside { pixel } else { self.all };
         }
+        let mut depths = [0; LANES];
+        for lane in 0..LANES {
+            let depth = (self.near - z[lane]) * self.steep;
+            let depth = if depth > T::ZERO { depth } else { T::ZERO };
+            let depth = if depth < self.steps {
+                depth
+            } else {
+                self.steps
+            };
+            depths[lane] = depth.floor();
+        }
+        [pixels, depths]
     }
 }
 
@@ -315,27 +326,29 @@ impl<T: Real> Screen<DAffine3> for Lens<T> {
     #[inline(always)]
     fn spots(&self, places: &Self::Places, classes: &[u32; LANES], spots: &mut [Spot; LANES]) {
         const MOST: u32 = (1 << DepthPicture::CLASS_BITS) - 1;
-        match self.central {
-            None => {
-                for lane in 0..LANES {
-                    let [x, y, z, _] = places[lane];
-                    spots[lane] = self.spot(x, y, z, classes[lane].min(MOST));
-                }
+        let mut seen = [[T::ZERO; LANES]; 3];
+        for lane in 0..LANES {
+            for axis in 0..3 {
+                seen[axis][lane] = places[lane][axis];
             }
-            Some((focus, middle)) => {
-                for lane in 0..LANES {
-                    let [x, y, z, _] = places[lane];
-                    // Nothing behind the viewer is seen: there, the scale is negative.
-                    let scale = focus / (T::ZERO - z);
-                    let [x, y] = [middle[0] + x * scale, middle[1] + y * scale];
-                    let x = if scale > T::ZERO {
-                        x
-                    } else {
-                        T::ZERO - T::WHOLE
-                    };
-                    spots[lane] = self.spot(x, y, z, classes[lane].min(MOST));
-                }
+        }
+        if let Some((focus, middle)) = self.central {
+            let [x, y, z] = &mut seen;
+            for lane in 0..LANES {
+                // Nothing behind the viewer is seen: there, the scale is negative.
+                let scale = focus / (T::ZERO - z[lane]);
+                let is_ahead = scale > T::ZERO;
+                let at = middle[0] + x[lane] * scale;
+                x[lane] = if is_ahead { at } else { T::ZERO - T::WHOLE };
+                y[lane] = middle[1] + y[lane] * scale;
             }
+        }
+        let [pixels, depths] = Self::spots(self, &seen);
+        for lane in 0..LANES {
+            spots[lane] = Spot {
+                pixel: pixels[lane],
+                key: depths[lane] << DepthPicture::CLASS_BITS | classes[lane].min(MOST),
+            };
         }
     }
 }
