@@ -7,7 +7,8 @@ use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Outline, Solid};
 use super::random::Scalar;
 use super::walked::Sample;
 
-/// Samples points of convex solids: uniformly from each, and from several in proportion to their surfaces.
+/// Samples points of convex solids: uniformly from each, and from several in proportion to their surfaces, or to their
+/// lengths if none has a surface.
 ///
 /// Points are drawn from a box around the solid before it is placed, until one lies inside.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,14 +27,21 @@ const ROUNDING: f64 = 1e-9;
 
 impl Sample<DAffine3> for SolidSampler {
     fn of_set(set: &Arc<[Solid]>) -> Option<Self> {
-        let has_surface = set.iter().any(|solid| solid.signed_area() > 0.0);
+        // Where none has a surface, lengths decide, and points are equal.
+        let length = |solid: &Solid| match solid.corners() {
+            [from, to] => from.distance(*to),
+            _ => 0.0,
+        };
+        let weights = [
+            &Solid::signed_area as &dyn Fn(&Solid) -> f64,
+            &length,
+            &|_| 1.0,
+        ];
+        let weight =
+            { weights.into_iter() }.find(|weight| set.iter().any(|it| weight(it) > 0.0))?;
         let mut total = 0.0;
         let solids = set.iter().map(|solid| {
-            total += if has_surface {
-                solid.signed_area()
-            } else {
-                1.0
-            };
+            total += weight(solid);
             Some((total, solid.clone(), unplaced_box(solid)?))
         });
         let solids: Vec<_> = solids.collect::<Option<_>>()?;
@@ -132,6 +140,13 @@ mod tests {
         assert!(squares.abs_diff_eq(DVec3::splat(0.2), 0.005), "{squares}");
         let (centre, _) = mean(&[Solid::round(Round::Cone, DAffine3::IDENTITY)]);
         assert!(centre.abs_diff_eq(DVec3::Y / 4.0, 0.01), "{centre}");
+        // Segments have no surfaces; they are 1 and 3 long.
+        let segment = |from: f64, to: f64| Solid::hull(&[DVec3::X * from, DVec3::X * to]);
+        let (centre, _) = mean(&[segment(0.0, 1.0), segment(10.0, 13.0)]);
+        assert!(
+            (centre.x - (0.5 + 3.0 * 11.5) / 4.0).abs() < 0.1,
+            "{centre}"
+        );
         // Cubes of sides 1 and 2 have surfaces 6 and 24.
         let cube = |from: f64, side: f64| {
             let corner = DVec3::splat(from);

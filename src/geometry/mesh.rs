@@ -66,6 +66,8 @@ impl Mesh {
                     .map(|angle| [-degrees::cos(angle), degrees::sin(angle)])
                     .collect()
             }
+            // Without a height, it is a disk.
+            Round::Cylinder if place.matrix3.y_axis == DVec3::ZERO => vec![[0.0, 1.0]],
             Round::Cylinder => vec![[0.0, 1.0], [1.0, 1.0]],
             Round::Cone => vec![[0.0, 1.0], [1.0, 0.0]],
         };
@@ -100,7 +102,7 @@ impl Mesh {
                 mesh.faces.push(face);
             }
             // Disks below and above.
-            if circle.len() > 1 && number == 0 {
+            if circle.len() > 1 && number == 0 && circles.len() > 1 {
                 mesh.faces.push(circle.iter().rev().copied().collect());
             }
             if circle.len() > 1 && number + 1 == circles.len() {

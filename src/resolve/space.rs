@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::document::{
-    FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument, TurnDocument,
-    WrittenNumber, WrittenPoint,
+    EllipseDocument, FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument,
+    TurnDocument, WrittenNumber, WrittenPoint,
 };
-use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
+use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols, degrees};
 use crate::geometry::{
     Bounds, DAffine3, DMat3, DVec3, MAX_POINTS, PolygonError, Round, Solid, polygon,
 };
@@ -82,15 +82,56 @@ impl<K> Resolver<K> {
     /// Resolves a set in space. Reports mistakes and returns `None`.
     pub(super) fn solids(&mut self, document: &ShapeDocument) -> Option<Arc<[Solid]>> {
         let solids = match document.form.as_ref()? {
-            FormDocument::Outline { points, .. } => self.polygon(document, points)?,
+            FormDocument::Point(point) => {
+                vec![Solid::hull(&[
+                    self.constant_in_space(Some(point), DVec3::ZERO)?
+                ])]
+            }
+            FormDocument::Outline {
+                points,
+                closed: true,
+            } => self.polygon(document, points)?,
+            FormDocument::Outline { points, .. } => self.polyline(document, points)?,
+            FormDocument::Ellipse(ellipse) => vec![self.ellipse(ellipse)?],
             FormDocument::Solid(solid) => match &**solid {
                 SolidDocument::Mesh(mesh) => self.mesh(document, mesh)?,
                 solid => vec![self.solid(document, solid)?],
             },
-            // Sets of the plane were reported when the file was read.
-            _ => return None,
+            // Reported when the file was read.
+            FormDocument::Fractal(_) => return None,
         };
         Some(solids.into())
+    }
+
+    /// Returns the segments of a line through points.
+    fn polyline(&mut self, shape: &ShapeDocument, written: &[WrittenPoint]) -> Option<Vec<Solid>> {
+        let points = self.constants_in_space(written)?;
+        let segments = points.windows(2).filter(|ends| ends[0] != ends[1]);
+        let segments: Vec<Solid> = segments.map(Solid::hull).collect();
+        if segments.is_empty() {
+            let hint = "its points must not all be the same";
+            self.error_with_hint(&shape.place, "this set has no extent", hint);
+            return None;
+        }
+        Some(segments)
+    }
+
+    /// Returns an ellipse across the z axis: a cylinder without height.
+    fn ellipse(&mut self, document: &EllipseDocument) -> Option<Solid> {
+        let centre = self.constant_in_space(document.centre.as_ref(), DVec3::ZERO);
+        let axes = document.axes.each_ref();
+        let [right, up] = axes.map(|axis| self.radius(Some(axis)));
+        let angle = match &document.rotate {
+            Some(rotate) => self.constant(rotate)?,
+            None => 0.0,
+        };
+        let (sine, cosine) = (degrees::sin(angle), degrees::cos(angle));
+        let right = DVec3::new(cosine, sine, 0.0) * right?;
+        // The cylinder's y axis points to the viewer, and its z axis down.
+        let down = DVec3::new(sine, -cosine, 0.0) * up?;
+        let linear = DMat3::from_cols(right, DVec3::ZERO, down);
+        let place = DAffine3::from_mat3_translation(linear, centre?);
+        Some(Solid::round(Round::Cylinder, place))
     }
 
     fn solid(&mut self, shape: &ShapeDocument, document: &SolidDocument) -> Option<Solid> {

@@ -52,8 +52,8 @@ pub(super) const FORMS: [Member; 14] = keys![
     polyline: Form::List(&Form::Point, 2, None), "A line through points.";
     polygon: Form::List(&Form::Place, 3, None),
         "What a line through points and back to the first encloses.";
-    disk: Form::Mapping(&DISK), "A disk.";
-    ellipse: Form::Mapping(&ELLIPSE), "An ellipse.";
+    disk: Form::Mapping(&DISK), "A disk; in space, with the normal z.";
+    ellipse: Form::Mapping(&ELLIPSE), "An ellipse; in space, with the normal z.";
     sphere: Form::Mapping(&SPHERE), "In space, a ball.";
     ellipsoid: Form::Mapping(&ELLIPSOID), "In space, a ball that is stretched along its axes.";
     cylinder: Form::Mapping(&SHAFT), "In space, a solid cylinder.";
@@ -207,25 +207,21 @@ fn hint(reader: &Reader) -> &'static str {
 /// Returns a message and a help text for a set of the plane in a file of space, and for one of space in a file of
 /// the plane.
 fn misplaced(name: &str, is_in_space: bool) -> Option<(String, &'static str)> {
-    let hint = match (name, is_in_space) {
-        ("polygon", _) => return None,
-        ("point", true) => "in space, a small ball: {sphere: {centre: [0, 0, 0], radius: 0.01}}",
-        ("segment" | "polyline", true) => {
-            "in space, a thin cylinder: {cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 0.01}}"
-        }
-        ("disk" | "ellipse", true) => "in space, a polygon, or an ellipsoid that is flattened",
-        ("fractal", true) => "in space, sets are solids and polygons",
-        ("point" | "segment" | "polyline" | "disk" | "ellipse" | "fractal", false) => return None,
-        (_, true) => return None,
+    match (name, is_in_space) {
+        ("fractal", true) => Some((
+            "the set `fractal` is known in the plane only".into(),
+            "in space, sets are solids, polygons, lines and points",
+        )),
+        (_, true) | ("point" | "segment" | "polyline" | "polygon", false) => None,
+        ("disk" | "ellipse" | "fractal", false) => None,
         (_, false) => {
             let article = if name.starts_with('e') { "an" } else { "a" };
-            return Some((
+            Some((
                 format!("{article} {name} lies in space"),
                 "write `space: 3` at the top",
-            ));
+            ))
         }
-    };
-    Some((format!("the set `{name}` is known in the plane only"), hint))
+    }
 }
 
 fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocument> {
