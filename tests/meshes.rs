@@ -226,3 +226,31 @@ fn threads_change_no_byte() {
         }
     }
 }
+
+#[test]
+fn flat_sets_have_faces_and_lines_have_none() {
+    let text = "{kind: ifs, space: 3, maps: [{scale: 1/2, translate: [0, 0, 1]}], condensation: [\
+                {ellipse: {centre: [1, 0, 3], axes: [2, 1], rotate: 30}}, {point: [1, 2, 3]}, \
+                {polyline: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}]}";
+    let model = common::document_of(text).resolve(&[]).unwrap().0;
+    let graph = model.compile_in_space(false).unwrap();
+    let options = Options::default().threads(NonZero::<usize>::MIN);
+    let mut bytes = Vec::new();
+    let mesh = MeshOptions::default().format(MeshFormat::Obj);
+    let size = write_mesh(&graph, &Growth::steps(1), &options, mesh, &mut bytes).unwrap();
+    // An ellipse, a point and two segments, and their image.
+    let (corners, faces) = read_obj(&bytes);
+    assert_eq!((size.elements, faces.len()), (8, 2), "{size:?}");
+    let faces = faces.iter();
+    let mut faces = faces.map(|face| face.iter().map(|it| corners[*it]).collect::<Vec<_>>());
+    let face = faces.find(|face| face[0].z == 3.0).unwrap();
+    let (sine, cosine) = (0.5, 3f64.sqrt() / 2.0);
+    for corner in &face {
+        let at = *corner - DVec3::new(1.0, 0.0, 3.0);
+        let [along, across] = [at.x * cosine + at.y * sine, at.y * cosine - at.x * sine];
+        let radius = (along / 2.0).powi(2) + across.powi(2);
+        assert!((radius - 1.0).abs() < 1e-6 && at.z == 0.0, "{at}");
+    }
+    assert_eq!(face.len(), 48);
+    assert!((face[1] - face[0]).cross(face[2] - face[1]).z > 0.0);
+}

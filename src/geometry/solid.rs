@@ -102,8 +102,14 @@ impl Solid {
             return Self::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ZERO));
         }
         let size = bounds.size().max_element();
-        if points.len() > MAX_POINTS || size <= 0.0 {
+        if points.len() > MAX_POINTS {
             return Self::cuboid(&bounds);
+        }
+        if size <= 0.0 {
+            return Self {
+                corners: [bounds.min()].into(),
+                ..Self::cuboid(&bounds)
+            };
         }
         let middle = bounds.min() + bounds.size() / 2.0;
         let near: Vec<DVec3> = points
@@ -516,6 +522,8 @@ mod tests {
             line.corners()[1].abs_diff_eq(DVec3::ONE, 1e-12)
                 || line.corners()[0].abs_diff_eq(DVec3::ONE, 1e-12)
         );
-        assert_eq!(Solid::hull(&[DVec3::ONE; 3]).support(DVec3::X), 1.0);
+        let point = Solid::hull(&[DVec3::ONE; 3]);
+        assert_eq!((point.support(DVec3::X), point.corners().len()), (1.0, 1));
+        assert!(point.polygons().is_empty());
     }
 }

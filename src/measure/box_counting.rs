@@ -293,7 +293,7 @@ fn evidence(scales: &[Scale], used: impl Fn(&Scale) -> bool) -> Vec<Boxes> {
 }
 
 /// Returns the smallest integer up to 8 that is a power of the period, or 2 if there is none.
-fn whole_power(period: Option<f64>) -> f64 {
+pub(super) fn whole_power(period: Option<f64>) -> f64 {
     const LARGEST: f64 = 8.5;
     const TOLERANCE: f64 = 1e-9;
     let powers = period.into_iter().flat_map(|period| {

@@ -228,3 +228,32 @@ fn slices_are_covered_by_layers() {
         "{misses:?}"
     );
 }
+
+#[test]
+fn slices_have_squares_dimensions_of_all_orders_and_lacunarity() {
+    let set = named("menger");
+    // A face is Sierpinski's carpet, the middle a product of Cantor sets.
+    for (offset, base) in [(0.0, 8), (0.5, 4)] {
+        let slice = set.slice(DVec3::Z, offset).unwrap();
+        let (squares, side) = slice.squares().unwrap();
+        assert_eq!(squares.width(), 243);
+        assert!((side - 1.0 / 243.0).abs() < 1e-9);
+        assert_eq!(squares.count(), u64::pow(base, 5), "{offset}");
+        let counting = BoxCounting::of_slice(&slice, None, number(1), number(1));
+        let spectrum = Generalised::of_pixels(
+            &squares,
+            counting.estimate,
+            &[1.0, 2.0],
+            &Grid::spread(number(4)),
+            number(1),
+        );
+        let expected = f64::from(u32::try_from(base).unwrap()).ln() / 3f64.ln();
+        for it in spectrum {
+            let value = it.estimate.unwrap().value;
+            assert!(
+                (value - expected).abs() < 0.08,
+                "{offset}: {value} {expected}"
+            );
+        }
+    }
+}

@@ -224,6 +224,16 @@ fn of_slice(
         let reason =
             "nothing is measured: the slice meets nothing of the set, or too many copies overlap";
         measured.warnings.push(reason.into());
+        return Ok(measured);
+    }
+    if let Some((squares, side)) = slice.squares() {
+        let (orders, grids) = (&arguments.orders, Grid::spread(arguments.grids));
+        let counted = measured.counting.estimate;
+        let spectrum = Generalised::of_pixels(&squares, counted, orders, &grids, threads);
+        measured.tell(spectrum.into_iter().map(|it| it.enlarged(side)).collect());
+        measured.measure = Some("squares");
+        let lacunarity = Masses::of_pixels(&squares, [0; 2]).lacunarity().into_iter();
+        measured.lacunarity = lacunarity.map(|it| it.enlarged(side)).collect();
     }
     Ok(measured)
 }

@@ -8,6 +8,7 @@
 use std::num::NonZero;
 
 use crate::geometry::Point;
+use crate::measure::bits::Bits;
 use crate::measure::cover::{Counts, Grid, Scale, least};
 use crate::measure::space::Space;
 use crate::measure::statistics::{deviation, mean};
@@ -28,6 +29,9 @@ const LARGEST: f64 = 2.0;
 
 /// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
 const MAX_COPIES: usize = 1 << 22;
+
+/// Maximum number of copies that are examined for a raster.
+const MAX_RASTER: usize = 1 << 26;
 
 /// Number of copies in a box from which equal ones are removed.
 const MANY: usize = 8;
@@ -114,7 +118,14 @@ impl<'s, M: Space> Descent<'s, M> {
     }
 
     /// Returns the boxes of a grid that copies come near to, row by row from the lower left.
-    fn divided(&mut self, mut copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
+    fn divided(&mut self, copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
+        let mut cells = self.entered(copies, boxes);
+        cells.retain(|cell| !cell.is_empty());
+        cells
+    }
+
+    /// Returns all boxes of a grid, row by row from the lower left, with the copies that come near to them.
+    fn entered(&mut self, mut copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
         let mut cells = vec![Cell::new(); boxes.iter().product()];
         while let Some(copy) = copies.pop() {
             let part = &self.set.objects[copy.object];
@@ -148,7 +159,6 @@ impl<'s, M: Space> Descent<'s, M> {
                 }
             }
         }
-        cells.retain(|cell| !cell.is_empty());
         for cell in cells.iter_mut().filter(|cell| cell.len() >= MANY) {
             merge(cell, |copy| copy, |_, _| {});
         }
@@ -195,15 +205,8 @@ impl<M: Space> LimitSet<M> {
             return least(&sizes, &[Grid::ALONG], threads, |_: &Grid<M>| exact.clone());
         }
         let counts = map(grids, threads.get(), |number, grid| {
-            let (map, mut boxes) = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
-            let mut map = Placed::new(map, 0);
-            if self.is_layer {
-                // The plane of the slice lies in the middle of the layer.
-                let up = 0.5 - map.map.translation().coordinates()[2];
-                map = map.moved(M::Point::of_coordinates([0.0, 0.0, up]));
-                boxes[2] = 1;
-            }
-            let start = self.start.iter().map(|copy| map.compose(copy)).collect();
+            let on_grid = grid.map(&self.turned_bounds(grid), first, extent / 2.0);
+            let (start, boxes) = self.on_grid(on_grid);
             let mut descent = Descent::new(self, start, boxes, number);
             let mut counts = Vec::new();
             for _ in &sizes {
@@ -218,6 +221,60 @@ impl<M: Space> LimitSet<M> {
             counts
         });
         joined(&sizes, &counts)
+    }
+
+    /// Returns the copies that the set is made of on a grid, and its boxes: for a slice, those of one layer.
+    fn on_grid(&self, (map, mut boxes): (M, Counts)) -> (Vec<Placed<M>>, Counts) {
+        let mut map = Placed::new(map, 0);
+        if self.is_layer {
+            // The plane of the slice lies in the middle of the layer.
+            let up = 0.5 - map.map.translation().coordinates()[2];
+            map = map.moved(M::Point::of_coordinates([0.0, 0.0, up]));
+            boxes[2] = 1;
+        }
+        let start = self.start.iter().map(|copy| map.compose(copy));
+        (start.collect(), boxes)
+    }
+
+    /// Returns the boxes of a plane set or a slice with the extent divided by `base` to the power of `levels` as sides
+    /// that the set meets, row by row from the lower left, and their side. Returns `None` where too many copies overlap.
+    pub(super) fn raster(&self, base: NonZero<usize>, levels: u32) -> Option<(Bits, f64)> {
+        let base = base.get();
+        let extent = self.bounds.size().max_element() * (1.0 + 4e-9);
+        let (start, boxes) = self.on_grid(Grid::ALONG.map(&self.bounds, extent, 0.0));
+        let side = base.pow(levels);
+        let mut bits = Bits::new(side, side);
+        let mut left = MAX_RASTER;
+        let mut descent = Descent::new(self, start, boxes, 0);
+        let mut open: Vec<_> = descent
+            .cells
+            .drain(..)
+            .map(|cell| (cell, [0; 2], side))
+            .collect();
+        while let Some((mut cell, [column, row], side)) = open.pop() {
+            left = left.checked_sub(cell.len())?;
+            if side == 1 {
+                if self.meets(&cell, &mut left)? {
+                    bits.set(column, row);
+                }
+                continue;
+            }
+            let layer = self.to_layer(base);
+            for copy in &mut cell {
+                copy.grow(real(base));
+                *copy = copy.moved(layer);
+            }
+            descent.looked_at = 0;
+            let parts = descent.entered(cell, self.parts(base));
+            let side = side / base;
+            let parts = parts.into_iter().enumerate();
+            let parts = parts.filter(|(_, part)| !part.is_empty());
+            open.extend(parts.map(|(number, part)| {
+                let corner = [column + number % base * side, row + number / base * side];
+                (part, corner, side)
+            }));
+        }
+        Some((bits, extent / real(base.pow(levels))))
     }
 
     /// Returns `true` if the unit box holds a point of the set; `copies` are those near it. Returns `None`

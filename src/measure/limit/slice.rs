@@ -2,8 +2,11 @@
 
 use crate::geometry::DAffine2;
 use crate::geometry::{Affine, Bounds, DAffine3, DMat3, DVec3};
+use crate::measure::bits::Bits;
+use crate::measure::box_counting::whole_power;
 use crate::measure::cover::Grid;
 use crate::measure::space::Space;
+use crate::saturating::{real, whole};
 use std::num::NonZero;
 
 use super::{LimitSet, Placed};
@@ -67,6 +70,19 @@ impl Slice {
     /// Returns the slice as a set that is covered by layers.
     pub(in crate::measure) fn set(&self) -> &LimitSet<DAffine3> {
         &self.set
+    }
+
+    /// Returns the squares of the plane that the slice meets, row by row from the lower left, and their side: some 200
+    /// to 600 in a row, whose number is a power of the factor at which the set repeats itself, or of 2. Returns `None`
+    /// where too many copies overlap, or if the slice is a point.
+    #[must_use]
+    pub fn squares(&self) -> Option<(Bits, f64)> {
+        const MOST: f64 = 600.0;
+        let base = NonZero::new(whole(whole_power(self.set.period())))?;
+        let levels = (libm::log(MOST) / libm::log(real(base.get()))).floor();
+        let levels = u32::try_from(whole(levels)).ok()?;
+        let is_wide = self.set.bounds().size().max_element() > 0.0;
+        is_wide.then(|| self.set.raster(base, levels))?
     }
 
     /// Returns grids that are turned and shifted in the plane.

@@ -160,9 +160,9 @@ impl<W: Write> Model<'_, W> {
             false => "model",
         };
         let own = self.material(first.colour);
-        write!(
+        writeln!(
             self.out,
-            "<object id=\"{number}\" type=\"{kind}\" pid=\"{COLOURS}\" pindex=\"{own}\"><mesh><vertices>\n"
+            r#"<object id="{number}" type="{kind}" pid="{COLOURS}" pindex="{own}"><mesh><vertices>"#
         )?;
         for corner in &mesh.corners {
             let [x, y, z] = corner.as_vec3().to_array().map(|at| at + 0.0);
