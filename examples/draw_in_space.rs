@@ -16,7 +16,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{name}: {:?}", set.bounds_in_space()?);
     for (view, from) in Camera::NAMED {
         let camera = Camera::default().from(from);
-        let space = SpaceOptions::default().camera(camera).shade(Shade::Both);
+        let space = SpaceOptions::default()
+            .camera(camera)
+            .shade(Some(Shade::Both));
         let path = format!("{name}-{view}.png");
         set.clone().space(space).write(&path)?;
         println!("{path}");

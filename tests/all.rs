@@ -42,5 +42,6 @@ mod terminal;
 mod threads;
 mod tints;
 mod vectors;
+mod visible;
 mod windows;
 mod zoom;

@@ -257,10 +257,17 @@ fn wrong_tables_and_clouds_are_refused() {
         ),
         ("menger --steps 9 -o x.csv", 1, "5 is the deepest step"),
         (
-            "menger -o x.svg",
+            "menger --detail 1 -o x.svg",
             2,
-            "written as .png, as a table or as a scene",
+            "give --steps, or write a .png",
         ),
+        (
+            "menger --view 0,0,1,1 -o x.dxf",
+            2,
+            "--view is not for its faces",
+        ),
+        ("menger --occlusion -o x.pdf", 2, "write a .png"),
+        ("menger --steps 9 -o x.svg", 1, "5 is the deepest step"),
         (
             "gasket --method chaos --start 1,2,3 -o x.png",
             2,

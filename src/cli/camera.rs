@@ -81,6 +81,11 @@ impl SpaceArguments {
         given.chain(cuts).collect()
     }
 
+    /// Returns whether occlusion is asked for.
+    pub(super) fn occludes(&self) -> bool {
+        self.occlusion
+    }
+
     /// Refuses the options for a set of the plane.
     pub(super) fn refuse_in_plane(&self, loaded: &Loaded) -> Result<(), Failure> {
         match self.options().first() {
@@ -136,7 +141,7 @@ impl SpaceArguments {
         SpaceOptions::default()
             .camera(camera)
             .light(light)
-            .shade(self.shade.unwrap_or_default())
+            .shade(self.shade)
             .slice(self.slice)
             .cuts(self.cut.clone())
             .occlusion(self.occlusion)

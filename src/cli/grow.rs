@@ -7,6 +7,7 @@ mod plot;
 mod scene;
 mod space;
 mod svg;
+mod visible;
 mod zoom;
 
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ use crate::catalogue::Catalogue;
 use crate::export;
 use crate::fractal::Goal;
 use crate::graph::Graph;
-use crate::render::RenderError;
+use crate::render::{self, RenderError};
 use crate::style::Named;
 
 use super::camera::{self, SpaceArguments};
@@ -155,6 +156,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let loaded = loaded.grown(&arguments.growth);
         let (path, summary, bytes) = match plan {
             Plan::Scene(format) => scene::write(arguments, &loaded, format)?,
+            Plan::Picture { format, .. } if arguments.draws_faces(format) => {
+                visible::draw(arguments, &loaded, format)?
+            }
             plan => space::draw(arguments, &loaded, &plan)?,
         };
         arguments.report(&path, &summary, bytes, start);
@@ -200,6 +204,12 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    /// Returns whether a set in space is drawn as polygons or lines. Without a file or a format, it is drawn as pixels.
+    fn draws_faces(&self, format: render::Format) -> bool {
+        let is_asked = self.format.is_some() || self.names_file();
+        self.plot.is_asked() || is_asked && format != render::Format::Png
+    }
+
     /// Returns whether a file is named, other than standard output.
     fn names_file(&self) -> bool {
         { self.output.as_deref() }.is_some_and(|path| path != Path::new("-"))

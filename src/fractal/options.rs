@@ -143,7 +143,7 @@ impl Fractal {
     /// use kfrac::render::space::{Camera, Shade, SpaceOptions};
     ///
     /// let camera = Camera::default().from([60.0, 10.0]).perspective(Some(35.0));
-    /// let space = SpaceOptions::default().camera(camera).shade(Shade::Relief);
+    /// let space = SpaceOptions::default().camera(camera).shade(Some(Shade::Relief));
     /// let sponge = kfrac::Fractal::named("menger")?.steps(4).space(space);
     /// assert_eq!(sponge.pixels((64, 48))?.size(), [64, 48]);
     /// # Ok(())

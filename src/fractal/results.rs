@@ -15,7 +15,7 @@ use crate::measure::{BoxCounting, Grid, LimitSet, Space};
 use crate::model::Model;
 use crate::output_file::{OutputFile, WriteError};
 use crate::parallel::is_cancelled;
-use crate::render::space::{pixels_in_space, write_space};
+use crate::render::space::{pixels_in_space, write_space, write_visible};
 use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
 use crate::style::{ColorBy, Named};
 
@@ -34,13 +34,12 @@ impl Fractal {
         &self.warnings
     }
 
-    /// Returns the approximant as SVG.
+    /// Returns the approximant as SVG; in space, its visible faces.
     ///
     /// # Errors
     ///
-    /// If it cannot be drawn: it has too many elements, or none, or lies in space.
+    /// If it cannot be drawn: it has too many elements, or none.
     pub fn svg(&self) -> Result<String, Error> {
-        self.check_plane("`png` and `pixels` draw it")?;
         let options = self.options(Format::Svg, self.size)?;
         let mut bytes = Vec::new();
         self.draw(&options, &mut bytes)?;
@@ -96,8 +95,8 @@ impl Fractal {
     }
 
     /// Writes a file: a picture (`svg`, `png`, `pdf`, `dxf`) or a table of elements (`csv`, `json`, `jsonl`,
-    /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete. A set in
-    /// space is written as `png`.
+    /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete. In
+    /// space, `svg`, `pdf` and `dxf` hold the visible faces and edges of the approximant.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -118,9 +117,6 @@ impl Fractal {
         let path = path.as_ref();
         let extension = path.extension().and_then(|it| it.to_str()).unwrap_or("");
         let extension = extension.to_ascii_lowercase();
-        if extension != "png" {
-            self.check_plane("it is written as .png")?;
-        }
         if let Some(format) = Format::from_name(&extension) {
             let options = self.options(format, self.size)?;
             return written(path, |out| self.draw(&options, out).map(|_| ()));
@@ -130,8 +126,21 @@ impl Fractal {
             Diagnostic::error(message)
                 .hint("names end in .svg, .png, .pdf, .dxf, .csv, .json, .jsonl or .ndjson")
         })?;
-        let graph = self.graph()?;
-        let growth = self.growth(self.steps_grown()?);
+        if self.model.is_in_space() {
+            let graph = self.graph_in_space("it has a table, too")?;
+            return self.write_table(path, graph, self.steps_in_space(graph), format);
+        }
+        self.write_table(path, self.graph()?, self.steps_grown()?, format)
+    }
+
+    fn write_table<F: export::Listed>(
+        &self,
+        path: &Path,
+        graph: &Graph<F>,
+        steps: u32,
+        format: export::TableFormat,
+    ) -> Result<(), Error> {
+        let growth = self.growth(steps);
         written(path, |out| {
             let walked = export::write(graph, &growth, format, self.threads, out);
             walked
@@ -367,6 +376,16 @@ impl Fractal {
 
     fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {
         if let Some(graph) = self.graph_to_draw_in_space(options)? {
+            if options.format != Format::Png {
+                let growth = self.growth(self.steps_in_space(graph));
+                return Ok(write_visible(
+                    graph,
+                    &growth,
+                    options,
+                    &self.space,
+                    &mut out,
+                )?);
+            }
             let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
             return Ok(write_space(
                 graph,

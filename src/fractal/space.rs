@@ -95,7 +95,7 @@ impl Fractal {
     pub fn depth_map(&self, size: impl Into<Size>) -> Result<DepthMap, Error> {
         let graph = self.graph_in_space("all of its points have the same depth")?;
         let options = self.options(Format::Png, size.into())?;
-        let space = self.space.clone().shade(Shade::None).occlusion(false);
+        let space = self.space.clone().shade(Some(Shade::None)).occlusion(false);
         let drawn = pixels_in_space(
             graph,
             self.steps_drawn_in_space(),
@@ -116,7 +116,7 @@ impl Fractal {
     }
 
     /// Returns the graph of a set in space; `instead` states what a set of the plane has.
-    fn graph_in_space(&self, instead: &'static str) -> Result<&Graph<Frame3>, Error> {
+    pub(super) fn graph_in_space(&self, instead: &'static str) -> Result<&Graph<Frame3>, Error> {
         if let Some(graph) = self.graph_in_space.get() {
             return Ok(graph);
         }
@@ -143,7 +143,7 @@ impl Fractal {
     }
 
     /// Returns the number of steps of elements and numbers, which have no pixels.
-    fn steps_in_space(&self, graph: &Graph<Frame3>) -> u32 {
+    pub(super) fn steps_in_space(&self, graph: &Graph<Frame3>) -> u32 {
         self.steps
             .unwrap_or_else(|| steps_of_graph(&self.model, graph))
     }

@@ -33,8 +33,15 @@ impl From<&Solid> for Mesh {
     /// Returns the surface of a solid. One in a plane has a single face, and one on a line has none. Circles have
     /// 48 sides, with the corners on them.
     fn from(solid: &Solid) -> Self {
+        Self::with_sides(solid, SIDES)
+    }
+}
+
+impl Mesh {
+    /// Returns the surface of a solid, whose circles have an even number of sides.
+    pub(crate) fn with_sides(solid: &Solid, sides: u32) -> Self {
         if let Some(primitive) = solid.primitive() {
-            return Self::round(primitive, solid.place());
+            return Self::round(primitive, solid.place(), sides);
         }
         let mut mesh = Self::default();
         for face in solid.polygons() {
@@ -47,21 +54,19 @@ impl From<&Solid> for Mesh {
         }
         mesh
     }
-}
 
-impl Mesh {
     fn push(&mut self, corner: DVec3) -> usize {
         self.corners.push(corner);
         self.corners.len() - 1
     }
 
     /// Returns the image of a round primitive under a map.
-    fn round(primitive: Round, place: &DAffine3) -> Self {
+    fn round(primitive: Round, place: &DAffine3, sides: u32) -> Self {
         let mut mesh = Self::default();
         // Circles about the y axis by height and radius, from the bottom to the top; a radius of 0 is a pole.
         let circles: Vec<[f64; 2]> = match primitive {
             Round::Ball => {
-                let angles = (0..=SIDES / 2).map(|part| 360.0 * f64::from(part) / f64::from(SIDES));
+                let angles = (0..=sides / 2).map(|part| 360.0 * f64::from(part) / f64::from(sides));
                 angles
                     .map(|angle| [-degrees::cos(angle), degrees::sin(angle)])
                     .collect()
@@ -73,7 +78,7 @@ impl Mesh {
         };
         let mut below: Vec<usize> = Vec::new();
         for (number, &[height, radius]) in circles.iter().enumerate() {
-            let angles = (0..SIDES).map(|part| 360.0 * f64::from(part) / f64::from(SIDES));
+            let angles = (0..sides).map(|part| 360.0 * f64::from(part) / f64::from(sides));
             let circle: Vec<usize> = if radius == 0.0 {
                 vec![mesh.push(DVec3::Y * height)]
             } else {

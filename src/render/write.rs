@@ -59,7 +59,7 @@ pub(crate) fn write_drawing(
 }
 
 /// Writes a drawing, as strokes if the options ask for a plot; returns the numbers of the plot.
-fn write_in(
+pub(super) fn write_in(
     drawing: &impl Drawing,
     options: &Options,
     cancel: Option<&AtomicBool>,

@@ -183,16 +183,7 @@ fn check(arguments: &Arguments, loaded: &Loaded, plan: &Plan) -> Result<&'static
         }
         plan => plan.extension(),
     };
-    if let Plan::Picture { .. } = plan
-        && extension != render::Format::Png.name()
-    {
-        let message = format!(
-            "{name} lies in space, and is written as .png, as a table or as a scene, not as .{extension}"
-        );
-        return Err(Failure::Usage(message));
-    }
     let refused = [
-        ("--plot", arguments.plot.is_asked()),
         ("--svg instanced", arguments.svg.is_instanced()),
         ("--zoom", arguments.zoom.is_asked()),
         ("--view", arguments.picture.has_view()),

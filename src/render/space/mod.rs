@@ -27,6 +27,7 @@ mod slice;
 mod solid;
 mod stamp;
 mod tints;
+mod visible;
 
 pub use camera::{Camera, CameraError};
 pub use depth_map::DepthMap;
@@ -35,6 +36,7 @@ pub use points::{colours_of_maps, points_in_space};
 pub(super) use shade::ink;
 pub use shade::{Light, Shade};
 pub use slice::Slice;
+pub use visible::write_visible;
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -114,8 +116,8 @@ pub enum SpaceError {
 pub struct SpaceOptions {
     /// Direction of view and projection.
     pub camera: Camera,
-    /// Shading.
-    pub shade: Shade,
+    /// Shading; depth cueing by default, and in vector formats depth cueing and light.
+    pub shade: Option<Shade>,
     /// Light for relief.
     pub light: Light,
     /// Slab to which the picture is confined.
@@ -130,7 +132,7 @@ pub struct SpaceOptions {
 
 setters!(SpaceOptions {
     camera: Camera,
-    shade: Shade,
+    shade: Option<Shade>,
     light: Light,
     slice: Option<Slice>,
     cuts: Vec<HalfSpace>,
@@ -148,7 +150,7 @@ impl SpaceOptions {
 
     /// Returns whether the colours of pixels, or the caller, need depths.
     fn needs_depths(&self) -> bool {
-        self.shade.has_relief() || self.occlusion || self.keeps_depths
+        self.shade.unwrap_or_default().has_relief() || self.occlusion || self.keeps_depths
     }
 }
 
@@ -338,7 +340,7 @@ fn draw(
         },
         cuts: cuts.collect(),
         placement,
-        inks: Inks::of(style, class_by, classes, space.shade),
+        inks: Inks::of(style, class_by, classes, space.shade.unwrap_or_default()),
         cancel,
     };
     let size @ [width, height] = placement.size;

@@ -144,7 +144,7 @@ pub(super) fn draw(
             style,
             ClassBy::LastMap,
             usize::from(MAX_CLASS) + 1,
-            space.shade,
+            space.shade.unwrap_or_default(),
         )
     } else {
         let class_by = ClassBy::of(style.color_by)?;
@@ -152,7 +152,12 @@ pub(super) fn draw(
         for key in keys.iter_mut().filter(|key| **key != EMPTY) {
             *key = maps.numbered(*key);
         }
-        Inks::of(style, class_by, maps.count + maps.before, space.shade)
+        Inks::of(
+            style,
+            class_by,
+            maps.count + maps.before,
+            space.shade.unwrap_or_default(),
+        )
     };
     for (pixel, key) in pixmap.pixels_mut().iter_mut().zip(&keys) {
         *pixel = shade::premultiplied(inks.sample(*key, None));
@@ -292,7 +297,7 @@ mod tests {
                 };
                 let descent = pixels_of(&space);
                 // White ink on black: the share of a pixel that is covered.
-                let cover = pixels_of(&space.clone().shade(Shade::None));
+                let cover = pixels_of(&space.clone().shade(Some(Shade::None)));
                 let (width, height) = (points.width() as usize, points.height() as usize);
                 let [columns, rows] = descent.size().map(|side| side as usize);
                 // Greatest brightness within a pixel, of the part that is covered.

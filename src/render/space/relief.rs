@@ -18,7 +18,7 @@ pub(super) fn light(
     space: &SpaceOptions,
     threads: usize,
 ) -> Result<(), CameraError> {
-    if space.shade.has_relief() {
+    if space.shade.unwrap_or_default().has_relief() {
         let towards = space.camera.rotation()? * space.light.towards();
         dim(pixmap, threads, |x, y| {
             space.light.intensity(normal(depths, x, y).dot(towards))

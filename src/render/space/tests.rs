@@ -459,7 +459,7 @@ fn a_pit_is_occluded_and_a_plane_is_not() {
         let options = Options::default().size(Size::Long(200));
         let space = SpaceOptions::default()
             .camera(camera.look_at(Some(DVec3::ZERO)))
-            .shade(Shade::None)
+            .shade(Some(Shade::None))
             .occlusion(true);
         let seen = draw(&graph, Some(1), &options, &space, None).unwrap().0;
         let middle = (seen.height() / 2 * seen.width() + seen.width() / 2) as usize;

@@ -127,7 +127,9 @@ mod tests {
             .style(model.metadata().style.clone())
             .view(View::default());
         let camera = Camera::default().from([0.0, 0.0]);
-        let space = SpaceOptions::default().camera(camera).shade(Shade::None);
+        let space = SpaceOptions::default()
+            .camera(camera)
+            .shade(Some(Shade::None));
         let (pixmap, ..) = draw(&graph, Some(1), &options, &space, None).unwrap();
         assert_eq!(pixmap.width(), u32::from(SIDE));
         let tint = |[red, green, blue]: [u8; 3]| {

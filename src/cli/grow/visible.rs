@@ -1,0 +1,99 @@
+//! Sets in space in vector formats, and as plots.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+
+use crate::render::space::write_visible;
+use crate::render::{self, Format};
+use crate::style::{ColorBy, Named};
+
+use super::super::labels::labels;
+use super::super::rule::Loaded;
+use super::super::{Failure, length, output, readable, steps};
+use super::{Arguments, plot};
+
+/// Draws a step of a set in space as polygons or lines; returns the path, a summary and the number of bytes.
+pub(super) fn draw(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    format: Format,
+) -> Result<(PathBuf, String, u64), Failure> {
+    let Arguments {
+        growth,
+        picture,
+        plot,
+        size,
+        ..
+    } = arguments;
+    let name = &loaded.name;
+    let refused = [
+        (
+            "--detail",
+            arguments.detail.is_some(),
+            ": give --steps, or write a .png",
+        ),
+        ("--occlusion", arguments.space.occludes(), ": write a .png"),
+        ("--depth", arguments.depth.is_some(), ": write a .png"),
+        ("--svg instanced", arguments.svg.is_instanced(), ""),
+        ("--zoom", arguments.zoom.is_asked(), ""),
+        ("--view", picture.has_view(), ""),
+    ];
+    for (option, is_asked, instead) in refused {
+        if is_asked {
+            let message =
+                format!("{name} lies in space, and {option} is not for its faces{instead}");
+            return Err(Failure::Usage(message));
+        }
+    }
+    let heading = loaded.model.metadata();
+    let style = picture.style_in(heading, size.unit);
+    let graph = (loaded.model).compile_in_space(style.color_by == ColorBy::LastMap);
+    let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
+    let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
+    growth.check(steps, &graph, loaded)?;
+    let space = arguments.space.to_options()?;
+    let own = [
+        ("steps", steps.to_string()),
+        ("format", format.name().into()),
+    ];
+    let all = { own.into_iter().chain(growth.options()) }
+        .chain(plot.options())
+        .chain([("size", size.to_string())])
+        .chain(picture.options())
+        .chain(arguments.space.options());
+    let options = render::Options {
+        format,
+        style,
+        view: picture.view_in(heading, size.unit),
+        size: size.size,
+        unit: size.unit,
+        plot: plot.is_asked(),
+        pens: plot.pens(picture),
+        threads: growth.threads(),
+        labels: labels(loaded, &format!("Step {steps}"), "grow", all),
+        ..render::Options::default()
+    };
+    let default = arguments.rule.file("", format.name());
+    let path = arguments.output.as_ref().unwrap_or(&default);
+    let (drawn, bytes) = output::write(path, growth.quiet, |mut out, progress| {
+        write_visible(
+            &graph,
+            &growth.to(steps, progress),
+            &options,
+            &space,
+            &mut out,
+        )
+        .map_err(|error| output::explain(error, path))
+    })?;
+    let elements = readable::counted(&drawn.elements.into(), "visible element");
+    let size = length::described(drawn.size, size.unit);
+    let mut summary = format!("step {steps} of {name}, {elements}, {size}");
+    if let Some(plotted) = &drawn.plotted {
+        if !growth.quiet {
+            plot.note_pens(plotted);
+        }
+        summary.push_str(&format!(", {}", plot::described(plotted)));
+    }
+    Ok((path.clone(), summary, bytes))
+}
