@@ -48,10 +48,12 @@ pub(super) fn draw(
     }
     let heading = loaded.model.metadata();
     let style = picture.style_in(heading, size.unit);
-    let graph = (loaded.model).compile_in_space(style.color_by == ColorBy::LastMap);
+    let graph = loaded.in_space(arguments.steps)?;
     let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
     let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
-    growth.check(steps, &graph, loaded)?;
+    let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
+    let (graph, levels) = (drawn.graph, drawn.steps.unwrap_or(steps));
+    growth.check(levels, &graph, loaded)?;
     let space = arguments.space.to_options()?;
     let own = [
         ("steps", steps.to_string()),
@@ -79,7 +81,7 @@ pub(super) fn draw(
     let (drawn, bytes) = output::write(path, growth.quiet, |mut out, progress| {
         write_visible(
             &graph,
-            &growth.to(steps, progress),
+            &growth.to(levels, progress),
             &options,
             &space,
             &mut out,
