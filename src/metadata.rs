@@ -1,7 +1,7 @@
 //! Metadata that files of all kinds have beside their mathematics.
 
 use crate::expression::Program;
-use crate::style::{Style, View};
+use crate::style::{SpaceView, Style, View};
 
 /// Maximum number of steps that a file may propose.
 pub(crate) const MAX_STEPS: u32 = 1_000_000;
@@ -65,6 +65,8 @@ pub struct Metadata {
     pub hausdorff_dimension: Option<f64>,
     /// Style of drawings.
     pub style: Style,
-    /// Part of the plane that is drawn.
+    /// Part of the plane that is drawn, and the margin.
     pub view: View,
+    /// View of a set in space.
+    pub space: SpaceView,
 }

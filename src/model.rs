@@ -23,6 +23,7 @@ use crate::instancing::Instancing;
 use crate::lsystem::LSystem;
 use crate::metadata::Metadata;
 use crate::rule::Rule;
+use crate::style::{Shade, SpaceView};
 use place::Extent;
 
 /// Declares the models of the kinds.
@@ -152,6 +153,18 @@ impl Model {
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
         self.as_kind().metadata()
+    }
+
+    /// Returns how a set in space is seen: as its file gives it. Where that does not name a shading, kinds that
+    /// have surfaces, other than systems, have depth cues and light on them.
+    #[must_use]
+    pub fn space_view(&self) -> SpaceView {
+        let own = self.metadata().space.clone();
+        let shade = match self.kind() {
+            Kind::Ifs => own.shade,
+            _ => own.shade.or(Some(Shade::Both)),
+        };
+        SpaceView { shade, ..own }
     }
 
     /// Returns the production rule, or `None` for a model of another kind.

@@ -1,12 +1,20 @@
-//! Styles and views: strokes, fills, colours by class, and the visible window.
+//! Styles and views: strokes, fills, colours by class, the visible window, and cameras in space.
 
+mod camera;
+mod light;
 mod palette;
+mod slice;
+mod space;
 
 use std::fmt;
 
 use crate::geometry::Homothety;
 
+pub use camera::{Camera, CameraError};
+pub use light::{Light, Shade};
 pub use palette::{Palette, UnknownPalette};
+pub use slice::Slice;
+pub use space::SpaceView;
 
 /// An sRGB colour with opacity: red, green, blue and alpha, each from 0 to 255.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,6 +57,19 @@ impl Colour {
     pub fn opaque(self) -> Self {
         let [red, green, blue, _] = self.0;
         Self([red, green, blue, 255])
+    }
+
+    /// Returns the colour with red, green and blue times a share from 0 to 1.
+    pub(crate) fn dimmed(self, share: f64) -> Self {
+        let [red, green, blue, alpha] = self.0;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "casts from floats saturate"
+        )]
+        let [red, green, blue] =
+            [red, green, blue].map(|part| (f64::from(part) * share).round() as u8);
+        Self([red, green, blue, alpha])
     }
 
     /// Returns the opacity, from 0 to 1.

@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::geometry::{DVec3, HalfSpace};
-use crate::render::space::{Camera, Light, Shade, Slice, SpaceOptions};
-use crate::style::Named;
+use crate::render::space::SpaceOptions;
+use crate::style::{Camera, Named, Shade, Slice, SpaceView};
 
 use super::picture::named;
 use super::rule::Loaded;
@@ -39,18 +39,22 @@ pub(super) struct SpaceArguments {
     /// Points with N·x at most VALUE remain. For example, --cut "1,0,0=0.5".
     #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = space::plane, allow_hyphen_values = true)]
     cut: Vec<HalfSpace>,
-    /// Shading: depth darkens what is far, relief lights surfaces that are taken from the depths
+    /// Shading: depth darkens what is far, cosine lights faces by their normals, relief by the depths around them, both is
+    /// depth and cosine [default: depth for systems, both for surfaces]
     #[arg(long, value_name = "HOW", value_parser = named::<Shade>())]
     shade: Option<Shade>,
-    /// Direction of the light of relief: azimuth and elevation in degrees [default: 0,45]
+    /// Direction of the light: azimuth and elevation in degrees [default: 20,50]
     #[arg(long, value_name = "AZ,EL", value_parser = direction, allow_hyphen_values = true)]
     light: Option<[f64; 2]>,
-    /// Intensity of what the light of relief does not reach, from 0 to 1 [default: 0.15]
+    /// Intensity of what the light does not reach, from 0 to 1 [default: 0.15, and 0 with --shade cosine]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     ambient: Option<f64>,
     /// Darken what is enclosed by its surroundings, by the depths of the pixels
-    #[arg(long)]
-    occlusion: bool,
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    occlusion: Option<bool>,
+    /// Throw the shadows of the light, by a second picture from its direction
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    shadows: Option<bool>,
 }
 
 impl SpaceArguments {
@@ -72,7 +76,8 @@ impl SpaceArguments {
             ("shade", self.shade.map(|it| it.name().into())),
             ("light", self.light.map(angles)),
             ("ambient", self.ambient.map(|it| it.to_string())),
-            ("occlusion", self.occlusion.then(String::new)),
+            ("occlusion", self.occlusion.map(|it| it.to_string())),
+            ("shadows", self.shadows.map(|it| it.to_string())),
         ];
         let given = all
             .into_iter()
@@ -83,7 +88,12 @@ impl SpaceArguments {
 
     /// Returns whether occlusion is asked for.
     pub(super) fn occludes(&self) -> bool {
-        self.occlusion
+        self.occlusion == Some(true)
+    }
+
+    /// Returns whether shadows are asked for.
+    pub(super) fn has_shadows(&self) -> bool {
+        self.shadows == Some(true)
     }
 
     /// Refuses the options for a set of the plane.
@@ -94,11 +104,11 @@ impl SpaceArguments {
         }
     }
 
-    /// Returns the options of a picture from the one direction that is given, or from the default.
-    pub(super) fn to_options(&self) -> Result<SpaceOptions, Failure> {
+    /// Returns the options of a picture, with those of the file that are not given: from one direction.
+    pub(super) fn to_options(&self, file: &SpaceView) -> Result<SpaceOptions, Failure> {
+        let view = self.view().or(file);
         match self.from.as_ref().map(|views| &views.0[..]) {
-            None => Ok(self.seen_from(self.default_view())),
-            Some([from]) => Ok(self.seen_from(*from)),
+            None | Some([_]) => Ok(SpaceOptions::from(&view)),
             Some(_) => Err(Failure::Usage(
                 "a picture is seen from one direction: kfrac sheet shows several".into(),
             )),
@@ -106,8 +116,9 @@ impl SpaceArguments {
     }
 
     /// Returns the options of one picture for each direction, with its name.
-    pub(super) fn views(&self) -> Vec<(String, SpaceOptions)> {
-        let default = vec![self.default_view()];
+    pub(super) fn views(&self, file: &SpaceView) -> Vec<(String, SpaceOptions)> {
+        let view = self.view().or(file);
+        let default = vec![view.direction()];
         let views = self.from.as_ref().map_or(&default, |views| &views.0);
         let name = |from: &[f64; 2]| {
             let named = Camera::NAMED.iter().find(|(_, angles)| angles == from);
@@ -116,35 +127,33 @@ impl SpaceArguments {
                 |(name, _)| (*name).into(),
             )
         };
-        let all = views.iter();
-        all.map(|from| (name(from), self.seen_from(*from)))
-            .collect()
+        let all = views.iter().map(|from| {
+            let from = Some(*from);
+            let view = SpaceView {
+                from,
+                ..view.clone()
+            };
+            SpaceOptions::from(&view)
+        });
+        views.iter().map(name).zip(all).collect()
     }
 
-    /// Returns the direction in which a slice is seen face-on, or the default.
-    fn default_view(&self) -> [f64; 2] {
-        let face_on = self.slice.map(|slice| slice.from());
-        face_on.unwrap_or(Camera::default().from)
-    }
-
-    /// Returns the options of a picture from a direction.
-    fn seen_from(&self, from: [f64; 2]) -> SpaceOptions {
-        let light = Light::default();
-        let camera = Camera::default()
-            .from(from)
-            .up(self.up)
-            .look_at(self.look_at)
-            .perspective(self.perspective);
-        let light = light
-            .from(self.light.unwrap_or(light.from))
-            .ambient(self.ambient.unwrap_or(light.ambient));
-        SpaceOptions::default()
-            .camera(camera)
-            .light(light)
-            .shade(self.shade)
-            .slice(self.slice)
-            .cuts(self.cut.clone())
-            .occlusion(self.occlusion)
+    /// Returns what is given of a view, from the first direction.
+    fn view(&self) -> SpaceView {
+        let first = |views: &Views| views.0.first().copied();
+        SpaceView {
+            from: self.from.as_ref().and_then(first),
+            up: self.up,
+            look_at: self.look_at,
+            perspective: self.perspective,
+            slice: self.slice,
+            cuts: self.cut.clone(),
+            shade: self.shade,
+            light: self.light,
+            ambient: self.ambient,
+            occlusion: self.occlusion,
+            shadows: self.shadows,
+        }
     }
 }
 

@@ -135,12 +135,13 @@ impl Arguments {
             .from
             .map(|from| from.map(|it| it.to_string()).join(","));
         options.extend(from.map(|from| ("from", from)));
-        let camera = Camera::default();
+        let view = &loaded.model.metadata().space;
+        let camera = Camera::default().up(view.up);
         rule::RuleFigureOptions {
             format,
             size: self.size,
             background: self.background.and_then(picture::Ink::colour),
-            camera: camera.from(self.from.unwrap_or(camera.from)),
+            camera: camera.from(self.from.unwrap_or(view.direction())),
             labels: labels(loaded, &shown, "show", options),
         }
     }

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Place, did_you_mean};
 use crate::expression::PARTS;
 use crate::metadata::Description;
-use crate::style::{Style, View};
+use crate::style::{SpaceView, Style, View};
 
 use super::{Written, WrittenNumber};
 
@@ -26,6 +26,8 @@ pub struct MetadataDocument {
     pub sets_colours: bool,
     /// View: the window and the margin.
     pub view: View,
+    /// View of a set in space.
+    pub space: SpaceView,
     /// Whether all parents, components and fractals were found. Otherwise unknown names may be defined
     /// in a missing file and are not reported.
     pub complete: bool,

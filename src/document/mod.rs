@@ -24,6 +24,7 @@ mod rule;
 mod schema;
 mod shape;
 mod style;
+mod view;
 mod yaml;
 
 pub use ifs::{

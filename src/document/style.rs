@@ -1,7 +1,7 @@
-//! Reading of `style` and `view`.
+//! Reading of `style`.
 
 use crate::expression::Scope;
-use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, View, Width};
+use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, Width};
 
 use super::mapping::FromNode;
 use super::node::{Node, Value};
@@ -38,18 +38,6 @@ const WIDTH: Shape = Shape {
     ]],
     ways: &[],
     hint: "width: 1.5 in pixels, or width: {relative: 0.1} of the element's length",
-};
-
-pub(super) const VIEW: Shape = Shape {
-    what: "a view",
-    keys: &[&keys![
-        window: Form::List(&Form::Number, 4, Some(4)),
-            "[x, y, width, height] in the rule's units, from the lower left corner; everything, if \
-             left out.";
-        margin: Form::Positive, "Pixels that are left free around the picture; 0 if left out.";
-    ]],
-    ways: &[],
-    hint: "view: {window: [x, y, width, height], margin: 10}",
 };
 
 impl FromNode for Style {
@@ -140,7 +128,7 @@ impl FromNode for f64 {
     }
 }
 
-fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
+pub(super) fn constant(reader: &mut Reader, node: &Node) -> Option<f64> {
     let number = reader.number(node);
     match number.value.compile(&Scope::new()) {
         Ok(program) => program.as_constant(),
@@ -192,36 +180,5 @@ impl FromNode for Palette {
 
     fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
         Some(Self::default())
-    }
-}
-
-impl FromNode for View {
-    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
-        let fields = reader.fields(node, &VIEW)?;
-        Some(Self {
-            window: fields.optional(reader, "window"),
-            margin: fields.read(reader, "margin")?,
-        })
-    }
-
-    fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
-        Some(Self::default())
-    }
-}
-
-/// A window: its lower left corner, its width and its height.
-impl FromNode for [f64; 4] {
-    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
-        let entries = reader.list(node, "a list of four numbers", VIEW.hint);
-        let numbers = entries.iter().filter_map(|entry| constant(reader, entry));
-        let numbers: Vec<_> = numbers.collect();
-        let window = Self::try_from(numbers).ok().filter(|_| entries.len() == 4);
-        let is_empty = window.is_some_and(|[_, _, width, height]| width <= 0.0 || height <= 0.0);
-        let is_list = matches!(node.value, Value::Sequence(_));
-        if is_list && (is_empty || entries.len() != 4) {
-            let message = "a window has a lower left corner, a width and a height above 0";
-            reader.error_with_hint(&node.place, message, VIEW.hint);
-        }
-        window
     }
 }

@@ -57,7 +57,7 @@ pub struct Fractal {
     size: Size,
     style: Option<Style>,
     view: Option<View>,
-    space: SpaceOptions,
+    space: Option<SpaceOptions>,
     png_encoding: PngEncoding,
     cancel: Option<Arc<AtomicBool>>,
     /// The graph of the model in the file's coordinates, once it has been compiled.
@@ -81,7 +81,7 @@ impl From<Model> for Fractal {
             size: Size::Long(1024),
             style: None,
             view: None,
-            space: SpaceOptions::default(),
+            space: None,
             png_encoding: PngEncoding::default(),
             cancel: None,
             graph: OnceLock::new(),

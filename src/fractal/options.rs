@@ -136,7 +136,8 @@ impl Fractal {
         self
     }
 
-    /// Sets the camera, the shading and the light of pictures of a set in space. They have no effect in the plane.
+    /// Sets the camera, the shading and the light of pictures of a set in space in place of the file's. They have no effect
+    /// in the plane.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -151,7 +152,7 @@ impl Fractal {
     /// ```
     #[must_use]
     pub fn space(mut self, space: SpaceOptions) -> Self {
-        self.space = space;
+        self.space = Some(space);
         self
     }
 

@@ -85,7 +85,7 @@ impl Fractal {
         let options = self.options(Format::Png, size.into())?;
         if let Some(graph) = self.graph_to_draw_in_space(&options)? {
             let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
-            let drawn = pixels_in_space(graph, steps, &options, &self.space, cancel);
+            let drawn = pixels_in_space(graph, steps, &options, &self.space_options(), cancel);
             return Ok(drawn?.pixels);
         }
         let pixels = self.draw_by(&options, |graph, growth, options| {
@@ -382,7 +382,7 @@ impl Fractal {
                     graph,
                     &growth,
                     options,
-                    &self.space,
+                    &self.space_options(),
                     &mut out,
                 )?);
             }
@@ -391,7 +391,7 @@ impl Fractal {
                 graph,
                 steps,
                 options,
-                &self.space,
+                &self.space_options(),
                 cancel,
                 &mut out,
             )?);

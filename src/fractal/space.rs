@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DVec3, Frame3};
 use crate::graph::{Forecast, Graph};
 use crate::grow::{Element, Elements};
-use crate::render::space::{DepthMap, Shade, pixels_in_space};
+use crate::render::space::{DepthMap, Shade, SpaceOptions, pixels_in_space};
 use crate::render::{Detail, Format, NoRoom, Options, RenderError, Size};
 
 use super::goal::steps_of_graph;
@@ -95,7 +95,10 @@ impl Fractal {
     pub fn depth_map(&self, size: impl Into<Size>) -> Result<DepthMap, Error> {
         let graph = self.graph_in_space("all of its points have the same depth")?;
         let options = self.options(Format::Png, size.into())?;
-        let space = self.space.clone().shade(Some(Shade::None)).occlusion(false);
+        let space = self
+            .space_options()
+            .shade(Some(Shade::None))
+            .occlusion(false);
         let drawn = pixels_in_space(
             graph,
             self.steps_drawn_in_space(),
@@ -152,6 +155,12 @@ impl Fractal {
     pub(super) fn steps_drawn_in_space(&self) -> Option<u32> {
         let proposed = self.model.metadata().steps;
         self.steps.or(proposed.filter(|_| self.detail.is_none()))
+    }
+
+    /// Returns the options of pictures in space: those of the file, unless others are set.
+    pub(super) fn space_options(&self) -> SpaceOptions {
+        let own = || SpaceOptions::from(&self.model.space_view());
+        self.space.clone().unwrap_or_else(own)
     }
 
     pub(super) fn detail_in_space(&self) -> Option<Detail> {

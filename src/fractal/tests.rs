@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::catalogue::{Catalogue, Shelf};
 use crate::grow::WalkError;
-use crate::render::space::{Camera, SpaceOptions};
+use crate::render::space::{Camera, Light, Shade, SpaceOptions};
 use crate::render::{self, Options, RenderError};
 use crate::style::View;
 
@@ -210,4 +210,22 @@ fn elements_know_whether_they_are_drawn() {
     // Visibility belongs to the last generator's elements: what replaces an invisible element may be visible.
     let expected = [true, false, true].repeat(3);
     assert_eq!(visible.collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn the_view_of_a_file_is_that_of_its_pictures() {
+    let text = "{kind: ifs, space: 3, vertices: {solid: cube, shrink: 1/3}, VIEW}";
+    let parse = |view: &str| Fractal::parse(&text.replace("VIEW", view)).unwrap();
+    let plain = parse("steps: 2");
+    let viewed = parse("steps: 2, view: {from: side, shade: relief, light: top, perspective: 30}");
+    let camera = Camera::default().from([90.0, 0.0]).perspective(Some(30.0));
+    let space = SpaceOptions::default()
+        .camera(camera)
+        .shade(Some(Shade::Relief))
+        .light(Light::default().from([0.0, 90.0]));
+    let own = viewed.pixels(40).unwrap();
+    assert!(own != plain.pixels(40).unwrap());
+    assert!(own == plain.clone().space(space).pixels(40).unwrap());
+    let default = SpaceOptions::default();
+    assert!(viewed.space(default).pixels(40).unwrap() == plain.pixels(40).unwrap());
 }

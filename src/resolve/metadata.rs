@@ -27,6 +27,7 @@ impl<K> Resolver<K> {
             hausdorff_dimension: self.dimension(document.hausdorff_dimension.as_ref()),
             style: document.style.clone(),
             view: document.view,
+            space: document.space.clone(),
         }
     }
 

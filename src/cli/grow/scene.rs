@@ -92,7 +92,7 @@ pub(super) fn write(
                 );
                 growth.check_or(levels, &graph, loaded, &otherwise)?;
             }
-            let space = arguments.space.to_options()?;
+            let space = arguments.space.to_options(&loaded.model.space_view())?;
             let (scene, bytes) = output::write(path, growth.quiet, |mut out, _| {
                 write_scene(&graph, levels, &options, &space, format, None, &mut out)
                     .map_err(|error| output::explain(error, path))

@@ -62,7 +62,7 @@ pub(super) fn draw(
         ..render::Options::default()
     };
     let quiet = arguments.growth.quiet;
-    let space = arguments.space.to_options()?;
+    let space = arguments.space.to_options(&loaded.model.space_view())?;
     let space = space.keeps_depths(arguments.depth.is_some());
     let drawn = loaded.drawn_in_space(steps, false)?;
     let graph = drawn.graph;

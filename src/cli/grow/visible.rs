@@ -34,6 +34,7 @@ pub(super) fn draw(
             ": give --steps, or write a .png",
         ),
         ("--occlusion", arguments.space.occludes(), ": write a .png"),
+        ("--shadows", arguments.space.has_shadows(), ": write a .png"),
         ("--depth", arguments.depth.is_some(), ": write a .png"),
         ("--svg instanced", arguments.svg.is_instanced(), ""),
         ("--zoom", arguments.zoom.is_asked(), ""),
@@ -54,7 +55,7 @@ pub(super) fn draw(
     let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
     let (graph, levels) = (drawn.graph, drawn.steps.unwrap_or(steps));
     growth.check(levels, &graph, loaded)?;
-    let space = arguments.space.to_options()?;
+    let space = arguments.space.to_options(&loaded.model.space_view())?;
     let own = [
         ("steps", steps.to_string()),
         ("format", format.name().into()),

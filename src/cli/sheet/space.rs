@@ -22,7 +22,7 @@ impl Arguments {
     pub(super) fn draw_in_space(&self, family: &[Member], start: Instant) -> Result<(), Failure> {
         let (_, first) = &family[0];
         self.refuse_of_plane(&first.name)?;
-        let views = self.space.views();
+        let views = self.space.views(&first.model.space_view());
         let most = self.steps.as_ref().map(steps::Several::largest);
         let graphs = family.iter().map(|(settings, loaded)| {
             let graph = loaded.in_space(most)?;

@@ -5,7 +5,8 @@ use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
-use crate::document::style::{STYLE, VIEW};
+use crate::document::style::STYLE;
+use crate::document::view::{VIEW, read_view};
 use crate::metadata::Description;
 use crate::metadata::MAX_STEPS;
 
@@ -31,7 +32,7 @@ pub(super) const LIKING: [Member; 5] = keys![
     hausdorff_dimension: Form::Number,
         "The published dimension of the set itself, where it is smaller because copies overlap.";
     style: Form::Mapping(&STYLE), "How it is drawn.";
-    view: Form::Mapping(&VIEW), "Which part of the plane is drawn.";
+    view: Form::Mapping(&VIEW), "Which part of the plane is drawn, or how a set in space is seen.";
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.
@@ -39,6 +40,11 @@ pub(in crate::document) fn read_heading(
     reader: &mut Reader,
     fields: &Fields<'_>,
 ) -> MetadataDocument {
+    let mut entries = fields.in_order();
+    let in_space = entries.any(|(key, node)| key == "space" && node.value != Value::Number(2.0));
+    let view = fields.take("view");
+    let view = view.map(|node| read_view(reader, node, in_space));
+    let (view, space) = view.unwrap_or_default();
     MetadataDocument {
         description: read_description(reader, fields),
         params: read_params(reader, fields.take("params")),
@@ -49,7 +55,8 @@ pub(in crate::document) fn read_heading(
             .take("style")
             .is_some_and(|style| style.get("color_by").is_some()),
         style: fields.read(reader, "style").unwrap_or_default(),
-        view: fields.read(reader, "view").unwrap_or_default(),
+        view,
+        space,
         complete: false,
         place: fields.place.clone(),
     }

@@ -5,6 +5,7 @@ use crate::geometry::{DAffine3, DVec3};
 use super::buffer::{Buffer, MAX_CLASS};
 use super::copies::Copies;
 use super::forms::{Form, Forms, class};
+use super::lit::{Classes, FINE, Lit, intensity};
 use super::scene::{ClassBy, End, Part, ends};
 use super::solid::{Pencil, View};
 use super::stamp::Stamp;
@@ -56,8 +57,10 @@ pub(super) struct Roots<'a> {
     pub(super) forms: &'a Forms,
     pub(super) end: End,
     pub(super) class_by: ClassBy,
-    /// Colour of what has no tint.
-    pub(super) ink: Colour,
+    /// Light on faces.
+    pub(super) lit: Option<Lit>,
+    /// Colours of the classes, or of what has no tint.
+    pub(super) inks: &'a [Colour],
     /// Samples by which flat solids may exceed the hulls of their objects.
     pub(super) pad: f64,
     /// Whether instances may lie in equal positions.
@@ -65,6 +68,12 @@ pub(super) struct Roots<'a> {
 }
 
 impl Roots<'_> {
+    /// Returns whether the classes of samples are colours that are found tile by tile.
+    pub(super) fn finds_colours(&self) -> bool {
+        let by_face = self.lit.is_some_and(|lit| lit.bits().is_none());
+        self.class_by == ClassBy::Tint || by_face
+    }
+
     /// Returns the class of an element; `outer` is that of the instance that contains it.
     pub(super) fn class(&self, form: &Form, outer: u16) -> u16 {
         let class = match self.class_by {
@@ -218,12 +227,44 @@ impl Descent {
         };
         if let Some(solid) = roots.parts[form.object].drawn(form.level, &roots.end) {
             let map = DAffine3::from_mat3_translation(form.linear, node.at - form.middle);
+            let (pencil, tints) = (&mut self.pencil, &mut self.tints);
+            let mut draw = |buffer: &mut Buffer, classes: Classes<'_>| {
+                pencil.draw(buffer, view, solid, &map, rectangle, classes);
+            };
             let class = match roots.class_by {
-                ClassBy::Tint => self.tints.class(node.paint.look, roots.ink, buffer),
+                ClassBy::Tint => 0,
                 _ => roots.class(form, node.paint.class),
             };
-            self.pencil
-                .draw(buffer, view, solid, &map, rectangle, class);
+            match roots.lit {
+                None if roots.class_by == ClassBy::Tint => {
+                    tints.make_room(1, buffer);
+                    let colour = tints.colour(node.paint.look, roots.inks[0]);
+                    draw(buffer, Classes::One(tints.class(colour)));
+                }
+                None => draw(buffer, Classes::One(class)),
+                Some(lit) => match lit.bits() {
+                    Some(bits) => {
+                        let mut of = |normal| lit.class(class, normal, bits);
+                        draw(buffer, Classes::OfNormals(&mut of));
+                    }
+                    None => {
+                        let colour = match roots.class_by {
+                            ClassBy::Tint => tints.colour(node.paint.look, roots.inks[0]),
+                            _ => roots.inks[usize::from(class) % roots.inks.len()],
+                        };
+                        let faces = match solid.primitive() {
+                            Some(_) => 1 << FINE,
+                            None => solid.faces().len(),
+                        };
+                        tints.make_room(faces + view.cuts.len(), buffer);
+                        let mut of = |normal| {
+                            let level = lit.level(normal, FINE);
+                            tints.class(colour.dimmed(intensity(level, FINE)))
+                        };
+                        draw(buffer, Classes::OfNormals(&mut of));
+                    }
+                },
+            }
             self.drawn += 1;
             self.deepest = self.deepest.max(form.level);
         }

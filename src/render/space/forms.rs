@@ -115,7 +115,7 @@ struct Finder<'a> {
 }
 
 impl Forms {
-    /// Finds forms, from the initiator on.
+    /// Finds forms, from the initiator on. They have stamps where the classes of samples are known before the descent.
     pub(super) fn find(
         parts: &[Part],
         start: &[Child],
@@ -123,6 +123,7 @@ impl Forms {
         class_by: ClassBy,
         placement: &Placement,
         pad: f64,
+        has_stamps: bool,
     ) -> Self {
         let [far, near] = placement.range;
         let scale = match placement.projection {
@@ -165,8 +166,7 @@ impl Forms {
         let mut forms = finder.forms;
         if let Projection::Parallel = placement.projection {
             forms.count(parts, end);
-            // The classes of tints are found tile by tile.
-            if class_by != ClassBy::Tint {
+            if has_stamps {
                 forms.admit_stamps(pad);
             }
         }

@@ -16,6 +16,7 @@ mod depth_map;
 mod descent;
 mod eye;
 mod forms;
+mod lit;
 mod occlusion;
 mod place;
 mod points;
@@ -23,20 +24,20 @@ mod relief;
 mod round;
 mod scene;
 mod shade;
+mod shadows;
 mod slice;
 mod solid;
 mod stamp;
 mod tints;
 mod visible;
 
-pub use camera::{Camera, CameraError};
 pub use depth_map::DepthMap;
 pub(in crate::render) use eye::Eye;
 pub use points::{colours_of_maps, points_in_space};
 pub(super) use shade::ink;
-pub use shade::{Light, Shade};
-pub use slice::Slice;
 pub use visible::write_visible;
+
+pub use crate::style::{Camera, CameraError, Light, Shade, Slice};
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -48,18 +49,20 @@ use crate::geometry::{Frame3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::parallel::with_team;
-use crate::style::{ColorBy, Colour, Named};
+use crate::style::{ColorBy, Colour, Named, SpaceView};
 
 use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
 use self::camera::Placement;
 use self::descent::{Descent, Roots};
 use self::forms::Forms;
+use self::lit::Lit;
 use self::scene::{ClassBy, End};
 use self::shade::Inks;
+use self::shadows::Shadows;
 use self::slice::Search;
 use self::solid::{Depths, View};
 use super::png::TooManyPixels;
-use super::{NoRoom, Options, Picture, Pixels, RenderError};
+use super::{NoRoom, Options, Picture, Pixels, RenderError, Size};
 
 /// Error of drawing in space.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -126,6 +129,8 @@ pub struct SpaceOptions {
     pub cuts: Vec<HalfSpace>,
     /// Whether what is enclosed by its surroundings is darker: ambient occlusion, from the depths of the pixels.
     pub occlusion: bool,
+    /// Whether the set throws shadows on itself.
+    pub shadows: bool,
     /// Whether the depths of the pixels are kept, in [`SpacePicture::depths`].
     pub keeps_depths: bool,
 }
@@ -137,6 +142,7 @@ setters!(SpaceOptions {
     slice: Option<Slice>,
     cuts: Vec<HalfSpace>,
     occlusion: bool,
+    shadows: bool,
     keeps_depths: bool,
 });
 
@@ -149,8 +155,26 @@ impl SpaceOptions {
     }
 
     /// Returns whether the colours of pixels, or the caller, need depths.
-    fn needs_depths(&self) -> bool {
-        self.shade.unwrap_or_default().has_relief() || self.occlusion || self.keeps_depths
+    fn needs_depths(&self, has_faces: bool) -> bool {
+        self.shade.unwrap_or_default().has_relief(has_faces)
+            || self.occlusion
+            || self.shadows
+            || self.keeps_depths
+    }
+}
+
+impl From<&SpaceView> for SpaceOptions {
+    fn from(view: &SpaceView) -> Self {
+        Self {
+            camera: view.camera(),
+            shade: view.shade,
+            light: view.light(),
+            slice: view.slice,
+            cuts: view.cuts.clone(),
+            occlusion: view.occlusion.unwrap_or_default(),
+            shadows: view.shadows.unwrap_or_default(),
+            keeps_depths: false,
+        }
     }
 }
 
@@ -262,7 +286,7 @@ impl Tile<'_> {
         self.descent.drawn = 0;
         self.descent.deepest = 0;
         self.descent.run(roots, &view, &mut self.buffer);
-        let is_tinted = roots.class_by == ClassBy::Tint;
+        let is_tinted = roots.finds_colours();
         if is_tinted {
             self.descent.tints.settle(&mut self.buffer);
         }
@@ -326,26 +350,35 @@ fn draw(
         }
         ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
     };
+    let has_faces = scene::has_faces(graph, steps);
+    let is_lit = has_faces && space.shade.unwrap_or_default().lights_faces();
+    let known = Some(classes).filter(|_| class_by != ClassBy::Tint);
+    let lit = is_lit.then(|| Lit::new(&space.camera, space.light, known));
+    let lit = lit.transpose().map_err(SpaceError::from)?;
+    let inks = shade::colours(style, class_by, classes);
     let pad = solid::pad(graph);
-    let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad);
+    // Stamps are shared by tiles.
+    let has_stamps = class_by != ClassBy::Tint && lit.is_none_or(|lit| lit.bits().is_some());
+    let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad, has_stamps);
     let scene = Scene {
         roots: Roots {
             parts: &parts,
             forms: &forms,
             end,
             class_by,
-            ink: ink(style),
+            lit,
+            inks: &inks,
             pad,
             overlap: copies::overlap(&parts),
         },
         cuts: cuts.collect(),
         placement,
-        inks: Inks::of(style, class_by, classes, space.shade.unwrap_or_default()),
+        inks: Inks::new(&inks, lit.as_ref(), space.shade.unwrap_or_default()),
         cancel,
     };
     let size @ [width, height] = placement.size;
     let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
-    let mut depths = { space.needs_depths() }.then(|| DepthMap::new(&scene.placement));
+    let mut depths = { space.needs_depths(has_faces) }.then(|| DepthMap::new(&scene.placement));
     let (mut drawn, mut deepest) = (0, 0);
     let mut take = |tile: &mut Tile<'_>| {
         if scene.is_cancelled() {
@@ -377,20 +410,72 @@ fn draw(
         }
         line.finish(&mut take)
     })?;
-    finish(&mut pixmap, depths.as_ref(), options, space)?;
+    // The search for the extent ends with boxes of a size, whose set may lie beside a section.
+    if let Some(first) = space.within(0.0).first()
+        && pixmap.pixels().iter().all(|pixel| pixel.alpha() == 0)
+    {
+        return Err(place::nothing_left(graph, steps, first).into());
+    }
+    let shadows = match &depths {
+        Some(depths) if space.shadows => {
+            let seen = seen_by_light(graph, steps, options, space, cancel)?;
+            seen.map(|seen| Shadows::new(seen, depths))
+        }
+        _ => None,
+    };
+    let shadows = shadows.as_ref();
+    finish(
+        &mut pixmap,
+        depths.as_ref(),
+        shadows,
+        has_faces,
+        options,
+        space,
+    )?;
     let picture = described(size, steps.unwrap_or(deepest), drawn);
     Ok((pixmap, depths, picture))
+}
+
+/// Number of pixels along the long side of a picture from the light, beside that of the picture.
+const LIGHT_SIDE: u32 = 2048;
+
+/// Returns the depths of a set from the direction of the light.
+fn seen_by_light(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+    cancel: Option<&AtomicBool>,
+) -> Result<Option<DepthMap>, RenderError> {
+    let (Size::Long(side) | Size::Exactly(side, _)) = options.size;
+    let mut options = options
+        .clone()
+        .size(Size::Long(LIGHT_SIDE.max(side.min(2 * LIGHT_SIDE))));
+    options.view.margin = 0.0;
+    options.style.color_by = ColorBy::None;
+    let space = SpaceOptions::default()
+        .camera(Camera::default().from(space.light.from))
+        .slice(space.slice)
+        .cuts(space.cuts.clone())
+        .shade(Some(Shade::None))
+        .keeps_depths(true);
+    let (_, depths, _) = draw(graph, steps, &options, &space, cancel)?;
+    Ok(depths)
 }
 
 /// Lights the pixels by their depths, and puts them on the background.
 fn finish(
     pixmap: &mut Pixmap,
     depths: Option<&DepthMap>,
+    shadows: Option<&Shadows>,
+    has_faces: bool,
     options: &Options,
     space: &SpaceOptions,
 ) -> Result<(), RenderError> {
     if let Some(depths) = depths {
-        relief::light(pixmap, depths, space, options.threads.get()).map_err(SpaceError::from)?;
+        let threads = options.threads.get();
+        relief::light(pixmap, depths, shadows, has_faces, space, threads)
+            .map_err(SpaceError::from)?;
     }
     let background = Some(options.style.background.unwrap_or(PAPER));
     let pixels = pixmap.pixels_mut().iter_mut();

@@ -3,10 +3,11 @@
 use crate::geometry::{Bounds, DAffine3, DMat3, DVec2, DVec3, Frame3, HalfSpace, Solid};
 use crate::graph::Graph;
 use crate::render::{Canvas, NoRoom, Size};
+use crate::style::Camera;
 
 use super::SpaceError;
 use super::buffer::SAMPLES;
-use super::camera::{Camera, Placement, Projection};
+use super::camera::{Placement, Projection};
 use super::scene::extent_along;
 use super::slice::Search;
 
@@ -43,12 +44,7 @@ pub(super) fn place_with(
     camera.check()?;
     let rotation = camera.rotation()?;
     let extent = |rows: DMat3| -> Result<Bounds<DVec3>, SpaceError> {
-        let mut bounds = extent_along(graph, rows, None);
-        if let Some(steps) = steps {
-            let own = extent_along(graph, rows, Some(steps)).ok_or(SpaceError::NoBounds)?;
-            bounds.get_or_insert(Bounds::EMPTY).add_all(&own);
-        }
-        let mut bounds = bounds.ok_or(SpaceError::NoBounds)?;
+        let mut bounds = whole(graph, steps, rows)?;
         { others.iter() }.for_each(|point| bounds.add(rows * *point));
         if bounds.is_empty() {
             return Err(NoRoom::Nothing.into());
@@ -59,11 +55,7 @@ pub(super) fn place_with(
         None => extent(rotation)?,
         Some(first) => match search.extent(rotation, within) {
             Some(bounds) => without_rounding(&bounds),
-            None => {
-                let normal = DMat3::from_cols(first.normal, DVec3::ZERO, DVec3::ZERO);
-                let along = extent(normal.transpose())?;
-                return Err(SpaceError::NothingLeft([along.min().x, along.max().x]));
-            }
+            None => return Err(nothing_left(graph, steps, first)),
         },
     };
     let middle = bounds.min() + bounds.size() / 2.0;
@@ -105,6 +97,33 @@ pub(super) fn place_with(
         range: [bounds.min().z - viewer.z, bounds.max().z - viewer.z],
         size: canvas.size(),
     })
+}
+
+/// Returns the box of a set under a map: of the limit set, and of approximant `steps` if it is given.
+fn whole(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    rows: DMat3,
+) -> Result<Bounds<DVec3>, SpaceError> {
+    let mut bounds = extent_along(graph, rows, None);
+    if let Some(steps) = steps {
+        let own = extent_along(graph, rows, Some(steps)).ok_or(SpaceError::NoBounds)?;
+        bounds.get_or_insert(Bounds::EMPTY).add_all(&own);
+    }
+    bounds.ok_or(SpaceError::NoBounds)
+}
+
+/// Returns the error of a picture confined to half-spaces, of which the first is given, that hold nothing of a set.
+pub(super) fn nothing_left(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    first: &HalfSpace,
+) -> SpaceError {
+    let normal = DMat3::from_cols(first.normal, DVec3::ZERO, DVec3::ZERO);
+    match whole(graph, steps, normal.transpose()) {
+        Ok(along) => SpaceError::NothingLeft([along.min().x, along.max().x]),
+        Err(error) => error,
+    }
 }
 
 /// Returns a box without extents that are rounding errors.

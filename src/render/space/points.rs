@@ -18,7 +18,7 @@ use super::buffer::{CLASS_BITS, EMPTY, MAX_CLASS, SAMPLES, STEPS};
 use super::camera::{Placement, Projection};
 use super::depth_map::DepthMap;
 use super::scene::ClassBy;
-use super::shade::{self, Inks, class_colour};
+use super::shade::{self, Inks, class_colour, colours};
 use super::slice::Search;
 use super::solid::depth_of;
 use super::{SpaceError, SpaceOptions, SpacePicture, described, finish, place};
@@ -100,13 +100,26 @@ impl Maps {
 }
 
 /// Draws the picture into memory.
-pub(super) fn draw(
+fn draw(
     graph: &Graph<Frame3>,
     system: &WeightedMaps<DAffine3>,
     game: &Game<'_, DVec3>,
     tone: Tone,
     options: &Options,
     space: &SpaceOptions,
+) -> Result<(Pixmap, DepthMap), RenderError> {
+    draw_with(graph, system, game, tone, options, space, SIDE)
+}
+
+/// Draws the picture into memory, with at most so many samples along a side of a pixel.
+fn draw_with(
+    graph: &Graph<Frame3>,
+    system: &WeightedMaps<DAffine3>,
+    game: &Game<'_, DVec3>,
+    tone: Tone,
+    options: &Options,
+    space: &SpaceOptions,
+    most: u32,
 ) -> Result<(Pixmap, DepthMap), RenderError> {
     let ways: Vec<DVec3> = match game.start {
         crate::chaos::Start::Attractor => Vec::new(),
@@ -134,44 +147,69 @@ pub(super) fn draw(
     let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
     let style = &options.style;
     let by_hits = style.color_by == ColorBy::Hits;
-    let picture =
-        play_in_space(system, &window(&placement), by_hits, game).map_err(SpaceError::from)?;
+    let fine = fineness(size, game.points).min(most);
+    let played = play_in_space(system, &window(&placement, fine), by_hits, game);
+    let picture = played.map_err(SpaceError::from)?;
     let mut keys = picture.keys().to_vec();
     let inks = if by_hits {
         by_tone(&mut keys, picture.hits(), tone);
         // The colours of as many classes as there are tones.
-        Inks::of(
-            style,
-            ClassBy::LastMap,
-            usize::from(MAX_CLASS) + 1,
-            space.shade.unwrap_or_default(),
-        )
+        colours(style, ClassBy::LastMap, usize::from(MAX_CLASS) + 1)
     } else {
         let class_by = ClassBy::of(style.color_by)?;
         let maps = Maps::of(graph, system);
         for key in keys.iter_mut().filter(|key| **key != EMPTY) {
             *key = maps.numbered(*key);
         }
-        Inks::of(
-            style,
-            class_by,
-            maps.count + maps.before,
-            space.shade.unwrap_or_default(),
-        )
+        colours(style, class_by, maps.count + maps.before)
     };
-    for (pixel, key) in pixmap.pixels_mut().iter_mut().zip(&keys) {
-        *pixel = shade::premultiplied(inks.sample(*key, None));
+    let inks = Inks::new(&inks, None, space.shade.unwrap_or_default());
+    // The samples of a pixel.
+    let all = &keys;
+    let samples = |at: usize| {
+        let (fine, width) = (fine as usize, width as usize);
+        let (x, y) = (at % width * fine, at / width * fine);
+        let row = width * fine;
+        let rows = (y..y + fine).map(move |y| y * row + x);
+        rows.flat_map(move |start| &all[start..start + fine])
+    };
+    for (at, pixel) in pixmap.pixels_mut().iter_mut().enumerate() {
+        let mut sum = [0.0; 4];
+        for key in samples(at) {
+            let own = inks.sample(*key, None);
+            sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
+        }
+        *pixel = shade::premultiplied(sum.map(|part| part / f64::from(fine * fine)));
     }
-    let depths = DepthMap::of(&placement, keys.iter().map(|key| depth_of(*key)));
-    finish(&mut pixmap, Some(&depths), options, space)?;
+    let pixels = width as usize * height as usize;
+    let nearest = (0..pixels).map(|at| samples(at).min().and_then(|key| depth_of(*key)));
+    let depths = DepthMap::of(&placement, nearest);
+    // Points have no normals.
+    finish(&mut pixmap, Some(&depths), None, false, options, space)?;
     Ok((pixmap, depths))
+}
+
+/// Number of points for each sample of a pixel from which pictures are antialiased: with fewer, samples on the set stay
+/// empty by chance, and it would fade.
+const DENSE: u64 = 16;
+
+/// Number of samples along a side of a pixel of an antialiased picture.
+const SIDE: u32 = 2;
+
+/// Returns the number of samples along a side of a pixel.
+fn fineness([width, height]: [u32; 2], points: u64) -> u32 {
+    let samples = u64::from(SIDE * SIDE) * u64::from(width) * u64::from(height);
+    match points / DENSE >= samples {
+        true => SIDE,
+        false => 1,
+    }
 }
 
 /// Scale by which a fitted picture lies inside its edges.
 const INSIDE: f64 = 1.0 - 1e-6;
 
-/// Returns the window of a placement, in pixels.
-fn window(placement: &Placement) -> DepthWindow {
+/// Returns the window of a placement, in pixels or in `fine` samples along their sides.
+fn window(placement: &Placement, fine: u32) -> DepthWindow {
     const { assert!(CLASS_BITS == DepthPicture::CLASS_BITS && EMPTY == DepthPicture::EMPTY) };
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let samples = SAMPLES as f64;
@@ -181,8 +219,9 @@ fn window(placement: &Placement) -> DepthWindow {
         range,
         size,
     } = *placement;
+    let size = size.map(|side| side * fine);
     // Points on the right and lower edges belong to the last pixels.
-    let across = INSIDE / samples;
+    let across = INSIDE / samples * f64::from(fine);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -288,7 +327,7 @@ mod tests {
                 let camera = Camera::default().perspective(perspective);
                 let space = SpaceOptions::default().camera(camera);
                 let game = Game::default().points(400_000);
-                let points = draw(&graph, &system, &game, Tone::Log, &coarse, &space);
+                let points = draw_with(&graph, &system, &game, Tone::Log, &coarse, &space, 1);
                 let points = points.unwrap().0;
                 let fine = options(SIDE * 8, ColorBy::None);
                 let pixels_of = |space: &SpaceOptions| {
@@ -400,5 +439,31 @@ mod tests {
             .chunks_exact(64)
             .filter(|row| row[63].red() > 0);
         assert!(last.count() > 0);
+    }
+
+    /// Many points leave no sample on the set empty, and edges are as in the exact picture.
+    #[test]
+    fn dense_points_are_antialiased() {
+        let (graph, system) = of("{kind: ifs, space: 3, vertices: {solid: cube, shrink: 1/2}}");
+        let options = options(40, ColorBy::None);
+        let space = SpaceOptions::default().shade(Some(Shade::None));
+        let exact = pixels_in_space(&graph, None, &options, &space, None).unwrap();
+        let play = |points| {
+            let game = Game::default().points(points);
+            let drawn = draw(&graph, &system, &game, Tone::Log, &options, &space).unwrap();
+            let pairs = drawn.0.data().chunks_exact(4);
+            let pairs = pairs.zip(exact.pixels.premultiplied().chunks_exact(4));
+            let away = pairs.map(|(a, b)| u64::from(a[0].abs_diff(b[0])));
+            (away.sum::<u64>(), drawn.0)
+        };
+        let [sparse, dense] = [90_000, 400_000].map(play);
+        let greys = |pixmap: &Pixmap| {
+            let between =
+                |pixel: &&tiny_skia::PremultipliedColorU8| (1..255).contains(&pixel.red());
+            pixmap.pixels().iter().filter(between).count()
+        };
+        assert_eq!(greys(&sparse.1), 0);
+        assert!(greys(&dense.1) > 40, "{}", greys(&dense.1));
+        assert!(dense.0 * 3 < sparse.0 * 2, "{} {}", dense.0, sparse.0);
     }
 }

@@ -1,27 +1,49 @@
-//! Light on pixels: relief, from the depths of neighbouring pixels, and occlusion.
+//! Light on pixels: relief, from the depths of neighbouring pixels, shadows and occlusion.
 
 use tiny_skia::Pixmap;
 
 use crate::geometry::DVec3;
 use crate::parallel::for_each;
+use crate::style::CameraError;
 
 use super::SpaceOptions;
-use super::camera::CameraError;
 use super::depth_map::DepthMap;
 use super::occlusion::Occlusion;
 use super::shade;
+use super::shadows::Shadows;
 
-/// Multiplies the colours of a picture by the intensities of the light on its pixels, which depend on their depths.
+/// Multiplies the colours of a picture by the intensities of the light on its pixels, which depend on their depths. Elements
+/// that have faces are lit already.
 pub(super) fn light(
     pixmap: &mut Pixmap,
     depths: &DepthMap,
+    shadows: Option<&Shadows>,
+    has_faces: bool,
     space: &SpaceOptions,
     threads: usize,
 ) -> Result<(), CameraError> {
-    if space.shade.unwrap_or_default().has_relief() {
-        let towards = space.camera.rotation()? * space.light.towards();
+    let shade = space.shade.unwrap_or_default();
+    let towards = space.camera.rotation()? * space.light.towards();
+    if shade.has_relief(has_faces) {
         dim(pixmap, threads, |x, y| {
             space.light.intensity(normal(depths, x, y).dot(towards))
+        });
+    }
+    if let Some(shadows) = shadows {
+        let is_lit = shade.has_relief(has_faces) || shade.lights_faces();
+        dim(pixmap, threads, |x, y| {
+            let Some(point) = depths.point(x, y) else {
+                return 1.0;
+            };
+            let cosine = normal(depths, x, y).dot(towards);
+            let reach = shadows.reach(point, cosine);
+            // Of a surface without light on it, the whole colour is in the light.
+            let full = if is_lit { cosine } else { 1.0 };
+            let light = space.light.intensity(full);
+            match light > 0.0 {
+                true => space.light.intensity(full * reach) / light,
+                false => 1.0,
+            }
         });
     }
     if space.occlusion {

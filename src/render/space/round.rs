@@ -4,6 +4,7 @@ use crate::geometry::{DAffine3, DVec3, HalfSpace, Round};
 
 use super::buffer::{Buffer, CLASS_BITS};
 use super::camera::Projection;
+use super::lit::Classes;
 use super::solid::View;
 
 /// Points of a ray: `start` + w · `along`, for real w.
@@ -22,7 +23,7 @@ pub(super) fn draw(
     primitive: Round,
     place: &DAffine3,
     [left, top, right, bottom]: [usize; 4],
-    class: u16,
+    classes: &mut Classes<'_>,
 ) {
     let inverse = place.matrix3.inverse();
     let middle = place.translation;
@@ -53,12 +54,26 @@ pub(super) fn draw(
             let Some([low, high]) = cut(span, view.cuts, seen) else {
                 continue;
             };
-            let z = match view.projection {
-                Projection::Parallel => middle.z + high,
-                Projection::Central { .. } if low > 0.0 => -low,
+            let (z, way) = match view.projection {
+                Projection::Parallel => (middle.z + high, high),
+                Projection::Central { .. } if low > 0.0 => (-low, low),
                 Projection::Central { .. } => continue,
             };
-            *key = (*key).min(view.depths.of(z) << CLASS_BITS | u32::from(class));
+            let depth = view.depths.of(z) << CLASS_BITS;
+            if depth > *key {
+                continue;
+            }
+            let class = match classes {
+                Classes::One(class) => *class,
+                Classes::OfNormals(of) => {
+                    let point = inside.start + inside.along * way;
+                    of(match view.cuts.is_empty() || span.contains(&way) {
+                        true => inverse.transpose() * normal(primitive, point),
+                        false => nearest_cut(view.cuts, seen.start + seen.along * way),
+                    })
+                }
+            };
+            *key = (*key).min(depth | u32::from(class));
         }
     }
 }
@@ -109,6 +124,30 @@ fn span(primitive: Round, Ray { start, along }: Ray) -> [f64; 2] {
         }
     }
     [low, high]
+}
+
+/// Returns a vector outwards across the surface of a primitive at a point of it.
+fn normal(primitive: Round, point: DVec3) -> DVec3 {
+    let [a, b, c] = primitive.quadric();
+    let DVec3 { x, y, z } = point;
+    let inside = -(x * x + z * z + (a * y + 2.0 * b) * y + c);
+    // A point on a cap is farther from the quadric than from the cap.
+    let is_on = |away: f64| away < inside;
+    match primitive {
+        Round::Cylinder | Round::Cone if is_on(y) => DVec3::NEG_Y,
+        Round::Cylinder if is_on(1.0 - y) => DVec3::Y,
+        _ => DVec3::new(x, a * y + b, z),
+    }
+}
+
+/// Returns the normal of the half-space on whose plane a point lies.
+fn nearest_cut(cuts: &[HalfSpace], point: DVec3) -> DVec3 {
+    let away = |cut: &HalfSpace| {
+        let distance = cut.distance - cut.normal.dot(point);
+        (distance / cut.normal.length()).abs()
+    };
+    let nearest = cuts.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.map_or(DVec3::Z, |cut| cut.normal)
 }
 
 /// Returns the part of a ray that lies within half-spaces, too; `None` if it is empty.
@@ -212,7 +251,8 @@ mod tests {
             let ball = Solid::round(Round::Ball, DAffine3::IDENTITY);
             let map = DAffine3::from_mat3_translation(linear, middle);
             let all = [0, 0, SIDE, SIDE];
-            Pencil::default().draw(&mut buffer, &view, &ball, &map, all, 5);
+            let class = Classes::One(5);
+            Pencil::default().draw(&mut buffer, &view, &ball, &map, all, class);
             let square = linear * linear.transpose();
             let shadow =
                 DMat2::from_cols(square.x_axis.truncate(), square.y_axis.truncate()).inverse();

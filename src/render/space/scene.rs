@@ -173,6 +173,12 @@ pub(super) fn draws_unmade(graph: &Graph<Frame3>) -> bool {
     { graph.objects().iter() }.any(|object| object.is_kept() && is_unmade(object))
 }
 
+/// Returns whether a picture shows elements, whose faces have normals, rather than a limit set.
+pub(super) fn has_faces(graph: &Graph<Frame3>, steps: Option<u32>) -> bool {
+    let mut objects = graph.objects().iter();
+    steps.is_some() || objects.any(|object| object.is_kept() && object.visible)
+}
+
 /// Returns the instances of the initiator.
 pub(super) fn start(graph: &Graph<Frame3>) -> Vec<Child> {
     let instances = &graph.initiator(0).instances;

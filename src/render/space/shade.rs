@@ -2,87 +2,12 @@
 
 use tiny_skia::PremultipliedColorU8;
 
-use crate::style::{Colour, Named, Palette, Style};
+use crate::style::{Colour, Palette, Shade, Style};
 
 use super::buffer::{EMPTY, SAMPLES, STEPS};
-use super::camera::direction;
+use super::lit::{Lit, intensity};
 use super::scene::ClassBy;
 use super::solid::depth_of;
-use crate::geometry::DVec3;
-
-/// Shading of sets in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Shade {
-    /// Depth cueing (Jones & Campa 1992): the intensity falls linearly from the nearest point of the set to its
-    /// farthest.
-    #[default]
-    Depth,
-    /// The cosine of the angle between the light and normals that are taken from neighbouring depths.
-    Relief,
-    /// Depth cueing, times relief.
-    Both,
-    /// None: colours alone.
-    None,
-}
-
-impl Named for Shade {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("depth", Self::Depth),
-        ("relief", Self::Relief),
-        ("both", Self::Both),
-        ("none", Self::None),
-    ];
-}
-
-/// Light for relief.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Light {
-    /// Azimuth and elevation of the light, in degrees; 0 and 45 by default.
-    pub from: [f64; 2],
-    /// Intensity of what the light does not reach, from 0 to 1; 0.15 by default.
-    pub ambient: f64,
-}
-
-setters!(Light {
-    from: [f64; 2],
-    ambient: f64,
-});
-
-impl Default for Light {
-    fn default() -> Self {
-        Self {
-            from: [0.0, 45.0],
-            ambient: 0.15,
-        }
-    }
-}
-
-impl Light {
-    /// Returns the unit vector towards the light.
-    pub(super) fn towards(&self) -> DVec3 {
-        direction(self.from)
-    }
-
-    /// Returns the intensity on a surface: `cosine` is that of the angle between its normal and the light.
-    pub(super) fn intensity(&self, cosine: f64) -> f64 {
-        let ambient = self.ambient.clamp(0.0, 1.0);
-        ambient + (1.0 - ambient) * cosine.max(0.0)
-    }
-}
-
-impl Shade {
-    /// Returns whether the picture has depth cues.
-    pub(super) fn cues_depth(self) -> bool {
-        matches!(self, Self::Depth | Self::Both)
-    }
-
-    /// Returns whether the picture needs normals.
-    pub(super) fn has_relief(self) -> bool {
-        matches!(self, Self::Relief | Self::Both)
-    }
-}
 
 /// Colour of what has no other: a warm yellow, as in the paper.
 const INK: Colour = Colour::of_rgba([255, 214, 120, 255]);
@@ -92,6 +17,16 @@ pub(in crate::render) fn ink(style: &Style) -> Colour {
     style.fill.or(style.stroke).unwrap_or(INK)
 }
 
+/// Returns the colours of classes in a style, which are `most`.
+pub(super) fn colours(style: &Style, by: ClassBy, most: usize) -> Vec<Colour> {
+    match by {
+        ClassBy::Nothing | ClassBy::Tint => vec![ink(style)],
+        _ => (0..most.max(1))
+            .map(|class| class_colour(&style.palette, class, most))
+            .collect(),
+    }
+}
+
 /// The colours of classes.
 pub(super) struct Inks {
     inks: Vec<[f64; 4]>,
@@ -99,19 +34,21 @@ pub(super) struct Inks {
 }
 
 impl Inks {
-    /// Returns the colours of a style. `most` is the number of classes.
-    pub(super) fn of(style: &Style, by: ClassBy, most: usize, shade: Shade) -> Self {
-        let colours: Vec<Colour> = match by {
-            ClassBy::Nothing | ClassBy::Tint => vec![ink(style)],
-            _ => (0..most.max(1))
-                .map(|class| class_colour(&style.palette, class, most))
-                .collect(),
+    /// Creates inks of colours; with light on faces, at all levels of its intensity.
+    pub(super) fn new(colours: &[Colour], lit: Option<&Lit>, shade: Shade) -> Self {
+        let bits = lit.and_then(Lit::bits).unwrap_or(0);
+        let levels = |colour: &Colour| {
+            let [red, green, blue, alpha] = colour.rgba().map(f64::from);
+            (0..1_u16 << bits).map(move |level| {
+                let share = match bits {
+                    0 => 1.0,
+                    bits => intensity(level, bits),
+                };
+                [red * share, green * share, blue * share, alpha]
+            })
         };
         Self {
-            inks: colours
-                .iter()
-                .map(|colour| colour.rgba().map(f64::from))
-                .collect(),
+            inks: colours.iter().flat_map(levels).collect(),
             shade,
         }
     }

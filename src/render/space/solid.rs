@@ -5,6 +5,7 @@ use crate::graph::Graph;
 
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
 use super::camera::Projection;
+use super::lit::Classes;
 use super::round;
 
 /// Least thickness of a solid, in samples: what is flat would fall between them.
@@ -95,6 +96,8 @@ struct Plane {
 pub(super) struct Planes {
     /// The solid lies below.
     front: Vec<Plane>,
+    /// Classes of these faces.
+    classes: Vec<u16>,
     /// The solid lies above.
     back: Vec<Plane>,
     /// Faces seen edge-on: the solid lies where they are at most 0.
@@ -102,13 +105,15 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// Takes the half-spaces n · x ≤ d whose intersection is a solid.
+    /// Takes the half-spaces n · x ≤ d whose intersection is a solid, with the classes of its faces.
     pub(super) fn set(
         &mut self,
         projection: Projection,
         faces: impl Iterator<Item = (DVec3, f64)>,
+        classes: &mut Classes<'_>,
     ) {
         self.front.clear();
+        self.classes.clear();
         self.back.clear();
         self.edges.clear();
         for (normal, distance) in faces {
@@ -152,6 +157,7 @@ impl Planes {
             };
             if across > 0.0 {
                 self.front.push(plane);
+                self.classes.push(classes.of(normal));
             } else {
                 self.back.push(plane);
             }
@@ -162,20 +168,20 @@ impl Planes {
         }
     }
 
-    /// Returns the nearest value at a point of the picture, and its slopes; `None` if the solid is farther from
-    /// the point than `spread`, along the axes.
-    pub(super) fn meet(&self, [x, y]: [f64; 2], spread: f64) -> Option<(f64, [f64; 2])> {
+    /// Returns the nearest value at a point of the picture, its slopes, and the class of its face; `None` if the solid is
+    /// farther from the point than `spread`, along the axes.
+    pub(super) fn meet(&self, [x, y]: [f64; 2], spread: f64) -> Option<(f64, [f64; 2], u16)> {
         let at = |plane: &Plane| plane.z + plane.x * x + plane.y * y;
         let room = |plane: &Plane| (plane.x.abs() + plane.y.abs()) * spread;
         if self.edges.iter().any(|edge| at(edge) > room(edge)) {
             return None;
         }
-        let (mut high, mut nearest) = (f64::INFINITY, (f64::INFINITY, [0.0; 2]));
-        for front in &self.front {
+        let (mut high, mut nearest) = (f64::INFINITY, (f64::INFINITY, [0.0; 2], 0));
+        for (front, class) in self.front.iter().zip(&self.classes) {
             let z = at(front);
             high = high.min(z + room(front));
             if z < nearest.0 {
-                nearest = (z, [front.x, front.y]);
+                nearest = (z, [front.x, front.y], *class);
             }
         }
         let low = self.back.iter().map(|back| at(back) - room(back));
@@ -199,21 +205,24 @@ impl Pencil {
         solid: &Solid,
         map: &DAffine3,
         rectangle: [usize; 4],
-        class: u16,
+        mut classes: Classes<'_>,
     ) {
         if let Some(primitive) = solid.primitive() {
             let place = placed(solid, map, view);
-            round::draw(buffer, view, primitive, &place, rectangle, class);
+            round::draw(buffer, view, primitive, &place, rectangle, &mut classes);
             buffer.refresh(rectangle);
             return;
         }
         let faces =
             faces(solid, map, view).chain(view.cuts.iter().map(|cut| (cut.normal, cut.distance)));
-        self.planes.set(view.projection, faces);
+        self.planes.set(view.projection, faces, &mut classes);
         let [left, top, right, bottom] = rectangle;
         for y in top..bottom {
             let row = &mut buffer.row_mut(y)[left..right];
-            self.planes.draw_row(row, view, [left, y], class);
+            match classes {
+                Classes::One(class) => self.planes.draw_row::<false>(row, view, [left, y], class),
+                Classes::OfNormals(_) => self.planes.draw_row::<true>(row, view, [left, y], 0),
+            }
         }
         buffer.refresh(rectangle);
     }
@@ -223,19 +232,30 @@ impl Pencil {
 const LANES: usize = 8;
 
 impl Planes {
-    /// Draws the solid on a part of a row of samples, whose first one is given.
+    /// Draws the solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
+    /// are `LIT`, or else all have `class`.
     #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-    fn draw_row(&self, row: &mut [u32], view: &View<'_>, [left, y]: [usize; 2], class: u16) {
+    fn draw_row<const LIT: bool>(
+        &self,
+        row: &mut [u32],
+        view: &View<'_>,
+        [left, y]: [usize; 2],
+        class: u16,
+    ) {
         let [corner_x, corner_y] = view.corner;
         let at_y = corner_y + y as f64 + 0.5;
         for (number, keys) in row.chunks_mut(LANES).enumerate() {
             let first = corner_x + (left + number * LANES) as f64 + 0.5;
             let at = |plane: &Plane| plane.z + plane.y * at_y + plane.x * first;
             let mut highest = [f64::INFINITY; LANES];
-            for plane in &self.front {
+            let mut classes = [u32::from(class); LANES];
+            for (plane, own) in self.front.iter().zip(&self.classes) {
                 let start = at(plane);
                 for (step, highest) in highest.iter_mut().enumerate() {
                     let z = start + plane.x * step as f64;
+                    if LIT && z < *highest {
+                        classes[step] = u32::from(*own);
+                    }
                     *highest = if z < *highest { z } else { *highest };
                 }
             }
@@ -254,13 +274,14 @@ impl Planes {
                     *lowest = if is_beyond { f64::INFINITY } else { *lowest };
                 }
             }
-            for ((key, highest), lowest) in keys.iter_mut().zip(highest).zip(lowest) {
+            let classes = classes.iter().zip(lowest);
+            for ((key, highest), (class, lowest)) in keys.iter_mut().zip(highest).zip(classes) {
                 if highest >= lowest && highest < f64::INFINITY {
                     let z = match view.projection {
                         Projection::Parallel => highest,
                         Projection::Central { .. } => -1.0 / highest,
                     };
-                    *key = (*key).min(view.depths.of(z) << CLASS_BITS | u32::from(class));
+                    *key = (*key).min(view.depths.of(z) << CLASS_BITS | class);
                 }
             }
         }

@@ -9,6 +9,7 @@ use crate::geometry::{DAffine3, DVec3};
 use super::buffer::{Buffer, CLASS_BITS, MARGIN, SIDE, STEPS, STRIDE};
 use super::descent::Roots;
 use super::forms::Form;
+use super::lit::Classes;
 use super::solid::{Planes, View, faces};
 
 /// Positions along a side of a sample in which there are stamps.
@@ -102,7 +103,7 @@ impl Stamp {
             base: base as i32 - bias(roots, view) as i32,
             fraction: (depth - base) as f32,
             shift: [0, 1].map(|axis| ((fine[axis] - near[axis]) / phases) as f32),
-            class: u32::from(class),
+            class: u32::from(class) << roots.lit.and_then(|lit| lit.bits()).unwrap_or(0),
         };
         // The corner of the stamp, counted from that of the margin.
         let corner = [x, y].map(|at| {
@@ -226,10 +227,18 @@ impl<'a> Builder<'a> {
         };
         self.stamp.elements += 1;
         self.stamp.deepest = self.stamp.deepest.max(form.level);
-        let class = u32::from(roots.class(form, class));
+        let class = roots.class(form, class);
         let map = DAffine3::from_mat3_translation(form.linear, at - form.middle);
-        self.planes
-            .set(self.view.projection, faces(solid, &map, self.view));
+        let faces = faces(solid, &map, self.view);
+        let projection = self.view.projection;
+        match roots.lit.and_then(|lit| Some((lit, lit.bits()?))) {
+            None => self.planes.set(projection, faces, &mut Classes::One(class)),
+            Some((lit, bits)) => {
+                let mut of = |normal| lit.class(class, normal, bits);
+                let classes = &mut Classes::OfNormals(&mut of);
+                self.planes.set(projection, faces, classes);
+            }
+        }
         let steps = self.view.depths.steps();
         let bias = bias(roots, self.view);
         let reach = form.half + roots.pad;
@@ -245,9 +254,10 @@ impl<'a> Builder<'a> {
                     x as f64 + 0.5 - self.middle[0],
                     y as f64 + 0.5 - self.middle[1],
                 ];
-                let Some((z, slope)) = self.planes.meet(place, SPREAD) else {
+                let Some((z, slope, class)) = self.planes.meet(place, SPREAD) else {
                     continue;
                 };
+                let class = u32::from(class);
                 // Beyond its outline the solid is continued.
                 let z = z.clamp(at.z - reach.z, at.z + reach.z);
                 let depth = ((self.near - z) * steps + bias) as f32;

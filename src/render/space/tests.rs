@@ -20,7 +20,7 @@ fn model(text: &str) -> Model {
     document.resolve(&[]).unwrap().0
 }
 
-fn graph_of(text: &str) -> Graph<Frame3> {
+pub(super) fn graph_of(text: &str) -> Graph<Frame3> {
     model(text).compile_in_space(false).unwrap()
 }
 
@@ -31,7 +31,7 @@ fn vertices(what: &str, shrink: &str) -> Graph<Frame3> {
 }
 
 /// A Menger sponge as maps rather than vertices, so that it begins with a box.
-fn sponge() -> Graph<Frame3> {
+pub(super) fn sponge() -> Graph<Frame3> {
     let mut text = "kind: ifs\nspace: 3\nmaps:\n".to_owned();
     for cell in 0..27 {
         let at = [cell % 3, cell / 3 % 3, cell / 9];
@@ -182,13 +182,22 @@ fn a_descent_agrees_with_drawing_everything() {
                 detail: 0.0,
                 unit: graph.unit(),
             };
-            let forms = Forms::find(&parts, &start, &end, ClassBy::Nothing, &placement, pad);
+            let forms = Forms::find(
+                &parts,
+                &start,
+                &end,
+                ClassBy::Nothing,
+                &placement,
+                pad,
+                true,
+            );
             let roots = Roots {
                 parts: &parts,
                 forms: &forms,
                 end,
                 class_by: ClassBy::Nothing,
-                ink: Colour::BLACK,
+                lit: None,
+                inks: &[Colour::BLACK],
                 pad,
                 overlap: false,
             };
@@ -200,7 +209,8 @@ fn a_descent_agrees_with_drawing_everything() {
                 let (_, element) = element.unwrap();
                 let solid = within.drawn(element.object).unwrap();
                 let map = element.frame.map();
-                pencil.draw(&mut all, &view, solid, map, [0, 0, 96, 96], 0);
+                let class = lit::Classes::One(0);
+                pencil.draw(&mut all, &view, solid, map, [0, 0, 96, 96], class);
             }
             let (mut ink, mut other) = (0, 0);
             for y in 0..SIDE {
@@ -476,4 +486,100 @@ fn a_pit_is_occluded_and_a_plane_is_not() {
     let pit = format!("{plate}, {}", walls.join(", "));
     let dark = brightness(&pit, Camera::default().from([0.0, 0.0]));
     assert!((40..180).contains(&dark), "{dark}");
+}
+
+/// A gap of the set that is finer than the boxes by which the extent of a slice is found.
+#[test]
+fn a_slice_in_a_fine_gap_is_an_error() {
+    let dust = graph_of(
+        "{kind: ifs, space: 3, vertices: {points: [[-1, 0, 0], [1, 0, 0]], shrink: 0.49}}",
+    );
+    let middle = |levels: i32| 1.0 - 0.49_f64.powi(levels);
+    let mut options = Options::default().size(Size::Long(16));
+    options.detail = Some(crate::render::Detail {
+        pixels: 1e-5,
+        decides_steps: true,
+    });
+    for levels in [0, 4, 13, 16] {
+        // The middle of the gap next to the end.
+        let slice = Slice::new(DVec3::X, middle(levels)).thickness(Some(1e-8));
+        let space = SpaceOptions::default().slice(Some(slice));
+        let error = draw(&dust, None, &options, &space, None).unwrap_err();
+        assert!(
+            matches!(error, RenderError::Space(SpaceError::NothingLeft(_))),
+            "{levels}: {error}"
+        );
+    }
+}
+
+/// Beyond the poles the viewer goes on over the top, upside down, and the eye is never within the set.
+#[test]
+fn cameras_go_over_the_poles() {
+    let graph = vertices("solid: cube", "1/2");
+    let over = Camera::default().from([20.0, 120.0]);
+    let behind = Camera::default().from([200.0, 60.0]);
+    let [over, behind] = [over, behind].map(|camera| seen_by(&graph, Some(1), camera, 60, 1));
+    assert!(over.pixels().iter().eq(behind.pixels().iter().rev()));
+    // Whatever the camera looks at lies in the picture, before the viewer.
+    for at in [DVec3::ZERO, DVec3::splat(40.0)] {
+        let camera = Camera::default().perspective(Some(150.0)).look_at(Some(at));
+        assert!(share(&seen_by(&graph, Some(1), camera, 300, 1)) > 0.0);
+    }
+}
+
+/// A ball above a plate throws a round shadow on it, away from the light.
+#[test]
+fn a_ball_throws_a_shadow_on_a_plate() {
+    let graph = graph_of(
+        "{kind: instancing, space: 3, scene: [a], objects: {a: [
+           {box: {from: [-4, -1, -4], to: [4, 0, 4]}}, {sphere: {centre: [0, 3, 0], radius: 1}}]}}",
+    );
+    let light = Light::default().from([90.0, 45.0]).ambient(0.0);
+    let options = Options::default().size(Size::Long(200));
+    let drawn = |shade: Shade, threads: usize| {
+        let camera = Camera::default()
+            .from([0.0, 60.0])
+            .look_at(Some(DVec3::ZERO));
+        let space = SpaceOptions::default()
+            .camera(camera)
+            .light(light)
+            .shade(Some(shade))
+            .shadows(true);
+        let options = options.clone().threads(NonZero::new(threads).unwrap());
+        draw(&graph, Some(1), &options, &space, None).unwrap().0
+    };
+    let seen = drawn(Shade::Cosine, 1);
+    assert!(seen == drawn(Shade::Cosine, 3));
+    let scale = f64::from(seen.width()) / 8.0;
+    let rotation = Camera::default().from([0.0, 60.0]).rotation().unwrap();
+    let at = |point: DVec3| {
+        let view = rotation * point * scale;
+        let [x, y] = [
+            f64::from(seen.width()) / 2.0 + view.x,
+            f64::from(seen.height()) / 2.0 - view.y,
+        ];
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the points lie on the picture"
+        )]
+        let pixel = seen.pixel(x as u32, y as u32).unwrap();
+        pixel.red()
+    };
+    // The light comes from the right: the shadow of the middle is 3 to the left, an ellipse of half axes √2 and 1.
+    for (x, z, is_dark) in [
+        (-3.0, 0.0, true),
+        (-3.8, 0.0, true),
+        (-3.0, 0.85, true),
+        (-1.75, 0.0, true),
+        (-1.4, 0.0, false),
+        (-3.0, 1.2, false),
+        (-3.9, 0.95, false),
+        (2.0, 0.0, false),
+        (2.0, 3.0, false),
+    ] {
+        let red = at(DVec3::new(x, 0.0, z));
+        assert_eq!(red < 20, is_dark, "{x} {z}: {red}");
+        assert!(is_dark || red > 170, "{x} {z}: {red}");
+    }
 }

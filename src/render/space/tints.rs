@@ -43,14 +43,22 @@ impl Tints {
         u32::try_from(self.looks.len() - 1).unwrap_or(outer)
     }
 
-    /// Returns the class of a solid of a colour in an instance.
-    pub(super) fn class(&mut self, look: u32, ink: Colour, buffer: &mut Buffer) -> u16 {
-        let colour = self.looks[look as usize].on(ink);
+    /// Returns the colour of a solid in an instance.
+    pub(super) fn colour(&self, look: u32, ink: Colour) -> Colour {
+        self.looks[look as usize].on(ink)
+    }
+
+    /// Makes room for classes of new colours, at most [`MAX_CLASS`].
+    pub(super) fn make_room(&mut self, count: usize, buffer: &mut Buffer) {
+        if self.colours.len() + count > usize::from(MAX_CLASS) {
+            self.settle(buffer);
+        }
+    }
+
+    /// Returns the class of a colour, for which there must be [room](Self::make_room) if it is new.
+    pub(super) fn class(&mut self, colour: Colour) -> u16 {
         if let Some(known) = self.classes.get(&colour) {
             return *known;
-        }
-        if self.colours.len() == usize::from(MAX_CLASS) {
-            self.settle(buffer);
         }
         self.colours.push(colour);
         let class = u16::try_from(self.colours.len()).unwrap_or(MAX_CLASS);

@@ -25,7 +25,7 @@ use crate::render::paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
 use crate::render::surface::Surface;
 use crate::render::write::write_in;
 use crate::render::{Format, NoRoom, Options, Picture, RenderError};
-use crate::style::{Cap, ColorBy, Colour, Join};
+use crate::style::{Cap, ColorBy, Colour, Join, Shade, Slice};
 
 use self::arrange::{Piece, arranged};
 use self::element::{Part, Shape, Viewer};
@@ -34,8 +34,7 @@ use self::polygon::Polygon;
 use super::buffer::SAMPLES;
 use super::place;
 use super::scene;
-use super::shade::Shade;
-use super::slice::{self, Search, Slice};
+use super::slice::{self, Search};
 use super::{SpaceError, SpaceOptions};
 
 /// Limit of the number of visible faces, which are held in memory.

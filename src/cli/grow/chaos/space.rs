@@ -93,6 +93,10 @@ impl<'a> SpaceGame<'a> {
             let message = "--slice and --cut apply to elements, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
         }
+        if space.shadows {
+            let message = "--shadows are those of elements, and --method chaos draws points";
+            return Err(Failure::Usage(message.into()));
+        }
         let mut options = options.clone();
         options.style.color_by = self.color_by;
         let growth = &self.arguments.growth;

@@ -3,8 +3,8 @@
 use crate::geometry::{DAffine3, DMat3, DVec2, DVec3, HalfSpace, Mesh, Solid, convex_hull};
 
 use super::super::camera::{Placement, Projection};
-use super::super::shade::{Light, Shade};
 use super::polygon::{Corner, Polygon, clip};
+use crate::style::{Light, Shade};
 
 /// Cosine of the angle between faces of a round body from which their common edge is not drawn.
 const SMOOTH: f64 = 0.9;
@@ -261,7 +261,7 @@ impl Viewer<'_> {
                 intensity *= ((mean - far) / (near - far)).clamp(0.0, 1.0);
             }
         }
-        if self.shade.has_relief() {
+        if self.shade.has_relief(false) {
             let normal = (self.normals * outward).normalize_or_zero();
             let cosine = normal.dot(self.light.towards()).max(0.0);
             let ambient = self.light.ambient.clamp(0.0, 1.0);
