@@ -263,9 +263,7 @@ impl Viewer<'_> {
         }
         if self.shade.has_relief(false) {
             let normal = (self.normals * outward).normalize_or_zero();
-            let cosine = normal.dot(self.light.towards()).max(0.0);
-            let ambient = self.light.ambient.clamp(0.0, 1.0);
-            intensity *= ambient + (1.0 - ambient) * cosine;
+            intensity *= self.light.intensity(normal.dot(self.light.towards()));
         }
         intensity
     }

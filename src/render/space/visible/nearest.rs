@@ -2,16 +2,17 @@
 
 use super::grid::Grid;
 use super::polygon::Polygon;
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, DVec2};
 
 /// Largest number of samples along the side of a pixel.
 const SAMPLES: f64 = 2.0;
 
+/// Share of the tolerance up to which polygons are equally near at a sample: faces between elements that touch are
+/// hidden but at their edges, on which no sample may fall.
+const SAME: f64 = 1e-4;
+
 /// Largest number of samples.
 const MAX_SAMPLES: f64 = 16_777_216.0;
-
-/// Extent in pixels of polygons that are not left out for meeting no sample.
-const LONG: f64 = 1.0;
 
 /// The greatest nearness of polygons at every sample.
 pub(super) struct Nearest {
@@ -28,7 +29,7 @@ pub(super) struct Nearest {
 pub(super) enum Visibility {
     Visible,
     Hidden,
-    /// It is too narrow for samples.
+    /// It is too small for samples, and those around it do not hide it.
     Unknown,
 }
 
@@ -48,7 +49,7 @@ impl Nearest {
             rows,
             scale,
             samples: vec![f64::NEG_INFINITY; columns * rows],
-            tolerance,
+            tolerance: SAME * tolerance,
         }
     }
 
@@ -63,15 +64,42 @@ impl Nearest {
     pub(super) fn visibility(&self, polygon: &Polygon) -> Visibility {
         let mut samples = self.of(polygon).peekable();
         if samples.peek().is_none() {
-            return match polygon.bounds().size().max_element() > LONG {
-                true => Visibility::Unknown,
-                false => Visibility::Hidden,
+            let corners = polygon.corners().iter();
+            let nearest = corners
+                .map(|corner| corner.at.z)
+                .fold(f64::NEG_INFINITY, f64::max);
+            let is_hidden = { self.around(polygon.middle().truncate()).into_iter() }
+                .all(|at| self.samples[at] > nearest + self.tolerance);
+            return match is_hidden {
+                true => Visibility::Hidden,
+                false => Visibility::Unknown,
             };
         }
         match samples.any(|(at, nearness)| nearness >= self.samples[at] - self.tolerance) {
             true => Visibility::Visible,
             false => Visibility::Hidden,
         }
+    }
+
+    /// Returns the four samples around a point.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts saturate"
+    )]
+    fn around(&self, point: DVec2) -> [usize; 4] {
+        let at = point * self.scale - 0.5;
+        let place = |x: f64, y: f64| {
+            let column = (x as usize).min(self.columns - 1);
+            (y as usize).min(self.rows - 1) * self.columns + column
+        };
+        let [x, y] = at.floor().to_array();
+        [
+            place(x, y),
+            place(x + 1.0, y),
+            place(x, y + 1.0),
+            place(x + 1.0, y + 1.0),
+        ]
     }
 
     /// Iterates over the samples of a polygon: their places, and its nearness there.
