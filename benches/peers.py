@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free, flam3, numba, l-system-fractals and POV-Ray: ratios of time, peak memory, and the targets.
+"""kfrac beside Context Free, flam3, numba, l-system-fractals, trimesh and POV-Ray: ratios of time, peak memory, and the
+targets.
 
 On a fresh Debian:
 
@@ -8,6 +9,7 @@ On a fresh Debian:
     python3 benches/peers.py            # about ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; small cases only
     python3 -m pip install numba        # to compare the chaos game with numba, and boxes with numpy
+    python3 -m pip install trimesh scipy    # to compare voxels with trimesh
     cargo install l-system-fractals     # for the Koch curve as an L-system
     apt-get install --no-install-recommends povray    # for the sponge in space; 4 GB of memory
 
@@ -58,6 +60,10 @@ NUMBA = [
 
 # Points in space, and the smallest ratio of times to numpy, on one thread.
 BOXES = (2_000_000, 8)
+
+# Steps of the sponge that trimesh divides into voxels of its cubes' size; and the largest number of seconds in which
+# all voxels down to 3^-12 are counted.
+VOXELS = (3, 0.5)
 
 # Smallest ratio of times to l-system-fractals.
 STRINGS = 18
@@ -214,6 +220,27 @@ def beside_numpy(kfrac, folder, quick):
     )
 
 
+def beside_trimesh(kfrac, folder, quick):
+    """Compares exact counts of the voxels of a limit set with the voxels of a mesh of one approximant."""
+    steps, most = (2, VOXELS[1]) if quick else VOXELS
+    print()
+    row("beside trimesh", "kfrac", "target", "", "trimesh", "memory", "its memory")
+    mesh = folder / "sponge.stl"
+    run([kfrac, "grow", "menger", "--steps", steps, "--mesh", "shell", "-o", mesh, "--quiet"])
+    counted = [kfrac, "dim", "menger", "--orders", 0, "--grids", 1, "--threads", 1]
+    theirs = [sys.executable, HERE / "peers/voxels.py", mesh, 3**steps]
+    (seconds, memory), (peer, its) = in_turn([counted, theirs], 1 if quick else 3)
+    row(
+        f"Menger to 3^-12; to 3^-{steps}",
+        f"{seconds:.3f} s",
+        f"{most} s",
+        verdict(seconds <= most),
+        f"{peer:.2f} s",
+        f"{memory:.0f} MiB",
+        f"{its:.0f} MiB",
+    )
+
+
 def beside_strings(kfrac, folder, quick):
     """Compares the Koch curve as an L-system, to SVG, with a program that writes the word."""
     print()
@@ -330,6 +357,8 @@ def main():
             beside_numba(kfrac, Path(folder), arguments.quick)
         if importlib.util.find_spec("numpy") is not None:
             beside_numpy(kfrac, Path(folder), arguments.quick)
+        if importlib.util.find_spec("trimesh") is not None:
+            beside_trimesh(kfrac, Path(folder), arguments.quick)
         if shutil.which("l-system-fractals") is not None:
             beside_strings(kfrac, Path(folder), arguments.quick)
         if shutil.which("povray") is not None:
