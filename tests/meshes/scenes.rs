@@ -8,7 +8,7 @@ use kfrac::render::space::{SpaceError, SpaceOptions};
 use kfrac::render::{MeshFormat, RenderError, SceneFormat, Unit, write_scene};
 use kfrac::render::{Options, Size};
 use threemf2::model::domain::model::Model;
-use threemf2::model::domain::object::ObjectKind;
+use threemf2::model::domain::object::{ObjectKind, ObjectType};
 use threemf2::model::domain::transform::Transform;
 use threemf2::package::ThreemfPackage;
 
@@ -239,6 +239,61 @@ fn packages_of_3mf_hold_the_surfaces_of_the_elements_upright_in_millimetres() {
     let (objects, _) = read_3mf(&scene("menger", 3, SceneFormat::ThreeMf));
     // A cube, an object for every step, and the whole.
     assert_eq!(objects, 1 + 3 + 1);
+}
+
+/// The surfaces of an element are one mesh that encloses its volume, with the colours of its surfaces.
+#[test]
+fn surfaces_of_an_element_are_a_closed_mesh() {
+    let text = "{space: 3, initiator: {closed: false, elements: [{from: [0, 0, 0], to: [1, 0, 0]}]}, \
+                generator: {elements: [{from: [0, 0, 0], to: [1/2, 0, 0]}, {from: [1/2, 0, 0], to: [1, 0, 0]}]}, \
+                base_element: {surfaces: [\
+                {points: [[0, 0, 0], [0, 1, 0], [1, 0, 0]], color: red}, \
+                {points: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], color: blue}, \
+                {points: [[0, 0, 0], [0, 0, 1], [0, 1, 0]], color: red}, \
+                {points: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], color: blue}]}}";
+    let model = common::document_of(text).resolve(&[]).unwrap().0;
+    let growth = kfrac::grow::Growth::steps(1);
+    let drawn = { model.drawn_in_space(Some(1), &growth, false) }
+        .unwrap()
+        .unwrap();
+    let steps = drawn.steps.unwrap();
+    let written = |format| {
+        let mut bytes = Vec::new();
+        let space = SpaceOptions::default();
+        let options = Options::of(model.metadata());
+        write_scene(
+            &drawn.graph,
+            steps,
+            &options,
+            &space,
+            format,
+            None,
+            &mut bytes,
+        )
+        .unwrap();
+        bytes
+    };
+    let package = written(SceneFormat::ThreeMf);
+    let (_, soup) = read_3mf(&package);
+    let ([volume, _], colours) = measured(&soup);
+    // Two tetrahedra, of which the whole is 100 mm long.
+    assert!(is_near(volume, 2.0 * 50f64.powi(3) / 6.0), "{volume}");
+    assert_eq!(colours.len(), 2, "{colours:?}");
+    let package = ThreemfPackage::from_reader_with_memory_optimized_deserializer(
+        Cursor::new(&package),
+        false,
+    )
+    .unwrap();
+    for object in &package.root.resources.object {
+        if object.get_mesh().is_some() {
+            let kind = object.objecttype.as_ref();
+            assert!(matches!(kind, None | Some(ObjectType::Model)), "{kind:?}");
+        }
+    }
+    let (_, soup) = read_glb(&written(SceneFormat::Glb));
+    let ([volume, _], colours) = measured(&soup);
+    assert!(is_near(volume, 2.0 / 8.0 / 6.0), "{volume}");
+    assert_eq!(colours.len(), 2, "{colours:?}");
 }
 
 #[test]

@@ -67,6 +67,9 @@ pub(super) enum Content {
     Shape(usize),
 }
 
+/// Place of an element, and a corner in its own frame.
+type Key = ([u64; 12], [i64; 3]);
+
 /// Mesh of elements with a common frame.
 #[derive(Default)]
 pub(super) struct Baked {
@@ -74,13 +77,15 @@ pub(super) struct Baked {
     pub(super) corners: Vec<DVec3>,
     /// Triangles that have an area, counter-clockwise from outside.
     pub(super) triangles: Vec<([u32; 3], Paint)>,
+    /// Numbers of the corners of surfaces, by the places of their elements.
+    shared: BTreeMap<Key, u32>,
 }
 
 /// Paint of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Paint {
     pub(super) colour: Colour,
-    /// Whether its element is flat, so that both sides are seen.
+    /// Whether both sides are seen: those of a flat element, unless it is a surface with a front only.
     pub(super) has_two_sides: bool,
 }
 
@@ -147,6 +152,11 @@ impl<'g> Nested<'g> {
         &self.graph.base_elements()[self.shapes[shape].0]
     }
 
+    /// Returns whether a shape is a single face.
+    pub(super) fn is_flat(&self, shape: usize) -> bool {
+        Mesh::from(self.solid(shape)).faces.len() == 1
+    }
+
     /// Returns the colours of all shapes, each once.
     pub(super) fn colours(&self) -> Vec<Colour> {
         let mut colours: Vec<Colour> = self.shapes.iter().map(|(_, colour)| *colour).collect();
@@ -205,9 +215,16 @@ impl<'g> Nested<'g> {
                     open.extend(inner.map(|it| (map * it.map, it.content)));
                 }
                 Content::Shape(number) => {
-                    let mesh =
-                        { meshes.entry(number) }.or_insert_with(|| Mesh::from(self.solid(number)));
-                    baked.add(mesh, &map, self.shapes[number].1)?;
+                    let solid = self.solid(number);
+                    let mesh = meshes.entry(number).or_insert_with(|| Mesh::from(solid));
+                    let paint = Paint {
+                        colour: self.shapes[number].1,
+                        has_two_sides: match solid.side() {
+                            Some(side) => side.is_double,
+                            None => mesh.faces.len() == 1 || is_singular(&map),
+                        },
+                    };
+                    baked.add(mesh, &map, paint)?;
                 }
             }
         }
@@ -216,35 +233,65 @@ impl<'g> Nested<'g> {
 }
 
 impl Baked {
-    fn add(&mut self, mesh: &Mesh, map: &DAffine3, colour: Colour) -> Result<(), RenderError> {
-        let before = u32::try_from(self.corners.len()).unwrap_or(u32::MAX);
-        for corner in &mesh.corners {
-            let corner = map.transform_point3(*corner);
+    fn add(&mut self, mesh: &Mesh, map: &DAffine3, paint: Paint) -> Result<(), RenderError> {
+        let mut numbers = Vec::new();
+        for own in &mesh.corners {
+            let corner = map.transform_point3(*own);
             if !corner.as_vec3().is_finite() {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND).into());
             }
-            self.corners.push(corner);
+            let next = u32::try_from(self.corners.len()).unwrap_or(u32::MAX);
+            // Surfaces of an element share its place and their corners.
+            let number = match mesh.faces.len() {
+                1 => *self.shared.entry(key(map, *own)).or_insert(next),
+                _ => next,
+            };
+            if number == next {
+                self.corners.push(corner);
+            }
+            numbers.push(number);
         }
-        let paint = Paint {
-            colour,
-            has_two_sides: mesh.faces.len() == 1 || is_singular(map),
-        };
         let is_mirrored = map.matrix3.determinant() < 0.0;
         for [a, b, c] in mesh.triangles() {
             let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
-            let corners = [a, b, c].map(|it| self.corners[before as usize + it]);
-            if is_flat(corners) {
+            let triangle = [a, b, c].map(|corner| numbers[corner]);
+            if is_flat(triangle.map(|corner| self.corners[corner as usize])) {
                 continue;
             }
             if self.triangles.len() == MAX_TRIANGLES {
                 return Err(too_many_triangles().into());
             }
-            #[expect(clippy::cast_possible_truncation, reason = "a shape has few corners")]
-            let triangle = [a, b, c].map(|corner| before + corner as u32);
             self.triangles.push((triangle, paint));
         }
         Ok(())
     }
+
+    /// Returns whether the triangles enclose a volume: every side of one is a side of one other, in the opposite
+    /// direction.
+    pub(super) fn is_closed(&self) -> bool {
+        let mut sides = BTreeMap::new();
+        for ([a, b, c], _) in &self.triangles {
+            for side in [[a, b], [b, c], [c, a]] {
+                *sides.entry(side).or_insert(0u32) += 1;
+            }
+        }
+        { sides.iter() }
+            .all(|([from, to], count)| *count == 1 && sides.get(&[*to, *from]) == Some(&1))
+    }
+}
+
+/// Returns the place of an element and a corner in its own frame, up to rounding.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn key(map: &DAffine3, corner: DVec3) -> Key {
+    const ROUNDING: f64 = 1e-9;
+    let place = map.to_cols_array().map(f64::to_bits);
+    (
+        place,
+        corner.to_array().map(|at| (at / ROUNDING).round() as i64),
+    )
 }
 
 /// Returns whether a triangle has no area.

@@ -1,7 +1,7 @@
 //! Nested instances as objects of components in 3MF, the 3D Manufacturing Format (core specification 1.3).
 //!
-//! Components may have any map that is not singular; copies under other maps are meshes of their own. z points up,
-//! and the object stands on z = 0 in the corner of the positive axes.
+//! Components may have any map that is not singular; copies under other maps, and surfaces of elements, are meshes of
+//! their own. z points up, and the object stands on z = 0 in the corner of the positive axes.
 
 use std::io::{Cursor, Write};
 
@@ -16,7 +16,7 @@ use super::super::error::RenderError;
 use super::super::options::Options;
 use super::super::svg::escaped;
 use super::super::unit::Unit;
-use super::nested::{Baked, Content, Nest, Nested, is_singular};
+use super::nested::{Baked, Content, Nest, Nested, Placed, is_singular};
 
 /// Length of the long side in millimetres, unless the options give one.
 const LONG_SIDE: f64 = 100.0;
@@ -55,6 +55,9 @@ pub(super) fn write(
     let model = Model {
         nested,
         colours: nested.colours(),
+        is_flat: { 0..nested.shapes.len() }
+            .map(|it| nested.is_flat(it))
+            .collect(),
         out: &mut package,
         objects: COLOURS,
     };
@@ -85,6 +88,8 @@ struct Model<'a, W> {
     nested: &'a Nested<'a>,
     /// Colours that differ.
     colours: Vec<Colour>,
+    /// Whether shapes are single faces, by number.
+    is_flat: Vec<bool>,
     out: W,
     /// Number of the last resource.
     objects: usize,
@@ -96,7 +101,10 @@ impl<W: Write> Model<'_, W> {
         self.head(options)?;
         let mut shapes = Vec::new();
         for shape in 0..nested.shapes.len() {
-            shapes.push(self.mesh(&nested.mesh(shape)?)?);
+            shapes.push(match self.is_flat[shape] {
+                true => None,
+                false => self.mesh(&nested.mesh(shape)?)?,
+            });
         }
         let mut nests: Vec<Option<usize>> = Vec::new();
         for nest in &nested.nests {
@@ -155,9 +163,9 @@ impl<W: Write> Model<'_, W> {
         self.objects += 1;
         let number = self.objects;
         // A surface need not be closed.
-        let kind = match mesh.triangles.iter().any(|(_, it)| it.has_two_sides) {
-            true => "surface",
-            false => "model",
+        let kind = match mesh.is_closed() {
+            true => "model",
+            false => "surface",
         };
         let own = self.material(first.colour);
         writeln!(
@@ -192,7 +200,12 @@ impl<W: Write> Model<'_, W> {
         shapes: &[Option<usize>],
         nests: &[Option<usize>],
     ) -> Result<Option<usize>, RenderError> {
-        let (placed, others) = nest.placed(|it| !is_singular(&it.map));
+        // The surfaces of an element are one mesh, which encloses its volume.
+        let is_flat = |it: &Placed| match it.content {
+            Content::Nest(_) => false,
+            Content::Shape(number) => self.is_flat[number],
+        };
+        let (placed, others) = nest.placed(|it| !is_singular(&it.map) && !is_flat(it));
         let baked = self.nested.bake(others.into_iter())?;
         let baked = self.mesh(&baked)?.map(|it| (it, DAffine3::IDENTITY));
         let components = placed.iter().filter_map(|it| {
