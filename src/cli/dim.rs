@@ -64,7 +64,8 @@ pub(super) struct Arguments {
     json: bool,
     /// Measures the slice of a set in space by the plane n·x = value instead: --slice 0,0,1=0.5
     ///
-    /// For every size, the cubes of the layer that the plane halves are counted.
+    /// For every size, the cubes of the layer that the plane halves are counted. D_q and lacunarity are those of the
+    /// squares of the plane that the slice meets, all of which have the same mass.
     #[arg(long, value_name = "X,Y,Z=VALUE", value_parser = space::plane, allow_hyphen_values = true)]
     slice: Option<HalfSpace>,
     /// Plots counts, fit and local slopes into a file (SVG or PNG)

@@ -335,6 +335,7 @@ fn spectrum(text: &mut String, measured: &Measured) {
     }
     let of = match measured.measure {
         Some("weights") => "\nof the measure given by the weights",
+        Some("squares") => "\nof squares of equal mass",
         Some(_) => "\nof the natural measure",
         None => "",
     };
