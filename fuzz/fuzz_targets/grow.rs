@@ -25,8 +25,9 @@ use kfrac::grow::{Elements, Growth, WalkError, Walked};
 use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
 use kfrac::render::space::{SpaceOptions, write_space};
-use kfrac::render::{self, Format, Labels, Options, Size};
+use kfrac::render::{self, Format, Labels, Options, SceneFormat, Size, write_scene};
 use kfrac::rule::Rule;
+use kfrac::style::Named;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use mutate::{Random, mutated};
 
@@ -130,6 +131,20 @@ fn grow_in_space(model: &Model, graph: &Graph<Frame3>) -> Result<[Vec<u8>; 2], S
     let drawn = write_space(graph, Some(steps.min(4)), &options, &SpaceOptions::default(), None, &mut png);
     drawn.map_err(|error| error.to_string())?;
     assert!(png.starts_with(b"\x89PNG") && png.ends_with(b"IEND\xaeB`\x82"));
+    // Scenes may be refused, but are whole where they are not.
+    if graph.check_size(steps, MAX_ELEMENTS / 8).is_ok() {
+        for (name, format) in SceneFormat::NAMES {
+            let mut scene = Vec::new();
+            let space = SpaceOptions::default();
+            if write_scene(graph, steps, &options, &space, *format, None, &mut scene).is_ok() {
+                assert!(scene.len() > 100, "an empty .{name}");
+                if *format == SceneFormat::Glb {
+                    let length: [u8; 4] = scene[8..12].try_into().expect("four bytes");
+                    assert_eq!(u32::from_le_bytes(length) as usize, scene.len());
+                }
+            }
+        }
+    }
     Ok([format!("{limit:?} {bounds:?}").into_bytes(), png])
 }
 
