@@ -203,9 +203,17 @@ fn is_diagonal(matrix: &DMat3) -> bool {
 /// Returns eigenvalues and eigenvectors, as columns, of a symmetric matrix, by Jacobi's rotations.
 pub(crate) fn eigen(matrix: &DMat3) -> (DVec3, DMat3) {
     const SWEEPS: u32 = 12;
+    const NEGLIGIBLE: f64 = 1e-20;
     let mut a = matrix.to_cols_array_2d();
     let mut vectors = DMat3::IDENTITY.to_cols_array_2d();
     for _ in 0..SWEEPS {
+        // The rotations converge quadratically: mostly after four sweeps, nothing is left.
+        let beside = [a[0][1], a[0][2], a[1][2]].map(f64::abs);
+        let along = [a[0][0], a[1][1], a[2][2]].map(f64::abs);
+        let [beside, along] = [beside, along].map(|all| all.into_iter().fold(0.0, f64::max));
+        if beside <= NEGLIGIBLE * along {
+            break;
+        }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             if a[p][q] == 0.0 {
                 continue;

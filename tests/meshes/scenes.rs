@@ -260,7 +260,8 @@ fn surfaces_of_an_element_are_a_closed_mesh() {
     let written = |format| {
         let mut bytes = Vec::new();
         let space = SpaceOptions::default();
-        let options = Options::of(model.metadata());
+        let mut options = Options::of(model.metadata());
+        options.style.color_by = ColorBy::Tint;
         write_scene(
             &drawn.graph,
             steps,
