@@ -16,7 +16,7 @@ use kfrac::document::node::{Node, Value};
 use kfrac::export::{self, TableFormat};
 use kfrac::geometry::{Bounds, DVec2};
 use kfrac::graph::Graph;
-use kfrac::grow::Growth;
+use kfrac::grow::{Elements, Growth};
 use kfrac::measure::similarity_dimension;
 use kfrac::render::{self, Labels, Options, Size};
 use kfrac::rule::Rule;
@@ -55,8 +55,7 @@ fn entries(shelf: Shelf) -> Vec<LibraryFile> {
 
 /// Iterates over all rules, with their names.
 fn rules() -> impl Iterator<Item = (String, Arc<Rule>)> {
-    let names = entries(Shelf::RULES).into_iter().map(|entry| entry.name);
-    names.map(|name| {
+    common::plane_rules().into_iter().map(|name| {
         let rule = resolved(&document(&name), &[]);
         (name, rule)
     })
@@ -167,6 +166,11 @@ fn every_file_says_what_it_is() {
 fn every_component_can_be_used() {
     for entry in Catalogue::embedded().entries() {
         let name = &entry.name;
+        let source = Catalogue::embedded().open(&entry).unwrap();
+        let space = match source.text().contains("\nspace: 3\n") {
+            true => "space: 3\n",
+            false => "",
+        };
         let text = match entry.shelf {
             Shelf::Initiators => format!("initiator: {name}\ngenerator: koch\n"),
             Shelf::Generators => format!("initiator: segment\ngenerator: {name}\n"),
@@ -175,6 +179,15 @@ fn every_component_can_be_used() {
             }
             _ => continue,
         };
+        let text = format!("{space}{text}");
+        if !space.is_empty() {
+            let (model, warnings) = document_of(&text).resolve(&[]).unwrap();
+            assert!(warnings.is_empty(), "{text} {warnings:?}");
+            let graph = model.graph_in_space(2).unwrap().unwrap();
+            let growth = Growth::steps(2);
+            assert!(Elements::of(&graph, &growth).count() > 1, "{text}");
+            continue;
+        }
         let rule = resolved(&document_of(&text), &[]);
         let graph = compiled(&rule, 3);
         let fractals = grown(&graph, &Growth::steps(2));

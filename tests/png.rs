@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{compiled, document, document_of, resolved};
-use kfrac::catalogue::{Catalogue, Shelf};
+use crate::common::{self, compiled, document, document_of, resolved};
 use kfrac::grow::Growth;
 use kfrac::render::{self, Format, Labels, Options, PngEncoding, Size};
 use kfrac::rule::Rule;
@@ -146,9 +145,7 @@ fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
 
 #[test]
 fn both_formats_of_the_whole_library_are_the_same_picture() {
-    let entries = Catalogue::embedded().entries();
-    for entry in entries.iter().filter(|entry| entry.shelf == Shelf::RULES) {
-        let name = entry.name.as_str();
+    for name in &common::plane_rules() {
         let rule = resolved(&document(name), &[]);
         agree(name, &rule, rule.steps().unwrap_or(4).min(8), 256);
     }

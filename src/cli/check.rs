@@ -90,9 +90,11 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     let (model, mut diagnostics) = document.resolve(&[])?;
     let steps = model.metadata().steps.unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
-    if !model.is_in_space()
-        && let Err(error) = model.compile(steps)
-    {
+    let compiled = match model.graph_in_space(steps) {
+        Some(graph) => graph.map(drop),
+        None => model.compile(steps).map(drop),
+    };
+    if let Err(error) = compiled {
         diagnostics.push(model.diagnostic(&error));
     }
     Ok(diagnostics)

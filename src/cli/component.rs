@@ -47,6 +47,7 @@ impl Component {
         let value_of = |key: &str| own.as_ref().and_then(|own| own.get(key));
         let value_of = |key: &str| value_of(key).map(|node| node.value.clone());
         let rule = Entries::default()
+            .set_some("space", value_of("space"))
             .set_some("title", value_of("title"))
             .set_some("about", value_of("about"))
             .set_some("source", value_of("source"));

@@ -33,6 +33,7 @@ pub use select::CaseDocument;
 pub use set::{DiskDocument, EllipseDocument};
 pub use solid::{CuboidDocument, EllipsoidDocument, ShaftDocument, SphereDocument};
 pub use space::InSpace;
+pub(super) use space::SPACE_OF_COMPONENT;
 
 use super::MetadataDocument;
 use super::reader::{Fields, Reader};

@@ -101,6 +101,7 @@ pub fn write(
             let view = options.camera.rotation().map_err(SpaceError::from)?;
             structure::page(structure, view, title)
         }
+        (Model::RuleInSpace(_), _) => return Err(RenderError::NoFigureInSpace),
         _ => return Err(RenderError::NoFigure(model.kind())),
     };
     Figure::write(page, options, out)

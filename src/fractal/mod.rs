@@ -21,7 +21,7 @@ use crate::diagnostic::{Diagnostics, Source};
 use crate::document::{Document, Setting};
 use crate::geometry::Frame3;
 use crate::graph::Graph;
-use crate::model::Model;
+use crate::model::{DrawnInSpace, Model};
 use crate::parallel::all_cores;
 use crate::render::space::SpaceOptions;
 use crate::render::{PngEncoding, Size};
@@ -64,6 +64,8 @@ pub struct Fractal {
     graph: OnceLock<Graph>,
     /// The graph of a model in space, once it has been compiled.
     graph_in_space: OnceLock<Graph<Frame3>>,
+    /// The graph of a model in space as it is drawn, once it has been compiled.
+    drawn_in_space: OnceLock<DrawnInSpace>,
 }
 
 impl From<Model> for Fractal {
@@ -86,6 +88,7 @@ impl From<Model> for Fractal {
             cancel: None,
             graph: OnceLock::new(),
             graph_in_space: OnceLock::new(),
+            drawn_in_space: OnceLock::new(),
         }
     }
 }

@@ -199,6 +199,7 @@ impl Fractal {
     fn anew(mut self) -> Self {
         self.graph = OnceLock::new();
         self.graph_in_space = OnceLock::new();
+        self.drawn_in_space = OnceLock::new();
         self
     }
 }

@@ -83,9 +83,10 @@ impl Fractal {
     /// If it cannot be drawn: it has too many elements, or none, or the picture is too large for memory.
     pub fn pixels(&self, size: impl Into<Size>) -> Result<Pixels, Error> {
         let options = self.options(Format::Png, size.into())?;
-        if let Some(graph) = self.graph_to_draw_in_space(&options)? {
-            let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
-            let drawn = pixels_in_space(graph, steps, &options, &self.space_options(), cancel);
+        if let Some(set) = self.graph_to_draw_in_space(&options)? {
+            let cancel = self.cancel.as_deref();
+            let space = self.space_options();
+            let drawn = pixels_in_space(&set.graph, set.steps, &options, &space, cancel);
             return Ok(drawn?.pixels);
         }
         let pixels = self.draw_by(&options, |graph, growth, options| {
@@ -375,21 +376,22 @@ impl Fractal {
     }
 
     fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {
-        if let Some(graph) = self.graph_to_draw_in_space(options)? {
+        if let Some(set) = self.graph_to_draw_in_space(options)? {
             if options.format != Format::Png {
-                let growth = self.growth(self.steps_in_space(graph));
+                let steps = { set.steps }.unwrap_or_else(|| self.steps_in_space(&set.graph));
+                let growth = self.growth(steps);
                 return Ok(write_visible(
-                    graph,
+                    &set.graph,
                     &growth,
                     options,
                     &self.space_options(),
                     &mut out,
                 )?);
             }
-            let (steps, cancel) = (self.steps_drawn_in_space(), self.cancel.as_deref());
+            let cancel = self.cancel.as_deref();
             return Ok(write_space(
-                graph,
-                steps,
+                &set.graph,
+                set.steps,
                 options,
                 &self.space_options(),
                 cancel,

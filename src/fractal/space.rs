@@ -3,6 +3,7 @@
 use crate::geometry::{Bounds, DVec3, Frame3};
 use crate::graph::{Forecast, Graph};
 use crate::grow::{Element, Elements};
+use crate::model::{DrawnError, DrawnInSpace};
 use crate::render::space::{DepthMap, Shade, SpaceOptions, pixels_in_space};
 use crate::render::{Detail, Format, NoRoom, Options, RenderError, Size};
 
@@ -93,15 +94,15 @@ impl Fractal {
     ///
     /// If it lies in the plane, or cannot be drawn.
     pub fn depth_map(&self, size: impl Into<Size>) -> Result<DepthMap, Error> {
-        let graph = self.graph_in_space("all of its points have the same depth")?;
+        let set = self.drawn_in_space("all of its points have the same depth")?;
         let options = self.options(Format::Png, size.into())?;
         let space = self
             .space_options()
             .shade(Some(Shade::None))
             .occlusion(false);
         let drawn = pixels_in_space(
-            graph,
-            self.steps_drawn_in_space(),
+            &set.graph,
+            set.steps,
             &options,
             &space.keeps_depths(true),
             self.cancel.as_deref(),
@@ -123,16 +124,39 @@ impl Fractal {
         if let Some(graph) = self.graph_in_space.get() {
             return Ok(graph);
         }
-        let graph = self.model.compile_in_space(false);
+        let graph = self.model.graph_in_space(self.resolved_steps_in_space());
         let graph = graph.ok_or(Error::InPlane(instead))?;
+        let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
         Ok(self.graph_in_space.get_or_init(|| graph))
+    }
+
+    /// Returns the number of steps for which graphs in space are resolved.
+    fn resolved_steps_in_space(&self) -> u32 {
+        const SOON: u32 = 16;
+        self.steps.or(self.model.metadata().steps).unwrap_or(SOON)
+    }
+
+    /// Returns the graph of a set in space as it is drawn; `instead` states what a set of the plane has.
+    fn drawn_in_space(&self, instead: &'static str) -> Result<&DrawnInSpace, Error> {
+        if let Some(drawn) = self.drawn_in_space.get() {
+            return Ok(drawn);
+        }
+        let growth = self.growth(self.resolved_steps_in_space());
+        let steps = self.steps_drawn_in_space();
+        let drawn = self.model.drawn_in_space(steps, &growth, false);
+        let drawn = drawn.ok_or(Error::InPlane(instead))?;
+        let drawn = drawn.map_err(|error| match error {
+            DrawnError::Compile(error) => self.model.diagnostic(&error).into(),
+            DrawnError::Walk(error) => Error::from(error),
+        })?;
+        Ok(self.drawn_in_space.get_or_init(|| drawn))
     }
 
     /// Returns the graph of a set in space for a picture, and `None` for a set of the plane.
     pub(super) fn graph_to_draw_in_space(
         &self,
         options: &Options,
-    ) -> Result<Option<&Graph<Frame3>>, Error> {
+    ) -> Result<Option<&DrawnInSpace>, Error> {
         if !self.model.is_in_space() {
             return Ok(None);
         }
@@ -142,7 +166,7 @@ impl Fractal {
                 "its camera has a point to look at, and no window",
             ));
         }
-        self.graph_in_space("it has windows").map(Some)
+        self.drawn_in_space("it has windows").map(Some)
     }
 
     /// Returns the number of steps of elements and numbers, which have no pixels.

@@ -18,6 +18,7 @@ use crate::geometry::Point as _;
 use crate::metadata::Metadata;
 use crate::rule::{ElementContext, Rule, Selection, constant};
 
+use crate::style::ColorBy;
 use generator::loops_shrink;
 
 use super::Resolver;
@@ -51,7 +52,7 @@ impl<F: ResolvedFrame> Default for OfRule<F> {
 }
 
 impl<F: ResolvedFrame> Resolver<OfRule<F>> {
-    pub(super) fn rule(&mut self, document: &RuleDocument, heading: Metadata) -> Rule<F> {
+    pub(super) fn rule(&mut self, document: &RuleDocument, mut heading: Metadata) -> Rule<F> {
         match &document.base_element {
             Some(document) => {
                 self.base_element(document);
@@ -85,6 +86,10 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                 .into_iter()
                 .for_each(|doubt| self.diagnostics.push(doubt));
         }
+        let base_elements = std::mem::take(&mut self.kind.base_elements);
+        if base_elements.iter().any(F::has_colours) && !document.heading.sets_colours {
+            heading.style.color_by = ColorBy::Tint;
+        }
         Rule {
             heading,
             points: values::<F>(&written_points),
@@ -92,7 +97,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             initiator,
             generators,
             selection,
-            base_elements: std::mem::take(&mut self.kind.base_elements),
+            base_elements,
         }
     }
 }

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use kfrac::catalogue::Catalogue;
+use kfrac::catalogue::{Catalogue, LibraryFile, Shelf};
 use kfrac::diagnostic::Source;
 use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
@@ -30,6 +30,18 @@ pub(crate) fn document(name: &str) -> Document {
     let catalogue = Catalogue::embedded();
     let source = catalogue.rule(name).unwrap();
     Document::read(&source, &catalogue).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
+}
+
+/// Returns the names of the library's rules in the plane.
+pub(crate) fn plane_rules() -> Vec<String> {
+    let catalogue = Catalogue::embedded();
+    let is_meant = |entry: &LibraryFile| {
+        let is_rule = entry.shelf == Shelf::RULES;
+        let is_in_space = |text: &str| text.contains("\nspace: 3\n");
+        is_rule && !is_in_space(catalogue.open(entry).unwrap().text())
+    };
+    let entries = catalogue.entries().into_iter().filter(is_meant);
+    entries.map(|entry| entry.name).collect()
 }
 
 /// Returns a document from text, with the components of the embedded library.

@@ -1,6 +1,5 @@
 //! Exact dimensions of the library's rules.
 
-use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::graph::Graph;
 use kfrac::measure::exact::{GraphDimensions, Overlap, dimensions_of_graph};
 
@@ -39,9 +38,8 @@ fn every_published_dimension_is_found() {
     ];
     let mut undecided = Vec::new();
     let mut seen = 0;
-    let entries = Catalogue::embedded().entries().into_iter();
-    for entry in entries.filter(|entry| entry.shelf == Shelf::RULES) {
-        let name = entry.name.as_str();
+    for name in common::plane_rules() {
+        let name = name.as_str();
         let document = common::document(name);
         let resolved = common::resolved(&document, &[]);
         let Some(published) = resolved.dimension() else {

@@ -10,7 +10,9 @@ use kfrac::geometry::{
 };
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, Elements, FractalInfo, Growth};
+use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
+use kfrac::render::{MeshOptions, Options, write_mesh};
 use kfrac::rule::{Rule, RuleFrame};
 use proptest::prelude::*;
 
@@ -235,5 +237,92 @@ proptest! {
             prop_assert!(own.abs_diff_eq(other, 1e-10), "{} {}", own, other);
             prop_assert!(close(expected.origin(), moved.frame.origin()));
         }
+    }
+}
+
+/// Returns a rule of the library in space.
+fn of_library(name: &str) -> Model {
+    let catalogue = Catalogue::embedded();
+    let source = catalogue.component(Shelf::RULES, name).unwrap();
+    let document = Document::read(&source, &catalogue).unwrap();
+    let (model, warnings) = document.resolve(&[]).unwrap();
+    assert!(warnings.is_empty(), "{name}: {warnings:?}");
+    model
+}
+
+#[test]
+fn rules_of_the_library_in_space_have_their_dimensions_and_are_drawn() {
+    let mut found = 0;
+    for entry in Catalogue::embedded().entries() {
+        let source = Catalogue::embedded().open(&entry).unwrap();
+        if entry.shelf != Shelf::RULES || !source.text().contains("\nspace: 3\n") {
+            continue;
+        }
+        let model = of_library(&entry.name);
+        let steps = model.metadata().steps.unwrap().min(3);
+        let graph = model.graph_in_space(steps).unwrap().unwrap();
+        let similarity = similarity_dimension(&graph).value;
+        if let Some(published) = model.metadata().dimension {
+            let similarity = similarity.unwrap();
+            assert!(
+                (similarity - published).abs() < 1e-12,
+                "{} {similarity}",
+                entry.name
+            );
+        }
+        let growth = Growth::steps(steps).seed(3);
+        let drawn = model.drawn_in_space(Some(steps), &growth, false);
+        let drawn = drawn.unwrap().unwrap();
+        assert!(drawn.graph.is_plain(), "{}", entry.name);
+        let bounds = drawn.graph.bounds(drawn.steps.unwrap()).unwrap();
+        assert!(bounds.size().min_element() > 0.0, "{}", entry.name);
+        found += 1;
+    }
+    assert!(found >= 12, "{found}");
+}
+
+#[test]
+fn the_sponge_of_cubes_has_the_cubes_and_faces_of_mengers() {
+    let model = of_library("menger-cubes");
+    for (steps, shell) in [(1, 72), (2, 1056), (3, 18048)] {
+        let graph = model.graph_in_space(steps).unwrap().unwrap();
+        let mut forecast = graph.forecast().unwrap();
+        (0..steps).for_each(|_| assert!(forecast.advance()));
+        let level = forecast.level();
+        assert_eq!(level.elements, Count::from(20_u64.pow(steps)));
+        // All sides of all cubes: 6 (20/9)ⁿ.
+        let sides = 6.0 * (20.0_f64 / 9.0).powi(i32::try_from(steps).unwrap());
+        assert!((level.area.unwrap() - sides).abs() < 1e-9);
+        let mut out = Vec::new();
+        let options = MeshOptions::default().shell(true);
+        let growth = Growth::steps(steps);
+        let written = write_mesh(&graph, &growth, &Options::default(), options, &mut out).unwrap();
+        // A square is two triangles in STL.
+        let faces = written.faces;
+        assert!(faces == shell || faces == 2 * shell, "{faces}");
+    }
+}
+
+#[test]
+fn a_base_element_of_several_surfaces_is_one_element_and_several_shapes() {
+    let text = "space: 3\ninitiator: tiles\ngenerator: koch-squares\nbase_element:\n  surfaces:\n    \
+                - {points: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], color: gold}\n    \
+                - {points: [[0, 0, 0], [1, 0, 0], [1/2, 1/2, 1/2]]}\n";
+    let model = model(text);
+    for steps in 0..3 {
+        let growth = Growth::steps(steps);
+        let graph = model.graph_in_space(steps).unwrap().unwrap();
+        let elements = elements(&graph, steps, 0).len();
+        assert_eq!(elements, 9 * 13_usize.pow(steps));
+        let drawn = model
+            .drawn_in_space(Some(steps), &growth, false)
+            .unwrap()
+            .unwrap();
+        let shapes = super::space::elements(&drawn.graph, steps, 0);
+        let visible = shapes
+            .iter()
+            .filter(|(_, it)| drawn.graph.objects()[it.object].visible);
+        assert_eq!(visible.count(), 2 * elements);
+        assert!(drawn.graph.tints());
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn read_space(reader: &mut Reader, fields: &Fields<'_>) -> bool {
 }
 
 /// Key that puts a component into space.
-pub(super) const SPACE_OF_COMPONENT: Member = key(
+pub(in crate::document) const SPACE_OF_COMPONENT: Member = key(
     "space",
     Form::Whole(2, Some(3)),
     "3 for a component in space, which only rules in space have; 2, the plane, if left out.",

@@ -1,7 +1,9 @@
 //! Dispatch on the kind of a file, for editors that use one schema for all files.
 
 use crate::catalogue::Shelf;
-use crate::document::read::{DESCRIPTION, GENERATOR, INITIATOR, PARAMS, RULE};
+use crate::document::read::{
+    BASE_ELEMENT, DESCRIPTION, GENERATOR, INITIATOR, PARAMS, RULE, SPACE_OF_COMPONENT,
+};
 use crate::document::shape::Shape;
 use crate::kind::Kind;
 
@@ -28,13 +30,16 @@ pub(super) fn by_kind() -> Object {
     let unknown = Object::default().with("properties", Object::default().with("kind", known));
     let of_rules = names(&RULE).filter(|name| !names(&COMPONENT).any(|common| common == *name));
     let of_generators = names(&GENERATOR).filter(|name| !names(&INITIATOR).any(|own| own == *name));
+    let is_shape = |name: &&str| *name != SPACE_OF_COMPONENT.name;
+    let of_base_elements = names(&BASE_ELEMENT)
+        .filter(|name| is_shape(name) && !names(&INITIATOR).any(|own| own == *name));
     let components = [
         (
             Object::default().with("type", "array"),
             refer(Shelf::Initiators),
         ),
         (having(of_rules), refer(Shelf::RULES)),
-        (having(["points"]), refer(Shelf::BaseElements)),
+        (having(of_base_elements), refer(Shelf::BaseElements)),
         (having(of_generators), refer(Shelf::Generators)),
         (having(names(&INITIATOR)), refer(Shelf::Initiators)),
     ];
@@ -53,7 +58,7 @@ pub(super) fn by_kind() -> Object {
 
 /// Keys that all components have beside their own.
 const COMPONENT: Shape = Shape {
-    keys: &[&DESCRIPTION, &[PARAMS]],
+    keys: &[&DESCRIPTION, &[PARAMS, SPACE_OF_COMPONENT]],
     ..INITIATOR
 };
 

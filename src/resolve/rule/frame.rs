@@ -48,6 +48,9 @@ pub(in crate::resolve) trait ResolvedFrame: RuleFrame {
     /// Returns the corners of the polygon to which faces of elements must be similar; empty if there is none.
     fn face(base_element: &Self::BaseElement) -> &[DVec3];
 
+    /// Returns whether parts of a base element have colours of their own.
+    fn has_colours(base_element: &Self::BaseElement) -> bool;
+
     /// Resolves a base element. Reports mistakes and returns `None`.
     fn base_element(
         resolver: &mut Resolver<OfRule<Self>>,
@@ -100,6 +103,10 @@ impl ResolvedFrame for Frame2 {
 
     fn face(_: &BaseElement) -> &[DVec3] {
         &[]
+    }
+
+    fn has_colours(_: &BaseElement) -> bool {
+        false
     }
 
     fn base_element(
@@ -164,6 +171,12 @@ impl ResolvedFrame for Frame3 {
 
     fn face(body: &Body) -> &[DVec3] {
         body.face()
+    }
+
+    fn has_colours(body: &Body) -> bool {
+        body.surfaces()
+            .iter()
+            .any(|surface| surface.color.is_some())
     }
 
     fn base_element(
