@@ -83,7 +83,7 @@ fn a_section_of_the_sponge_is_outlined() {
     let plotted = picture.plotted.unwrap();
     assert_eq!(plotted.strokes, 1 + 1 + 6, "{plotted:?}");
     let (_, svg) = draw(&menger(), 2, &space, |_| {});
-    assert_eq!(svg.matches("<path").count(), picture.elements as usize);
+    assert_eq!(svg.matches("<path").count() as u64, picture.elements);
 }
 
 #[test]
