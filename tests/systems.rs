@@ -482,7 +482,7 @@ fn what_is_not_decided_is_said() {
                 - {matrix: [[s, -s], [0, 0]], shift: [1, 0]}\n  \
                 - {matrix: [[0, 0], [s, s]]}\n  - {matrix: [[0, 0], [s, -s]]}\n";
     let (system, said) = read(&Source::new("test.yaml", text)).unwrap();
-    assert!(said.to_string().contains("do not tell"), "{said}");
+    assert!(said.to_string().contains("do not decide"), "{said}");
     let graph = Graph::of_system(&system);
     assert!(!graph.shrinks());
     assert_eq!(graph.limit_bounds(), None);
