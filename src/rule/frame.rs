@@ -19,7 +19,7 @@ pub trait RuleFrame: Frame {
     type Coordinates: AsRef<[Program]> + Clone + Debug + PartialEq + Send + Sync;
     /// The turns of a move: an angle in the plane; in space turns about axes, of which the first one is applied first.
     type Turns: Clone + Debug + PartialEq + Send + Sync;
-    /// What is drawn for an element.
+    /// Base element: the shape that is drawn for an element.
     type BaseElement: Clone + Debug + PartialEq + Send + Sync;
 
     /// Returns the frame of a listed element; `points` are those of its initiator or generator, followed by the

@@ -520,7 +520,7 @@ fn cameras_go_over_the_poles() {
     let behind = Camera::default().from([200.0, 60.0]);
     let [over, behind] = [over, behind].map(|camera| seen_by(&graph, Some(1), camera, 60, 1));
     assert!(over.pixels().iter().eq(behind.pixels().iter().rev()));
-    // Whatever the camera looks at lies in the picture, before the viewer.
+    // Any point that the camera looks at lies in the picture, before the viewer.
     for at in [DVec3::ZERO, DVec3::splat(40.0)] {
         let camera = Camera::default().perspective(Some(150.0)).look_at(Some(at));
         assert!(share(&seen_by(&graph, Some(1), camera, 300, 1)) > 0.0);

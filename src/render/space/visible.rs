@@ -368,7 +368,7 @@ struct Walk<'a> {
 /// Projects the elements of a span.
 struct Projector<'a> {
     walk: &'a Walk<'a>,
-    /// What is nearest, by which hidden faces are left out.
+    /// Nearest faces, by which hidden ones are left out.
     nearest: Option<&'a Nearest>,
     shown: Vec<(Shown, Visibility)>,
     lines: Vec<(Colour, [DVec2; 2])>,

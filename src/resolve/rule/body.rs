@@ -20,7 +20,7 @@ const MAX_SURFACES: usize = 2000;
 /// Largest number of points of surfaces that are tried as those of one convex solid.
 const MAX_CORNERS: usize = 40;
 
-/// What a base element consists of so far.
+/// Parts of a base element that are read so far.
 #[derive(Default)]
 struct Pieces {
     surfaces: Vec<Surface>,
@@ -85,7 +85,7 @@ impl Resolver<OfRule<Frame3>> {
         let face = face.iter().map(|corner| back.transform_point3(*corner));
         let is_reported = pieces.surfaces.is_empty() && document.pieces.is_none();
         let body = Body::new(surfaces.collect(), face.collect(), pieces.is_closed);
-        // What is no shape at all was reported when the file was read.
+        // A base element without a shape was reported when the file was read.
         if body.is_none() && !is_reported {
             let hint = "its points must not all be the same";
             self.error_with_hint(&document.place, "this base element has no extent", hint);
