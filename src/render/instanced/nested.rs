@@ -153,11 +153,13 @@ impl<'g> Nested<'g> {
     }
 
     /// Returns whether a shape is a single face.
+    #[cfg(feature = "threemf")]
     pub(super) fn is_flat(&self, shape: usize) -> bool {
         Mesh::from(self.solid(shape)).faces.len() == 1
     }
 
     /// Returns the colours of all shapes, each once.
+    #[cfg(feature = "threemf")]
     pub(super) fn colours(&self) -> Vec<Colour> {
         let mut colours: Vec<Colour> = self.shapes.iter().map(|(_, colour)| *colour).collect();
         colours.sort_by_key(|colour| colour.rgba());
@@ -268,6 +270,7 @@ impl Baked {
 
     /// Returns whether the triangles enclose a volume: every side of one is a side of one other, in the opposite
     /// direction.
+    #[cfg(feature = "threemf")]
     pub(super) fn is_closed(&self) -> bool {
         let mut sides = BTreeMap::new();
         for ([a, b, c], _) in &self.triangles {
