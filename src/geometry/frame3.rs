@@ -286,7 +286,10 @@ mod tests {
                 // Almost against the x axis.
                 along = DVec3::new(-1.0, along.y * 1e-9, along.z * 1e-9);
             }
-            let (to, ratio) = (from + along, along.length());
+            let to = from + along;
+            // The sum is rounded.
+            let along = to - from;
+            let ratio = along.length();
             let least = Frame3::between(from, to, Direction::Normal, Attitude::Least);
             // The axis across x and the element stays where it is.
             let axis = DVec3::X.cross(along).normalize();
