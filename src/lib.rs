@@ -51,6 +51,7 @@
 //! | `meshes` | with `cli` | meshes from files as sets in space |
 //! | `simd` | with `cli` | random iteration with AVX2 where the processor has it: the same points, sooner |
 //! | `tables` | with `cli` | tables of points in CSV that are measured |
+//! | `threemf` | with `cli` | scenes as 3MF files |
 //!
 //! With `default-features = false` the library draws, measures and converts, has fewer than 45 dependencies, none
 //! of which concerns terminals, signals or temporary files, and compiles for `wasm32-unknown-unknown`. There, it
@@ -81,9 +82,9 @@
 //! ```
 //!
 //! Graphs, walks, forecasts, bounds and draws are generic over the [`Frame`](geometry::Frame) of an element; the
-//! frame of the plane, with lines and curves as outlines, is the default. Iterated function systems and structures
-//! lie in the plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into depth
-//! buffers; rules and L-systems lie in the plane.
+//! frame of the plane, with lines and curves as outlines, is the default. Rules, iterated function systems and
+//! structures lie in the plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into
+//! depth buffers, or as polygons and lines of visible faces; L-systems lie in the plane.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
 //! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s and [`Metadata`]. No room imports one
