@@ -137,7 +137,7 @@ fn a_page_of_no_command_is_a_wrong_command_line() {
 #[test]
 fn shells_learn_commands_options_and_rules() {
     for (shell, rules) in [
-        ("bash", "koch koch-quadratic koch-snowflake"),
+        ("bash", "koch koch-cube koch-cube-inwards"),
         ("fish", "using_subcommand check\" -a \"archipelago "),
         ("zsh", "'rules:rule:(archipelago "),
         ("elvish", "--color-by"),

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::model::Model;
+use kfrac::grow::Growth;
+use kfrac::model::{DrawnError, Model};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -166,11 +167,18 @@ fn digest(text: &str) -> Result<(), Diagnostics> {
     let catalogue = Catalogue::embedded();
     let source = Source::new("mutated.yaml", text);
     let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
-    if let Some(graph) = model.compile_in_space(true) {
-        // Neither the limit nor a step of a set in space panics or hangs.
-        let bounds = [graph.limit_bounds(), graph.bounds(2)];
-        assert!(bounds.iter().flatten().all(|it| !it.min().is_nan()));
-        return Ok(());
+    let growth = Growth::steps(2).max_elements(10_000);
+    match model.drawn_in_space(Some(2), &growth, true) {
+        None => {}
+        Some(Ok(drawn)) => {
+            // Neither the limit nor a step of a set in space panics or hangs.
+            let bounds = [drawn.graph.limit_bounds(), drawn.graph.bounds(2)];
+            assert!(bounds.iter().flatten().all(|it| !it.min().is_nan()));
+            return Ok(());
+        }
+        Some(Err(DrawnError::Compile(error))) => return Err(model.diagnostic(&error).into()),
+        // It has too many elements to be held, or points that are not finite.
+        Some(Err(_)) => return Ok(()),
     }
     match (model.compile(2), &model) {
         // An L-system that grows too long has no place in the file.
