@@ -39,7 +39,7 @@
 //! | rules made by a program | [`build`] |
 //!
 //! Everything that the front door does is done by the rooms behind it, which are public as far as programs
-//! need them: to measure pictures and points ([`measure`]), to visit elements without an iterator ([`grow`]), or
+//! need them: to measure pictures and points ([`measure`]), to compute distances in pictures ([`morphology`]), to visit elements without an iterator ([`grow`]), or
 //! to draw into memory with all options ([`render`]).
 //!
 //! # Features
@@ -87,8 +87,8 @@
 //! depth buffers, or as polygons and lines of visible faces; L-systems lie in the plane.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
-//! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s and [`Metadata`]. No room imports one
-//! above it.
+//! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s, [`Metadata`] and pictures of [`Bits`]. No
+//! room imports one above it.
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
 //! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
@@ -113,6 +113,7 @@
 #[macro_use]
 mod setters;
 
+mod bits;
 pub mod build;
 pub mod catalogue;
 pub mod chaos;
@@ -143,6 +144,8 @@ pub mod lsystem;
 pub mod measure;
 mod metadata;
 pub mod model;
+pub mod morphology;
+mod morton;
 mod output_file;
 mod parallel;
 mod priority;
@@ -156,6 +159,7 @@ pub mod style;
 mod written;
 pub mod zoom;
 
+pub use bits::Bits;
 pub use count::Count;
 pub use draws::{Distribution, Path, Variable};
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};

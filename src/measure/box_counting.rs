@@ -2,11 +2,11 @@
 
 use std::num::NonZero;
 
+use crate::bits::Bits;
 use crate::geometry::Point;
 use crate::saturating::{real, whole};
 
 use super::averaging::averaged;
-use super::bits::Bits;
 use super::cover::{Grid, Scale};
 use super::extrapolation::extrapolated;
 use super::limit::{LimitSet, Slice};

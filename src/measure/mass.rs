@@ -1,9 +1,9 @@
 //! The distribution of a set's mass over boxes, and its lacunarity.
 
+use crate::bits::Bits;
 use crate::geometry::{Bounds, Point};
 use crate::saturating::{real, whole};
 
-use super::bits::Bits;
 use super::cover::{Counts, Grid};
 use super::limit::LimitSet;
 use super::points::Points;

@@ -22,7 +22,6 @@
 #![doc = include_str!("library.md")]
 
 mod averaging;
-mod bits;
 mod box_counting;
 mod copies;
 mod cover;
@@ -32,7 +31,6 @@ mod extrapolation;
 mod grown;
 mod limit;
 mod mass;
-mod morton;
 mod perron;
 mod points;
 mod raster;
@@ -46,7 +44,7 @@ mod trend;
 mod units;
 mod voxels;
 
-pub use bits::Bits;
+pub use crate::bits::Bits;
 pub use box_counting::{BoxCounting, Boxes, Window};
 pub use cover::{Grid, Scale};
 pub use distance::{

@@ -3,9 +3,9 @@
 use crate::geometry::{Bounds, DAffine2, Linear, Point};
 
 use super::cover::Grid;
-use super::morton::{interleaved, separated};
 use super::space::Space;
 use super::voxels::Voxels;
+use crate::morton::{interleaved, separated};
 
 /// Reason why points cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -6,9 +6,9 @@ use std::num::NonZero;
 
 pub(super) use sliding::{Mean, means, thickness};
 
-use super::bits::Bits;
 use super::cover::{Grid, Scale, least};
 use super::statistics::mean;
+use crate::bits::Bits;
 use crate::geometry::DVec2;
 use crate::saturating::{real, whole};
 

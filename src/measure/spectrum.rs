@@ -3,7 +3,6 @@
 use std::num::NonZero;
 
 use super::averaging::averaged;
-use super::bits::Bits;
 use super::box_counting::{BoxCounting, Boxes};
 use super::cover::Grid;
 use super::limit::{Cascade, Moments};
@@ -13,6 +12,7 @@ use super::regression::{Estimate, Reading, estimate};
 use super::sample::Sample;
 use super::space::Space;
 use super::statistics::{logarithm, mean, readings};
+use crate::bits::Bits;
 use crate::geometry::Point;
 use crate::parallel::map;
 use crate::saturating::real;

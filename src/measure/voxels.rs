@@ -1,7 +1,7 @@
 //! Sets of boxes in the plane and in space as bits.
 
-use super::bits::Bits;
 use super::cover::Counts;
+use crate::bits::Bits;
 
 /// Boxes along up to three axes, a bit for each: layers of rows, one below the other.
 #[derive(Clone, Debug)]

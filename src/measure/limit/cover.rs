@@ -4,11 +4,11 @@ use std::num::NonZero;
 
 use crate::geometry::{DAffine2, Point};
 
-use super::super::bits::Bits;
 use super::super::cover::{Counts, Grid, Scale, least};
 use super::super::space::Space;
 use super::super::voxels::Voxels;
 use super::{LimitSet, Placed};
+use crate::bits::Bits;
 
 /// Radius, in units of a box's side, of the copies that are not examined further: a box that the set enters
 /// by no more than twice this length may be missed.

@@ -7,8 +7,8 @@
 
 use std::num::NonZero;
 
+use crate::bits::Bits;
 use crate::geometry::Point;
-use crate::measure::bits::Bits;
 use crate::measure::cover::{Counts, Grid, Scale, least};
 use crate::measure::space::Space;
 use crate::measure::statistics::{deviation, mean};

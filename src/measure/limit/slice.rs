@@ -1,8 +1,8 @@
 //! Slices of limit sets by planes, covered by layers of cubes.
 
+use crate::bits::Bits;
 use crate::geometry::DAffine2;
 use crate::geometry::{Affine, Bounds, DAffine3, DMat3, DVec3};
-use crate::measure::bits::Bits;
 use crate::measure::box_counting::whole_power;
 use crate::measure::cover::Grid;
 use crate::measure::space::Space;

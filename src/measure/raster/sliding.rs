@@ -8,7 +8,7 @@
 use std::borrow::Cow;
 use std::num::NonZero;
 
-use crate::measure::bits::Bits;
+use crate::bits::Bits;
 use crate::saturating::real;
 
 /// Mean number of boxes of one size.

@@ -2,7 +2,7 @@
 
 /// Interleaves the bits of the first two or three coordinates, of 32 or 21 bits.
 #[inline]
-pub(super) fn interleaved(dimension: usize, [x, y, z]: [u32; 3]) -> u64 {
+pub(crate) fn interleaved(dimension: usize, [x, y, z]: [u32; 3]) -> u64 {
     if dimension < 3 {
         spread(x) | spread(y) << 1
     } else {
@@ -12,7 +12,7 @@ pub(super) fn interleaved(dimension: usize, [x, y, z]: [u32; 3]) -> u64 {
 
 /// Returns the two or three coordinates of a key, completed by zeros.
 #[inline]
-pub(super) fn separated(dimension: usize, key: u64) -> [u32; 3] {
+pub(crate) fn separated(dimension: usize, key: u64) -> [u32; 3] {
     if dimension < 3 {
         [gathered(key), gathered(key >> 1), 0]
     } else {
@@ -34,7 +34,7 @@ fn spread(number: u32) -> u64 {
 /// Gathers the bits at even positions of a key.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "32 bits are left")]
-pub(super) fn gathered(key: u64) -> u32 {
+pub(crate) fn gathered(key: u64) -> u32 {
     let mut bits = key & 0x5555_5555_5555_5555;
     for (step, mask) in GATHERED.iter().enumerate() {
         bits = (bits | bits >> (1 << step)) & mask;

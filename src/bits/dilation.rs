@@ -12,7 +12,7 @@ const ROWS: usize = 1 << 9;
 
 impl Bits {
     /// Returns the smallest part that holds all boxes that are set; empty if none is.
-    pub(in crate::measure) fn cropped(&self) -> Cow<'_, Self> {
+    pub(crate) fn cropped(&self) -> Cow<'_, Self> {
         let is_empty = |row: &usize| self.row(*row).iter().all(|&word| word == 0);
         let above = (0..self.height).take_while(is_empty).count();
         let below = (above..self.height).rev().take_while(is_empty).count();
@@ -50,7 +50,7 @@ impl Bits {
 
     /// Returns bands of rows, evenly spread and separated by empty rows, if there are more than 2¹⁸ words;
     /// else the set itself.
-    pub(in crate::measure) fn bands(&self) -> Cow<'_, Self> {
+    pub(crate) fn bands(&self) -> Cow<'_, Self> {
         const MAX_WORDS: usize = 1 << 18;
         const BAND: usize = 256;
         const PARTED: usize = 8;
@@ -75,7 +75,7 @@ impl Bits {
     /// # Panics
     ///
     /// Panics if `more` is not from 1 to 63.
-    pub(in crate::measure) fn dilated(&self, more: usize, threads: NonZero<usize>) -> Self {
+    pub(crate) fn dilated(&self, more: usize, threads: NonZero<usize>) -> Self {
         assert!((1..64).contains(&more), "words are shifted by less than 64");
         let mut dilated = Self::new(self.width + more, self.height + more);
         let stride = dilated.width.div_ceil(64);
@@ -115,7 +115,7 @@ impl Bits {
     /// # Panics
     ///
     /// Panics if the side is not from 1 to 63.
-    pub(in crate::measure) fn eroded(&self, side: usize) -> Self {
+    pub(crate) fn eroded(&self, side: usize) -> Self {
         assert!((1..64).contains(&side), "words are shifted by less than 64");
         let mut eroded = self.clone();
         let stride = self.width.div_ceil(64);

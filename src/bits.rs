@@ -2,7 +2,8 @@
 
 mod dilation;
 
-use super::morton::gathered;
+use crate::morton::gathered;
+use crate::saturating::ones;
 
 /// Boxes in rows, a bit for each: set where the box is occupied.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,6 +53,18 @@ impl Bits {
         bits
     }
 
+    /// Creates the set of the boxes, by column and row, for which a condition holds.
+    #[must_use]
+    pub fn of(width: usize, height: usize, is_set: impl Fn(usize, usize) -> bool) -> Self {
+        let mut bits = Self::new(width, height);
+        for row in 0..height {
+            for column in (0..width).filter(|&column| is_set(column, row)) {
+                bits.set(column, row);
+            }
+        }
+        bits
+    }
+
     /// Returns the number of boxes in a row.
     #[must_use]
     pub fn width(&self) -> usize {
@@ -86,14 +99,14 @@ impl Bits {
     }
 
     /// Returns the words of up to `count` rows from a row on.
-    pub(super) fn rows(&self, first: usize, count: usize) -> &[u64] {
+    pub(crate) fn rows(&self, first: usize, count: usize) -> &[u64] {
         let stride = self.width.div_ceil(64);
         let rows = self.words.get(first * stride..).unwrap_or_default();
         &rows[..(count * stride).min(rows.len())]
     }
 
     /// Creates the union of two sets from their words; missing words are empty.
-    pub(super) fn union(width: usize, height: usize, [one, other]: [&[u64]; 2]) -> Self {
+    pub(crate) fn union(width: usize, height: usize, [one, other]: [&[u64]; 2]) -> Self {
         let mut union = Self::new(width, height);
         for words in [one, other] {
             let pairs = union.words.iter_mut().zip(words);
@@ -103,7 +116,7 @@ impl Bits {
     }
 
     /// Creates the set of the rows of several sets of one width, one below the other.
-    pub(super) fn stacked(width: usize, parts: impl Iterator<Item = Self>) -> Self {
+    pub(crate) fn stacked(width: usize, parts: impl Iterator<Item = Self>) -> Self {
         let mut stacked = Self::new(width, 0);
         for mut part in parts {
             stacked.height += part.height;
@@ -126,9 +139,26 @@ impl Bits {
         ones.sum()
     }
 
+    /// Returns `true` if no box is set.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.words.iter().all(|&word| word == 0)
+    }
+
+    /// Iterates over the column and row of the boxes that are set, row by row.
+    pub fn set_boxes(&self) -> impl Iterator<Item = [usize; 2]> {
+        let places = move |row| {
+            let words = self.row(row).iter().enumerate();
+            words.flat_map(move |(number, &word)| {
+                ones(word).map(move |bit| [64 * number + bit as usize, row])
+            })
+        };
+        (0..self.height).flat_map(places)
+    }
+
     /// Returns the number of marked boxes, rounded.
     #[expect(clippy::cast_precision_loss, reason = "counts that large are rounded")]
-    pub(super) fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.count() as f64
     }
 
@@ -258,5 +288,34 @@ fn fold(upper: &[u64], lower: &[u64], left: usize, folded: &mut [u64]) {
     if carried == 1 {
         let words = upper.len();
         folded[words / 2] |= 1 << (32 * (words % 2));
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use proptest::prelude::*;
+
+    use super::Bits;
+
+    type Rectangle = (usize, usize, usize, usize, bool);
+
+    /// Returns pictures up to a size: none, some or all of their pixels are set, singly or as rectangles.
+    pub(crate) fn random_bits(width: usize, height: usize) -> impl Strategy<Value = Bits> {
+        let size = (1..=width, 1..=height);
+        size.prop_flat_map(|(width, height)| {
+            let rectangle = (0..width, 0..height, 0..width, 0..height, any::<bool>());
+            let dots = prop::collection::vec((0..width, 0..height), 0..30);
+            (prop::collection::vec(rectangle, 0..8), dots).prop_map(move |(rectangles, dots)| {
+                let is_set = |column: usize, row: usize| {
+                    let in_rectangle = |&(x, y, other_x, other_y, _): &Rectangle| {
+                        (x.min(other_x)..=x.max(other_x)).contains(&column)
+                            && (y.min(other_y)..=y.max(other_y)).contains(&row)
+                    };
+                    let last = rectangles.iter().rev().find(|it| in_rectangle(it));
+                    last.is_some_and(|&(.., set)| set) != dots.contains(&(column, row))
+                };
+                Bits::of(width, height, is_set)
+            })
+        })
     }
 }
