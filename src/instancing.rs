@@ -21,7 +21,7 @@ use crate::style::Colour;
 /// to its object is known to expand (in some cases this is undecided).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instancing<M: AffineMap = DAffine2> {
-    pub(crate) heading: Metadata,
+    pub(crate) metadata: Metadata,
     pub(crate) objects: Vec<ObjectDefinition<M>>,
     pub(crate) scene: Vec<ObjectInstance<M>>,
     pub(crate) initial: Option<M::Set>,
@@ -77,7 +77,7 @@ impl<M: AffineMap> Instancing<M> {
     /// Returns the metadata of the file.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     /// Returns the objects that the scene reaches.

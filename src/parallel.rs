@@ -155,9 +155,9 @@ impl<'w> Team<'w> {
     }
 
     /// Creates a pipeline that applies `work` to pieces.
-    pub(crate) fn line<J: Send + 'w>(&self, work: fn(&mut J)) -> Line<'_, 'w, J> {
+    pub(crate) fn line<J: Send + 'w>(&self, work: fn(&mut J)) -> Pipeline<'_, 'w, J> {
         let (finished, done) = mpsc::channel();
-        Line {
+        Pipeline {
             team: self,
             work,
             finished,
@@ -188,7 +188,7 @@ pub(crate) fn is_cut_short() -> bool {
 pub(crate) use adversary::{is_cut_short, pick};
 
 /// A pipeline: pieces of work that are in progress, and finished ones that wait for earlier ones.
-pub(crate) struct Line<'t, 'w, J> {
+pub(crate) struct Pipeline<'t, 'w, J> {
     team: &'t Team<'w>,
     work: fn(&mut J),
     /// Finished pieces; `None` where the work has panicked.
@@ -204,7 +204,7 @@ pub(crate) struct Line<'t, 'w, J> {
 /// Maximum number of pieces in progress per thread.
 const PIECES_A_THREAD: u64 = 2;
 
-impl<'w, J: Send + 'w> Line<'_, 'w, J> {
+impl<'w, J: Send + 'w> Pipeline<'_, 'w, J> {
     /// Returns a piece that can be reused, if there is one.
     pub(crate) fn spare(&mut self) -> Option<J> {
         self.spare.pop()

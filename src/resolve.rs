@@ -85,34 +85,36 @@ fn resolve(
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     match document {
         KindDocument::Rule(document) if document.is_in_space => {
-            resolved(&document.heading, settings, |to, heading| {
-                Some({ to as &mut Resolver<OfRule<Frame3>> }.rule(document, heading))
+            resolved(&document.metadata, settings, |to, metadata| {
+                Some({ to as &mut Resolver<OfRule<Frame3>> }.rule(document, metadata))
             })
         }
-        KindDocument::Rule(document) => resolved(&document.heading, settings, |to, heading| {
-            Some({ to as &mut Resolver<OfRule<Frame2>> }.rule(document, heading))
+        KindDocument::Rule(document) => resolved(&document.metadata, settings, |to, metadata| {
+            Some({ to as &mut Resolver<OfRule<Frame2>> }.rule(document, metadata))
         }),
         KindDocument::Ifs(document) if document.is_in_space => {
-            resolved(&document.heading, settings, |to, heading| {
-                to.system_in_space(document, heading)
+            resolved(&document.metadata, settings, |to, metadata| {
+                to.system_in_space(document, metadata)
             })
         }
-        KindDocument::Ifs(document) => resolved(&document.heading, settings, |to, heading| {
-            to.system(document, heading)
+        KindDocument::Ifs(document) => resolved(&document.metadata, settings, |to, metadata| {
+            to.system(document, metadata)
         }),
         KindDocument::Instancing(document) if document.is_in_space => {
-            resolved(&document.heading, settings, |to, heading| {
-                { to as &mut Resolver<OfInstancing<DAffine3>> }.structure(document, heading)
+            resolved(&document.metadata, settings, |to, metadata| {
+                { to as &mut Resolver<OfInstancing<DAffine3>> }.structure(document, metadata)
             })
         }
         KindDocument::Instancing(document) => {
-            resolved(&document.heading, settings, |to, heading| {
-                { to as &mut Resolver<OfInstancing<DAffine2>> }.structure(document, heading)
+            resolved(&document.metadata, settings, |to, metadata| {
+                { to as &mut Resolver<OfInstancing<DAffine2>> }.structure(document, metadata)
             })
         }
-        KindDocument::LSystem(document) => resolved(&document.heading, settings, |to, heading| {
-            to.lsystem(document, heading)
-        }),
+        KindDocument::LSystem(document) => {
+            resolved(&document.metadata, settings, |to, metadata| {
+                to.lsystem(document, metadata)
+            })
+        }
     }
 }
 
@@ -123,8 +125,8 @@ fn resolved<K: Default, M: Into<Model>>(
     model: impl FnOnce(&mut Resolver<K>, Metadata) -> Option<M>,
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     let mut resolver = Resolver::<K>::default();
-    let heading = resolver.metadata(document, settings);
-    let model = model(&mut resolver, heading);
+    let metadata = resolver.metadata(document, settings);
+    let model = model(&mut resolver, metadata);
     let model = match model {
         Some(model) if !resolver.diagnostics.has_errors() => model.into(),
         _ => return Err(resolver.diagnostics),

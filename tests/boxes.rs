@@ -143,7 +143,7 @@ fn of_limit(set: &LimitSet, base: f64) -> Estimate {
     let window = kfrac::measure::Window {
         finest: 0.0,
         coarsest: set.bounds().size().max_element() / 2.0,
-        least_boxes: 9,
+        min_boxes: 9,
     };
     let scales = set.scales(base, 2_000, &grids(), number(2));
     BoxCounting::of(&scales, &window).estimate.unwrap()

@@ -53,7 +53,7 @@ fn assert_same(name: &str, graphs: [&Graph; 2], set: Subset<'_>) {
     }
     let precision = Precision {
         tolerance: 1.0 / 16.0,
-        most_points: 100_000,
+        max_points: 100_000,
     };
     // Sets that take too many points are compared by their boxes alone.
     if let Ok(distance) = hausdorff([&subjects[0], &subjects[1]], &precision) {

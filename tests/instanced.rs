@@ -29,8 +29,8 @@ fn compiled(document: &Document, steps: u32) -> (Metadata, Graph) {
     (model.metadata().clone(), graph)
 }
 
-fn options(heading: &Metadata) -> Options {
-    Options::of(heading)
+fn options(metadata: &Metadata) -> Options {
+    Options::of(metadata)
         .size(Size::Long(160))
         .threads(NonZero::<usize>::MIN)
         .instanced(true)

@@ -35,7 +35,7 @@ Examples:
 
 /// Diagnostic as it is printed in JSON.
 #[derive(Serialize)]
-pub(super) struct Row<'a> {
+pub(super) struct DiagnosticRow<'a> {
     file: &'a str,
     line: Option<usize>,
     column: Option<usize>,
@@ -100,9 +100,9 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     Ok(diagnostics)
 }
 
-pub(super) fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> Row<'a> {
+pub(super) fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> DiagnosticRow<'a> {
     let place = diagnostic.place();
-    Row {
+    DiagnosticRow {
         file: place.map_or(file, |place| place.source().name()),
         line: place.map(crate::diagnostic::Place::line),
         column: place.map(crate::diagnostic::Place::column),

@@ -199,7 +199,7 @@ impl Arguments {
     ) -> Result<(Comparison<'a>, Distance), Failure> {
         let precision = Precision {
             tolerance: self.tolerance,
-            most_points: self.max_points,
+            max_points: self.max_points,
         };
         let distance = hausdorff([&subjects[0], &subjects[1]], &precision)
             .map_err(|(which, error)| explain(error, &both[which].loaded))?;

@@ -52,7 +52,7 @@ Examples:
 ";
 
 #[derive(Serialize)]
-struct Found<'a> {
+struct CountReport<'a> {
     name: &'a str,
     steps: u32,
     elements: String,
@@ -118,9 +118,9 @@ impl Arguments {
     }
 }
 
-fn json<'a, P: Point>(found: &Counted<P>, loaded: &'a Loaded, steps: u32) -> Found<'a> {
+fn json<'a, P: Point>(found: &Counted<P>, loaded: &'a Loaded, steps: u32) -> CountReport<'a> {
     let bounds = Some(&found.bounds).filter(|bounds| !bounds.is_empty());
-    Found {
+    CountReport {
         name: &loaded.name,
         steps,
         elements: found.walked.elements.to_string(),

@@ -10,12 +10,12 @@ use super::Failure;
 pub(super) struct Assignment {
     /// Name of the parameter.
     name: String,
-    parts: Vec<Part>,
+    parts: Vec<ParameterPart>,
 }
 
 /// Real parameter, or one of the two parts of a complex one, with its values.
 #[derive(Clone, Debug, PartialEq)]
-struct Part {
+struct ParameterPart {
     name: String,
     values: Values,
     /// Source expression, if there is a single value.
@@ -50,7 +50,7 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
             }
         }
     };
-    let part = Part {
+    let part = ParameterPart {
         name: name.clone(),
         values,
         written: Expression::parse(written).ok(),
@@ -60,7 +60,7 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
 }
 
 /// Parses complex values: `[RE,IM]`, several separated by commas, or two with `..` between them.
-fn complex(name: &str, written: &str) -> Result<Vec<Part>, String> {
+fn complex(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
     const FORMS: &str =
         "a complex value is written [RE,IM], several are [RE,IM],[RE,IM] or [RE,IM]..[RE,IM]";
     let mut sides: [Vec<&str>; 2] = [Vec::new(), Vec::new()];
@@ -101,7 +101,7 @@ fn complex(name: &str, written: &str) -> Result<Vec<Part>, String> {
             [first, last] if is_range => (Values::Range([first, last]), None),
             _ => (Values::Several(all), None),
         };
-        Ok(Part {
+        Ok(ParameterPart {
             name: format!("{name}{part}"),
             values,
             written,
@@ -126,7 +126,7 @@ fn value(text: &str) -> Result<f64, String> {
 impl Assignment {
     /// Returns the settings of a parameter that has a single value.
     pub(super) fn settings(&self) -> Result<Vec<Setting>, Failure> {
-        let settings: Option<Vec<_>> = self.parts.iter().map(Part::setting).collect();
+        let settings: Option<Vec<_>> = self.parts.iter().map(ParameterPart::setting).collect();
         settings.ok_or_else(|| {
             let message = format!(
                 "--set {}: several values are for `kfrac sheet`, which draws them side by side",
@@ -137,7 +137,7 @@ impl Assignment {
     }
 }
 
-impl Part {
+impl ParameterPart {
     fn setting(&self) -> Option<Setting> {
         match self.values {
             Values::One(value) => Some(Setting {

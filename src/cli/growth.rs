@@ -65,7 +65,7 @@ impl GrowthArguments {
     }
 
     /// Returns whether the limit of the number of elements is given.
-    pub(super) fn says_most_elements(&self) -> bool {
+    pub(super) fn gives_max_elements(&self) -> bool {
         self.max_elements.is_some()
     }
 
@@ -74,7 +74,7 @@ impl GrowthArguments {
     }
 
     /// Returns the limit of the number of elements of a picture.
-    fn most_elements_of(&self, picture: &render::Options) -> u64 {
+    fn max_elements_of(&self, picture: &render::Options) -> u64 {
         let default = match picture {
             render::Options { plot: true, .. }
             | render::Options {
@@ -127,7 +127,7 @@ impl GrowthArguments {
         loaded: &Loaded,
         picture: &render::Options,
     ) -> Result<(), Failure> {
-        let most = self.most_elements_of(picture);
+        let most = self.max_elements_of(picture);
         let checked = graph.check_size(steps, most);
         checked.map_err(|error| {
             let svg = Some(picture).filter(|options| options.format == render::Format::Svg);
@@ -165,7 +165,7 @@ impl GrowthArguments {
         progress: Option<&'a Progress>,
     ) -> Growth<'a> {
         Growth {
-            max_elements: self.most_elements_of(picture),
+            max_elements: self.max_elements_of(picture),
             ..self.to(steps, progress)
         }
     }

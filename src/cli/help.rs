@@ -6,20 +6,20 @@
 use clap::builder::{StyledStr, Styles};
 
 /// Line of a help text.
-pub(super) enum Line<'t> {
+pub(super) enum HelpLine<'t> {
     Heading(&'t str),
     Term(&'t str),
     Meaning(&'t str),
 }
 
 /// Iterates over the lines of a help text, without the empty ones.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+pub(super) fn lines(text: &str) -> impl Iterator<Item = HelpLine<'_>> {
     let lines = text.lines().filter(|line| !line.is_empty());
     lines.map(|line| match line.strip_prefix("  ") {
-        None => Line::Heading(line.trim_end_matches(':')),
+        None => HelpLine::Heading(line.trim_end_matches(':')),
         Some(rest) => match rest.strip_prefix("    ") {
-            None => Line::Term(rest),
-            Some(rest) => Line::Meaning(rest),
+            None => HelpLine::Term(rest),
+            Some(rest) => HelpLine::Meaning(rest),
         },
     })
 }
@@ -31,12 +31,12 @@ pub(super) fn styled(text: &str) -> StyledStr {
     let mut styled = String::new();
     for line in lines(text) {
         let line = match line {
-            Line::Heading(heading) if styled.is_empty() => {
+            HelpLine::Heading(heading) if styled.is_empty() => {
                 format!("{header}{heading}:{header:#}\n")
             }
-            Line::Heading(heading) => format!("\n{header}{heading}:{header:#}\n"),
-            Line::Term(term) => format!("  {literal}{term}{literal:#}\n"),
-            Line::Meaning(meaning) => format!("      {meaning}\n"),
+            HelpLine::Heading(heading) => format!("\n{header}{heading}:{header:#}\n"),
+            HelpLine::Term(term) => format!("  {literal}{term}{literal:#}\n"),
+            HelpLine::Meaning(meaning) => format!("      {meaning}\n"),
         };
         styled.push_str(&line);
     }

@@ -12,7 +12,7 @@ use crate::catalogue::{cannot_be_read, open_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::import::{Fractint, Imported, read_fractint};
 
-use super::check::{Row, row};
+use super::check::{DiagnosticRow, row};
 use super::{Failure, help, output, text};
 
 /// Converts the entries of Fractint files to files that kfrac can grow
@@ -50,7 +50,7 @@ Examples:
 struct Report<'a> {
     entry: Option<&'a str>,
     file: Option<String>,
-    found: Vec<Row<'a>>,
+    found: Vec<DiagnosticRow<'a>>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {

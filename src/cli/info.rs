@@ -223,7 +223,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(readable::two_digits);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
         let mut counts = [const { Vec::new() }; 3];
-        for Row { level, .. } in rows {
+        for ForecastRow { level, .. } in rows {
             counts[0].push(level.elements);
             counts[1].push(level.fertile);
             counts[2].push(level.fractals);
@@ -234,13 +234,13 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     // Exact dimensions of random rules may need many integrals.
     let exact = (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
     let exact = exact.and_then(|known| known.dimensions);
-    let heading = loaded.model.metadata();
-    let params = heading.parameters.iter();
+    let metadata = loaded.model.metadata();
+    let params = metadata.parameters.iter();
     Info {
         name: &loaded.name,
         kind: loaded.model.kind().name(),
         space: 2,
-        title: heading.description.title.as_deref(),
+        title: metadata.description.title.as_deref(),
         params: params
             .map(|parameter| (parameter.name.clone(), number(parameter.value)))
             .collect(),
@@ -283,12 +283,17 @@ fn in_units(measures: Option<Vec<Option<f64>>>, factors: &[f64]) -> Option<Vec<O
 }
 
 /// Forecast of an approximant.
-struct Row {
+struct ForecastRow {
     level: Level,
     estimate: Option<SizeEstimate>,
 }
 
-fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Option<Vec<Row>> {
+fn rows(
+    loaded: &Loaded,
+    graph: &Graph,
+    steps: u32,
+    last: Option<Bounds>,
+) -> Option<Vec<ForecastRow>> {
     /// Step after which bounding boxes change little.
     const SETTLED: u32 = 12;
     let options = Options::of(loaded.model.metadata());
@@ -303,9 +308,11 @@ fn rows(loaded: &Loaded, graph: &Graph, steps: u32, last: Option<Bounds>) -> Opt
         let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
         let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
         // Every estimate after one that exceeds the range of doubles exceeds it too.
-        let may_be = rows.last().is_none_or(|row: &Row| row.estimate.is_some());
+        let may_be = rows
+            .last()
+            .is_none_or(|row: &ForecastRow| row.estimate.is_some());
         let bounds = bounds.filter(|_| may_be);
-        rows.push(Row {
+        rows.push(ForecastRow {
             level: forecast.level(),
             estimate: bounds.and_then(|bounds| estimator.at(&forecast, &bounds)),
         });
@@ -324,8 +331,8 @@ pub(super) fn corners<P: Point>(bounds: &Bounds<P>) -> Corners {
 /// Describes the rule in text.
 fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     let mut text = String::new();
-    let heading = loaded.model.metadata();
-    let description = &heading.description;
+    let metadata = loaded.model.metadata();
+    let description = &metadata.description;
     let mut line = |label: &str, value: &str| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{label:<12}{value}");
@@ -343,7 +350,7 @@ fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     if !description.tags.is_empty() {
         line("tags", &description.tags.join(", "));
     }
-    for parameter in &heading.parameters {
+    for parameter in &metadata.parameters {
         line("parameter", &parameter_line(parameter));
     }
     let generators = loaded

@@ -31,7 +31,7 @@ Examples:
 ";
 
 #[derive(Serialize)]
-struct Row {
+struct ListRow {
     name: String,
     kind: &'static str,
     title: Option<String>,
@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 
 /// Returns the row of an entry. A file that cannot be read has its name only; `kfrac check` reports its
 /// errors.
-fn row(entry: &LibraryFile, catalogue: &Catalogue) -> Row {
+fn row(entry: &LibraryFile, catalogue: &Catalogue) -> ListRow {
     let node = catalogue
         .open(entry)
         .ok()
@@ -106,7 +106,7 @@ fn row(entry: &LibraryFile, catalogue: &Catalogue) -> Row {
             .collect(),
         _ => Vec::new(),
     };
-    Row {
+    ListRow {
         name: entry.name.clone(),
         kind: entry.shelf.kind(),
         title: text("title"),
@@ -119,7 +119,7 @@ fn row(entry: &LibraryFile, catalogue: &Catalogue) -> Row {
     }
 }
 
-impl Row {
+impl ListRow {
     fn matches(&self, pattern: &str) -> bool {
         let texts = [Some(&self.name), self.title.as_ref()]
             .into_iter()

@@ -11,7 +11,7 @@ use clap_mangen::roff::{Roff, bold, roman};
 use crate::diagnostic::did_you_mean;
 
 use super::Failure;
-use super::help::{self, Line};
+use super::help::{self, HelpLine};
 use super::output::{self, Output};
 
 /// Prints a manual page, or writes all of them
@@ -103,9 +103,9 @@ fn page(command: &Command) -> io::Result<Vec<u8>> {
     let more = command.get_after_long_help().map(ToString::to_string);
     for line in help::lines(&more.unwrap_or_default()) {
         match line {
-            Line::Heading(heading) => rest.control("SH", [heading.to_uppercase().as_str()]),
-            Line::Term(term) => rest.control("TP", []).text([bold(term)]),
-            Line::Meaning(meaning) => rest.text([roman(meaning)]),
+            HelpLine::Heading(heading) => rest.control("SH", [heading.to_uppercase().as_str()]),
+            HelpLine::Term(term) => rest.control("TP", []).text([bold(term)]),
+            HelpLine::Meaning(meaning) => rest.text([roman(meaning)]),
         };
     }
     if !command.has_subcommands() {

@@ -55,13 +55,13 @@ pub(super) struct PictureArguments {
 
 impl PictureArguments {
     /// Returns the style of the rule with the options applied.
-    pub(super) fn style(&self, heading: &Metadata) -> Style {
-        self.style_in(heading, Unit::Pixel)
+    pub(super) fn style(&self, metadata: &Metadata) -> Style {
+        self.style_in(metadata, Unit::Pixel)
     }
 
     /// Returns the style of the rule with the options applied, with widths in `unit`.
-    pub(super) fn style_in(&self, heading: &Metadata, unit: Unit) -> Style {
-        let own = &heading.style;
+    pub(super) fn style_in(&self, metadata: &Metadata, unit: Unit) -> Style {
+        let own = &metadata.style;
         let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
         Style {
             stroke: self.stroke.map_or(own.stroke, Ink::colour),
@@ -87,15 +87,15 @@ impl PictureArguments {
     }
 
     /// Returns the view of the rule with the options applied.
-    pub(super) fn view(&self, heading: &Metadata) -> View {
-        self.view_in(heading, Unit::Pixel)
+    pub(super) fn view(&self, metadata: &Metadata) -> View {
+        self.view_in(metadata, Unit::Pixel)
     }
 
     /// Returns the view of the rule with the options applied, with the margin in `unit`.
-    pub(super) fn view_in(&self, heading: &Metadata, unit: Unit) -> View {
-        let margin = self.margin.unwrap_or(Length::Pixels(heading.view.margin));
+    pub(super) fn view_in(&self, metadata: &Metadata, unit: Unit) -> View {
+        let margin = self.margin.unwrap_or(Length::Pixels(metadata.view.margin));
         View {
-            window: self.view.or(heading.view.window),
+            window: self.view.or(metadata.view.window),
             margin: margin.count(unit),
         }
     }
@@ -121,8 +121,8 @@ impl PictureArguments {
     }
 
     /// Returns the single colour of points: that of the options, or else that of the file.
-    pub(super) fn ink(&self, heading: &Metadata) -> Option<Colour> {
-        let own = &heading.style;
+    pub(super) fn ink(&self, metadata: &Metadata) -> Option<Colour> {
+        let own = &metadata.style;
         let asked = self.fill.and_then(Ink::colour);
         let asked = asked.or(self.stroke.and_then(Ink::colour));
         asked.or(own.fill).or(own.stroke)

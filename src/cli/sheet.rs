@@ -173,7 +173,7 @@ impl Sheet {
 }
 
 /// Sheet that has been drawn.
-struct Drawn {
+struct DrawnSheet {
     written: sheet::SheetSummary,
     cells: usize,
     /// Largest step.
@@ -191,13 +191,13 @@ impl Arguments {
         last: u32,
         format: render::Format,
         sheet_to: impl Fn(u32) -> Result<Sheet, Failure>,
-    ) -> Result<Drawn, Failure> {
+    ) -> Result<DrawnSheet, Failure> {
         let Self {
             growth, columns, ..
         } = self;
         let default = self.rule.file("-sheet", format.name());
         let path = self.output.as_ref().unwrap_or(&default);
-        let gives_depth = self.steps.is_some() || growth.says_most_elements();
+        let gives_depth = self.steps.is_some() || growth.gives_max_elements();
         let stays_light = format == render::Format::Svg && !gives_depth;
         let ((written, cells, step), bytes) =
             output::write(path, growth.quiet, |out, progress| {
@@ -227,7 +227,7 @@ impl Arguments {
                 let written = sheet::write(&cells, *columns, &sheet.options, out);
                 Ok((written.map_err(explain)?, cells.len(), last))
             })?;
-        Ok(Drawn {
+        Ok(DrawnSheet {
             written,
             cells,
             step,
@@ -236,7 +236,7 @@ impl Arguments {
         })
     }
 
-    fn report(&self, drawn: &Drawn, content: &str, start: Instant) {
+    fn report(&self, drawn: &DrawnSheet, content: &str, start: Instant) {
         if !self.growth.quiet {
             let [width, height] = drawn.written.size;
             text::print_message(&format!(

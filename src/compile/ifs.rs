@@ -43,9 +43,9 @@ impl<F: Bounded> Graph<F> {
         (size <= MAX_INSTANCES).then(|| Self::compile_system(system, true))
     }
 
-    fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, tells_last: bool) -> Self {
+    fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, by_last_map: bool) -> Self {
         let ifs = system.ifs();
-        let mut graph = Compiler::new(system, tells_last).run();
+        let mut graph = Compiler::new(system, by_last_map).run();
         graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
         let initial = ifs.initial().map(|set| M::outlines(set).swap_remove(0));
@@ -85,7 +85,7 @@ struct Compiler<'s, M: AffineMap> {
     others: Vec<OutlineOf<M>>,
     chained: bool,
     /// Whether there are separate objects for every map that may be applied last.
-    tells_last: bool,
+    by_last_map: bool,
     /// Maps that may be applied before each map, without duplicates.
     before: Vec<Vec<usize>>,
     /// Maps without duplicates.
@@ -93,7 +93,7 @@ struct Compiler<'s, M: AffineMap> {
 }
 
 impl<'s, M: AffineMap> Compiler<'s, M> {
-    fn new(system: &'s System<M>, tells_last: bool) -> Self {
+    fn new(system: &'s System<M>, by_last_map: bool) -> Self {
         let ifs = system.ifs();
         let count = ifs.maps().len();
         let mut before = vec![Vec::new(); count];
@@ -122,7 +122,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
                 outlines
             }),
             chained: system.chained,
-            tells_last,
+            by_last_map,
             before,
             maps: (0..count).filter(|&map| firsts[map] == map).collect(),
         }
@@ -130,7 +130,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
 
     /// Returns the number of branches, each with its own objects.
     fn branches(&self) -> usize {
-        if self.tells_last {
+        if self.by_last_map {
             self.ifs.maps().len()
         } else {
             1
@@ -171,7 +171,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
             ..self.object(INITIAL, None, None)
         }];
         for branch in 0..self.branches() {
-            let last_map = self.tells_last.then_some(branch);
+            let last_map = self.by_last_map.then_some(branch);
             for map in 0..maps {
                 let successor = self.successor(Some((branch, map)), &self.before[map]);
                 objects.push(Object {
@@ -271,7 +271,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         // The outermost map determines the branch.
         let branch = |map: usize| match place {
             Some((branch, _)) => branch,
-            None if self.tells_last => map,
+            None if self.by_last_map => map,
             None => 0,
         };
         for (number, &map) in maps.iter().enumerate() {

@@ -51,15 +51,15 @@ impl<F: Bounded> Graph<F> {
         self.objects
             .iter_mut()
             .for_each(|object| object.visible = true);
-        let most = self.most_boxes();
+        let most = self.max_boxes();
         let initiators = self.initiators.clone();
         let mut boxes: Vec<Option<Bounds<F::Point>>> = Vec::new();
         for number in 0..self.objects.len() {
             // Behaviours are numbered in the order of the objects.
             if self.objects[number].behaviour == boxes.len() {
                 // If one box takes too long, the others do as well.
-                let is_told = boxes.len() < most && boxes.iter().all(Option::is_some);
-                boxes.push(is_told.then(|| self.box_of(number)).flatten());
+                let is_cheap = boxes.len() < most && boxes.iter().all(Option::is_some);
+                boxes.push(is_cheap.then(|| self.box_of(number)).flatten());
             }
         }
         self.initiators = initiators;
@@ -71,7 +71,7 @@ impl<F: Bounded> Graph<F> {
         }
     }
 
-    fn most_boxes(&self) -> usize {
+    fn max_boxes(&self) -> usize {
         MAX_BOXES.min(MAX_LOOKS / self.instances().count().max(1))
     }
 
@@ -108,11 +108,11 @@ impl<F: Bounded> Graph<F> {
                 .for_each(|object| object.visible = true);
         }
         let roots = graph.initiator(0).instances.clone();
-        let most = graph.most_boxes();
+        let most = graph.max_boxes();
         let numbered = roots.iter().enumerate();
         let boxes = numbered.map(|(number, root)| {
-            let is_told = number < most;
-            is_told.then(|| graph.box_of(root.object)).flatten()
+            let is_cheap = number < most;
+            is_cheap.then(|| graph.box_of(root.object)).flatten()
         });
         boxes.collect()
     }
@@ -133,7 +133,7 @@ pub(super) fn instance<M: AffineMap>(
 
 /// Canonical object or shape, by number.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum CanonicalNode {
     Canonical(usize),
     /// Shape, by the number of its base element.
     Shape(usize),
@@ -146,7 +146,7 @@ struct Compiler<'s, M: AffineMap> {
     /// Numbers of base elements, by their outlines.
     outlines: BTreeMap<Vec<u64>, usize>,
     /// Numbers of objects, by canonical object or shape, and by tint.
-    numbers: BTreeMap<(Kind, [u64; 2]), usize>,
+    numbers: BTreeMap<(CanonicalNode, [u64; 2]), usize>,
     /// Canonical object of every object of the graph.
     of: Vec<Option<usize>>,
 }
@@ -214,16 +214,18 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
     /// Returns the graph object of an instance, which is created if it is new.
     fn object(&mut self, instance: &instancing::ObjectInstance<M>) -> usize {
         let kind = match &instance.master {
-            Master::Object(number) => Kind::Canonical(*number),
-            Master::Shape(shape) => Kind::Shape(self.base_element(shape)),
+            Master::Object(number) => CanonicalNode::Canonical(*number),
+            Master::Shape(shape) => CanonicalNode::Shape(self.base_element(shape)),
         };
         let made = self.objects.len();
         let key = (kind, tint_bits(instance.tint));
         let number = *self.numbers.entry(key).or_insert(made);
         if number == made {
             let (base_element, visible, of) = match kind {
-                Kind::Canonical(number) => (0, self.structure.initial.is_some(), Some(number)),
-                Kind::Shape(base_element) => (base_element, true, None),
+                CanonicalNode::Canonical(number) => {
+                    (0, self.structure.initial.is_some(), Some(number))
+                }
+                CanonicalNode::Shape(base_element) => (base_element, true, None),
             };
             self.objects.push(Object {
                 visible,

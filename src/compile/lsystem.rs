@@ -154,7 +154,7 @@ impl<'s> Strings<'s> {
         let key = (base_element, colour, placed.width.to_bits());
         let number = *self.numbers.entry(key).or_insert(made);
         if number == made {
-            let palette = &self.system.heading.style.palette;
+            let palette = &self.system.metadata.style.palette;
             self.objects.push(Object {
                 paint: colour.map(|index| palette.entry(index)),
                 thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),

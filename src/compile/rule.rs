@@ -9,7 +9,7 @@ use crate::fast_hash::FastMap;
 use crate::geometry::Point;
 use crate::rule::{ElementContext, Part, Placement, Rule, RuleFrame, Selection};
 
-use super::state::{Class, Dependences, State};
+use super::state::{Class, Dependences, ElementState};
 use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of objects; beyond it the index is counted in walks instead of being resolved.
@@ -67,12 +67,12 @@ struct Compiler<'r, F: RuleFrame> {
     depends: Dependences,
     steps: u32,
     kinds: BTreeMap<Option<usize>, usize>,
-    numbers: FastMap<(Class, State), usize>,
+    numbers: FastMap<(Class, ElementState), usize>,
     /// Class and state of every object, in the order of their numbers.
-    keys: Vec<(Class, State)>,
+    keys: Vec<(Class, ElementState)>,
     objects: Vec<Object<F>>,
     /// Numbers of behaviours, by fertility, named generator and state.
-    behaviours: FastMap<(bool, Option<usize>, State), usize>,
+    behaviours: FastMap<(bool, Option<usize>, ElementState), usize>,
     /// Replacements of behaviours, as far as known.
     replacements: FastMap<usize, Replacement<F>>,
     /// Number of instances and amount of work so far.
@@ -113,14 +113,14 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
 
     fn run(mut self) -> Result<Graph<F>, Stop> {
         let rule = self.rule;
-        let state = State {
+        let state = ElementState {
             length: if self.depends.length {
                 1f64.to_bits()
             } else {
                 0
             },
             preceding: self.no_elements(),
-            ..State::default()
+            ..ElementState::default()
         };
         let lengths = |_: usize| 1.0;
         let objects = self.place(rule.initiator(), None, &state, lengths)?;
@@ -203,11 +203,11 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
     }
 
     /// Returns the number of an object, which is created if it is new.
-    fn object(&mut self, class: Class, state: State) -> Result<usize, Stop> {
+    fn object(&mut self, class: Class, state: ElementState) -> Result<usize, Stop> {
         let state = if class.fertile {
             state
         } else {
-            State::default()
+            ElementState::default()
         };
         if let Some(&number) = self.numbers.get(&(class, state.clone())) {
             return Ok(number);
@@ -242,7 +242,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
         &mut self,
         part: &Part,
         origin: Option<usize>,
-        first: &State,
+        first: &ElementState,
         length: impl Fn(usize) -> f64,
     ) -> Result<Vec<usize>, Stop> {
         let count = part.elements.len();
@@ -256,7 +256,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
                 turn
             };
             let element = &part.elements[listed];
-            let mut state = State {
+            let mut state = ElementState {
                 preceding: preceding.clone(),
                 ..first.clone()
             };
@@ -274,13 +274,13 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
     }
 
     /// Returns the index of an element in a state, up to a multiple of the modulus.
-    fn index(state: &State, modulus: u32) -> u32 {
+    fn index(state: &ElementState, modulus: u32) -> u32 {
         state.preceding.iter().sum::<u32>() % modulus + 1
     }
 
     /// Returns the values that expressions see of an element in a state; `index` represents all indices
     /// that are equal to it modulo m.
-    fn moment(state: &State, index: u32) -> ElementContext {
+    fn moment(state: &ElementState, index: u32) -> ElementContext {
         ElementContext {
             index: f64::from(index),
             age: f64::from(state.age),
@@ -342,13 +342,13 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
         let index = Self::index(&state, modulus);
         let moment = Self::moment(&state, index);
         let candidates = self.candidates(class.generator, &moment);
-        let body = State {
+        let body = ElementState {
             age: if self.depends.age { state.age + 1 } else { 0 },
             step: if self.depends.step { state.step + 1 } else { 0 },
             preceding: self.advanced(&state)?,
             ..state.clone()
         };
-        let seed = State {
+        let seed = ElementState {
             age: 0,
             preceding: self.no_elements(),
             ..body.clone()
@@ -437,7 +437,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
 
     /// Returns the counts of elements before the first child of an element in a state: the replacement
     /// matrix applied to the counts before the element.
-    fn advanced(&mut self, state: &State) -> Result<Vec<u32>, Stop> {
+    fn advanced(&mut self, state: &ElementState) -> Result<Vec<u32>, Stop> {
         let modulus = self.depends.modulus;
         if modulus == 1 {
             return Ok(Vec::new());
@@ -462,7 +462,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
     /// that stay by kind.
     ///
     /// The compilation is irregular if the possible generators of an element differ in these numbers.
-    fn replacement_matrix(&mut self, state: &State) -> Result<Vec<Vec<u32>>, Stop> {
+    fn replacement_matrix(&mut self, state: &ElementState) -> Result<Vec<Vec<u32>>, Stop> {
         let modulus = self.depends.modulus;
         let size = self.kinds.len() + 1;
         self.spend(0, size * size)?;

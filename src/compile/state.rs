@@ -32,7 +32,7 @@ impl Class {
 
 /// State of an element. Fields on which the rule does not depend keep their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct State {
+pub(super) struct ElementState {
     pub(super) age: u32,
     pub(super) step: u32,
     /// Bits of the relative length.

@@ -8,7 +8,7 @@ use crate::rule::{BaseElement, Piece};
 
 use super::Refusal;
 use super::shape::is_point;
-use super::structure::{Placed, Structure};
+use super::structure::{PlacedObject, Structure};
 
 /// Returns the structure with its straight shapes replaced by instances of a line, a triangle and a point:
 /// three additional objects that instance themselves.
@@ -19,14 +19,14 @@ use super::structure::{Placed, Structure};
 pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
     let line = structure.objects.len();
     let (triangle, point) = (line + 1, line + 2);
-    let replaced = |all: &[Placed]| -> Result<Vec<Placed>, Refusal> {
+    let replaced = |all: &[PlacedObject]| -> Result<Vec<PlacedObject>, Refusal> {
         let mut made = Vec::new();
         for placed in all {
             if placed.object.is_some() {
                 made.push(placed.clone());
                 continue;
             }
-            let instance = |map: DAffine2, object: usize| Placed {
+            let instance = |map: DAffine2, object: usize| PlacedObject {
                 map: placed.map * map,
                 object: Some(object),
                 ..placed.clone()
@@ -35,7 +35,7 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
             let corners = corners(outline)?;
             if is_point(outline) {
                 let at = placed.map.transform_point2(outline.start());
-                made.push(Placed {
+                made.push(PlacedObject {
                     map: DAffine2::from_translation(at),
                     object: Some(point),
                     ..placed.clone()
@@ -58,7 +58,7 @@ pub(super) fn with_copies(structure: &Structure) -> Result<Structure, Refusal> {
     };
     let objects = structure.objects.iter().map(|object| replaced(object));
     let mut objects = objects.collect::<Result<Vec<_>, _>>()?;
-    let copy = |object: usize, factor: f64, shift: [f64; 2]| Placed {
+    let copy = |object: usize, factor: f64, shift: [f64; 2]| PlacedObject {
         map: DAffine2::from_mat2_translation(
             DMat2::from_diagonal(DVec2::splat(factor)),
             shift.into(),

@@ -18,24 +18,24 @@ use crate::geometry::Linear;
 
 use super::convertible::Convertible;
 use super::number::value;
-use super::structure::{Placed, Structure};
+use super::structure::{PlacedObject, Structure};
 use super::{Keeps, Refusal};
 
 /// Limit of the number of maps.
 const MAX_MAPS: usize = 1_000;
 
 /// An iterated function system with a digraph.
-struct System<M> {
+struct RecurrentSystem<M> {
     maps: Vec<M>,
     /// Edges: a map, and a map that may follow it.
     edges: Vec<[usize; 2]>,
     /// The condensation sets.
-    sets: Vec<Placed<M>>,
+    sets: Vec<PlacedObject<M>>,
     /// Map of the initial set.
     initial: M,
 }
 
-impl<M: Convertible> System<M> {
+impl<M: Convertible> RecurrentSystem<M> {
     /// Creates a system without maps.
     fn new(initial: M) -> Self {
         Self {
@@ -119,8 +119,8 @@ fn edges(edges: &[[usize; 2]], count: usize) -> Value {
 }
 
 /// Returns the system with one map for each object, if all instances in every object have the same map.
-fn direct<M: Convertible>(structure: &Structure<M>) -> Option<System<M>> {
-    let is_here = |placed: &Placed<M>| placed.map == M::IDENTITY;
+fn direct<M: Convertible>(structure: &Structure<M>) -> Option<RecurrentSystem<M>> {
+    let is_here = |placed: &PlacedObject<M>| placed.map == M::IDENTITY;
     let (objects, sets): (Vec<_>, Vec<_>) = structure
         .scene
         .iter()
@@ -132,14 +132,14 @@ fn direct<M: Convertible>(structure: &Structure<M>) -> Option<System<M>> {
     if all.is_empty() || !each_once || !objects.iter().all(is_here) {
         return None;
     }
-    let mut system = System {
+    let mut system = RecurrentSystem {
         sets,
-        ..System::new(M::IDENTITY)
+        ..RecurrentSystem::new(M::IDENTITY)
     };
     for (number, object) in structure.objects.iter().enumerate() {
         let map = object.iter().find(|placed| placed.object.is_some())?.map;
         let mut befores: Vec<usize> = Vec::new();
-        let mut kept: Vec<&Placed<M>> = Vec::new();
+        let mut kept: Vec<&PlacedObject<M>> = Vec::new();
         for placed in object {
             match placed.object {
                 Some(before) => {
@@ -151,7 +151,7 @@ fn direct<M: Convertible>(structure: &Structure<M>) -> Option<System<M>> {
                 None => kept.push(placed),
             }
         }
-        let moved = |set: &Placed<M>| Placed {
+        let moved = |set: &PlacedObject<M>| PlacedObject {
             map: map * set.map,
             ..set.clone()
         };
@@ -168,8 +168,8 @@ fn direct<M: Convertible>(structure: &Structure<M>) -> Option<System<M>> {
 }
 
 /// Returns whether two lists of shapes have the same union.
-fn is_union<M: Convertible>(a: &[Placed<M>], b: &[Placed<M>]) -> bool {
-    let within = |a: &[Placed<M>], b: &[Placed<M>]| {
+fn is_union<M: Convertible>(a: &[PlacedObject<M>], b: &[PlacedObject<M>]) -> bool {
+    let within = |a: &[PlacedObject<M>], b: &[PlacedObject<M>]| {
         a.iter().all(|one| {
             let mut all = b.iter();
             all.any(|other| other.shape == one.shape && one.map.is_same(&other.map))
@@ -186,19 +186,20 @@ struct Vertex<M> {
     /// Composed map of the path to the object.
     frame: M,
     /// Instances in the object, each with the index of its vertex if it is replaced.
-    instances: Vec<(Placed<M>, Option<usize>)>,
+    instances: Vec<(PlacedObject<M>, Option<usize>)>,
 }
 
 /// Returns the system with one map for each instance.
-fn placed<M: Convertible>(structure: &Structure<M>) -> Result<System<M>, Refusal> {
+fn placed<M: Convertible>(structure: &Structure<M>) -> Result<RecurrentSystem<M>, Refusal> {
     let expanded = expanded(structure)?;
     let (roots, loose): (Vec<_>, Vec<_>) = expanded
         .scene
         .into_iter()
         .partition(|placed| placed.object.is_some());
-    let mut distinct: Vec<Placed<M>> = Vec::new();
+    let mut distinct: Vec<PlacedObject<M>> = Vec::new();
     for root in roots {
-        let same = |known: &Placed<M>| known.object == root.object && known.map.is_same(&root.map);
+        let same =
+            |known: &PlacedObject<M>| known.object == root.object && known.map.is_same(&root.map);
         if !distinct.iter().any(same) {
             distinct.push(root);
         }
@@ -207,10 +208,10 @@ fn placed<M: Convertible>(structure: &Structure<M>) -> Result<System<M>, Refusal
         return Err(Refusal::NoMaps);
     }
     let vertices = vertices(structure, &distinct, &expanded.objects)?;
-    let mut system = System::new(distinct[0].map);
+    let mut system = RecurrentSystem::new(distinct[0].map);
     // The vertex that contains each map's instance, and the vertex that it is an image of.
     let mut ends = Vec::new();
-    let mut sets: Option<Vec<Placed<M>>> = None;
+    let mut sets: Option<Vec<PlacedObject<M>>> = None;
     for (number, vertex) in vertices.iter().enumerate() {
         let mut own = Vec::new();
         for (placed, inside) in &vertex.instances {
@@ -226,7 +227,7 @@ fn placed<M: Convertible>(structure: &Structure<M>) -> Result<System<M>, Refusal
                     });
                     ends.push((number, inside));
                 }
-                None => own.push(Placed {
+                None => own.push(PlacedObject {
                     map,
                     ..placed.clone()
                 }),
@@ -254,8 +255,8 @@ fn placed<M: Convertible>(structure: &Structure<M>) -> Result<System<M>, Refusal
 /// Returns the objects that every instance of the scene leads to, with invertible maps of the paths to them.
 fn vertices<M: Convertible>(
     structure: &Structure<M>,
-    roots: &[Placed<M>],
-    objects: &[Vec<Placed<M>>],
+    roots: &[PlacedObject<M>],
+    objects: &[Vec<PlacedObject<M>>],
 ) -> Result<Vec<Vertex<M>>, Refusal> {
     let mut vertices: Vec<Vertex<M>> = Vec::new();
     let mut maps = 0;
@@ -316,29 +317,29 @@ fn vertices<M: Convertible>(
 }
 
 struct Expanded<M> {
-    scene: Vec<Placed<M>>,
-    objects: Vec<Vec<Placed<M>>>,
+    scene: Vec<PlacedObject<M>>,
+    objects: Vec<Vec<PlacedObject<M>>>,
 }
 
 /// Returns scene and objects with only those objects that lead back to themselves; others are replaced by
 /// their content.
 fn expanded<M: Convertible>(structure: &Structure<M>) -> Result<Expanded<M>, Refusal> {
     let inside =
-        |object: &Vec<Placed<M>>| object.iter().filter_map(|placed| placed.object).collect();
+        |object: &Vec<PlacedObject<M>>| object.iter().filter_map(|placed| placed.object).collect();
     let targets: Vec<Vec<usize>> = structure.objects.iter().map(inside).collect();
     let components = components(&targets);
     let leads_back = |object: usize| {
         let mut targets = targets[object].iter();
         targets.any(|&target| components[target] == components[object])
     };
-    let expand = |all: &[Placed<M>]| -> Result<Vec<Placed<M>>, Refusal> {
-        let mut open: Vec<Placed<M>> = all.iter().rev().cloned().collect();
+    let expand = |all: &[PlacedObject<M>]| -> Result<Vec<PlacedObject<M>>, Refusal> {
+        let mut open: Vec<PlacedObject<M>> = all.iter().rev().cloned().collect();
         let mut made = Vec::new();
         while let Some(placed) = open.pop() {
             match placed.object {
                 Some(object) if !leads_back(object) => {
                     let inside = structure.objects[object].iter().rev();
-                    open.extend(inside.map(|inside| Placed {
+                    open.extend(inside.map(|inside| PlacedObject {
                         map: placed.map * inside.map,
                         ..inside.clone()
                     }));

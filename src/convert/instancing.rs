@@ -6,7 +6,7 @@ use crate::instancing::Tint;
 
 use super::convertible::Convertible;
 use super::number::value;
-use super::structure::{Placed, Structure};
+use super::structure::{PlacedObject, Structure};
 use super::{Keeps, Refusal};
 
 pub(super) fn write<M: Convertible>(
@@ -58,7 +58,7 @@ fn name<M: Convertible>(structure: &Structure<M>, object: usize) -> String {
 
 fn instances<M: Convertible>(
     structure: &Structure<M>,
-    all: &[Placed<M>],
+    all: &[PlacedObject<M>],
 ) -> Result<Value, Refusal> {
     let instances: Result<Vec<_>, _> = all
         .iter()
@@ -69,7 +69,7 @@ fn instances<M: Convertible>(
 
 fn instance<M: Convertible>(
     structure: &Structure<M>,
-    placed: &Placed<M>,
+    placed: &PlacedObject<M>,
 ) -> Result<Value, Refusal> {
     let master = match placed.object {
         Some(object) => {

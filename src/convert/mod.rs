@@ -196,18 +196,21 @@ pub fn described(to: Kind) -> &'static str {
 }
 
 /// Returns the entries of a document: description, content, dimensions, style and view.
-fn headed(heading: &Metadata, kind: Kind, own: Entries) -> Entries {
+fn headed(metadata: &Metadata, kind: Kind, own: Entries) -> Entries {
     let number = |value: f64| number::value(value);
     let kind = Entries::default().set("kind", Value::Text(kind.name().into()));
-    let entries = written::description(kind, &heading.description)
+    let entries = written::description(kind, &metadata.description)
         .and(own)
-        .set_some("steps", heading.steps.map(|steps| number(steps.into())))
-        .set_some("dimension", heading.dimension.map(number))
+        .set_some("steps", metadata.steps.map(|steps| number(steps.into())))
+        .set_some("dimension", metadata.dimension.map(number))
         .set_some(
             "hausdorff_dimension",
-            heading.hausdorff_dimension.map(number),
+            metadata.hausdorff_dimension.map(number),
         );
-    let (style, view) = (written::style(&heading.style), written::view(&heading.view));
+    let (style, view) = (
+        written::style(&metadata.style),
+        written::view(&metadata.view),
+    );
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     entries
         .set_some("style", some(style))

@@ -6,7 +6,7 @@ use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::rule::{BaseElement, Piece};
 
 use super::number::{point, value};
-use super::structure::{Placed, Structure};
+use super::structure::{PlacedObject, Structure};
 use super::{Keeps, Refusal};
 
 /// Relative difference of a map's stretches below which it is a similarity.
@@ -43,7 +43,7 @@ fn name(object: usize) -> String {
 struct Writer<'s> {
     structure: &'s Structure,
     /// The first replaced instance, whose shape becomes the rule's base element.
-    usual: Option<&'s Placed>,
+    usual: Option<&'s PlacedObject>,
 }
 
 impl Writer<'_> {
@@ -69,7 +69,11 @@ impl Writer<'_> {
             .value())
     }
 
-    fn element(&self, placed: &Placed, called: &dyn Fn() -> String) -> Result<Value, Refusal> {
+    fn element(
+        &self,
+        placed: &PlacedObject,
+        called: &dyn Fn() -> String,
+    ) -> Result<Value, Refusal> {
         let outline = &self.structure.shapes[placed.shape];
         let similar = similarity(&placed.map, called);
         let (frame, outline) = match (placed.object, similar) {

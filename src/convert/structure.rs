@@ -10,7 +10,7 @@ use super::{Keeps, Refusal};
 
 /// An instance: a map of an object or of a shape that is kept.
 #[derive(Clone, Debug)]
-pub(super) struct Placed<M = DAffine2> {
+pub(super) struct PlacedObject<M = DAffine2> {
     pub(super) map: M,
     /// Index of the shape that is drawn until the instance is replaced.
     pub(super) shape: usize,
@@ -25,18 +25,18 @@ pub(super) struct Structure<M: AffineMap = DAffine2> {
     /// Shapes of instances.
     pub(super) shapes: Vec<OutlineOf<M>>,
     /// Instances in each object; never empty.
-    pub(super) objects: Vec<Vec<Placed<M>>>,
+    pub(super) objects: Vec<Vec<PlacedObject<M>>>,
     /// Instances of the scene, which are approximant 0; never empty.
-    pub(super) scene: Vec<Placed<M>>,
+    pub(super) scene: Vec<PlacedObject<M>>,
     /// Terms of messages about instances.
-    pub(super) words: Words,
+    pub(super) words: Terms,
     /// Names of the objects in the file, by index, if it has names.
     pub(super) names: Vec<String>,
 }
 
 /// Terms for the parts of a file.
 #[derive(Clone, Copy)]
-pub(super) enum Words {
+pub(super) enum Terms {
     Maps,
     Instances,
     Elements,
@@ -71,7 +71,7 @@ impl<M: AffineMap> Structure<M> {
             );
             let paint = object.paint.filter(|_| ends);
             let paint = paint.map(|colour| Tint { colour, alpha: 1.0 });
-            Placed {
+            PlacedObject {
                 map: *instance.frame.map(),
                 shape: object.base_element,
                 visible: object.visible,
@@ -108,9 +108,9 @@ impl<M: AffineMap> Structure<M> {
             objects,
             scene: initiator.filter(&stays).map(placed).collect(),
             words: if graph.is_affine() {
-                Words::Instances
+                Terms::Instances
             } else {
-                Words::Elements
+                Terms::Elements
             },
             names: called,
         }
@@ -130,7 +130,7 @@ impl<M: AffineMap> Structure<M> {
     pub(super) fn of_ifs(ifs: &Ifs<M>, shapes: Vec<OutlineOf<M>>) -> Self {
         // An initial set of several outlines is not a shape. The limit set does not depend on it.
         let is_shape = ifs.initial().is_none_or(|set| M::outlines(set).len() == 1);
-        let placed = |map: M, shape: usize, object: Option<usize>| Placed {
+        let placed = |map: M, shape: usize, object: Option<usize>| PlacedObject {
             map,
             shape,
             visible: object.is_none() || is_shape,
@@ -143,7 +143,7 @@ impl<M: AffineMap> Structure<M> {
         let drawn = || sets().map(|set| placed(M::IDENTITY, set, None));
         let maps = ifs.maps().iter().map(|map| map.affine);
         let (objects, scene) = if let Some(successors) = ifs.successors() {
-            let mut objects: Vec<Vec<Placed<M>>> = vec![Vec::new(); ifs.maps().len()];
+            let mut objects: Vec<Vec<PlacedObject<M>>> = vec![Vec::new(); ifs.maps().len()];
             for (before, successors) in successors.iter().enumerate() {
                 for &map in successors {
                     objects[map].push(placed(ifs.maps()[map].affine, 0, Some(before)));
@@ -164,7 +164,7 @@ impl<M: AffineMap> Structure<M> {
             shapes,
             objects,
             scene,
-            words: Words::Maps,
+            words: Terms::Maps,
             names: Vec::new(),
         }
     }
@@ -173,7 +173,7 @@ impl<M: AffineMap> Structure<M> {
     fn renumbered(self) -> Self {
         let mut numbers = vec![None; self.objects.len()];
         let mut order = Vec::new();
-        let mut visit = |placed: &Placed<M>, order: &mut Vec<usize>| {
+        let mut visit = |placed: &PlacedObject<M>, order: &mut Vec<usize>| {
             if let Some(object) = placed.object
                 && numbers[object].is_none()
             {
@@ -190,9 +190,9 @@ impl<M: AffineMap> Structure<M> {
             placed.for_each(|placed| visit(placed, &mut order));
             done += 1;
         }
-        let renumbered = |all: &[Placed<M>]| -> Vec<Placed<M>> {
+        let renumbered = |all: &[PlacedObject<M>]| -> Vec<PlacedObject<M>> {
             let all = all.iter().cloned();
-            all.map(|placed| Placed {
+            all.map(|placed| PlacedObject {
                 object: placed.object.and_then(|object| numbers[object]),
                 ..placed
             })
@@ -211,12 +211,12 @@ impl<M: AffineMap> Structure<M> {
     }
 
     /// Returns the instances in an object, or in the scene.
-    pub(super) fn placed(&self, object: Option<usize>) -> &[Placed<M>] {
+    pub(super) fn placed(&self, object: Option<usize>) -> &[PlacedObject<M>] {
         object.map_or(&self.scene, |object| &self.objects[object])
     }
 
     /// Iterates over all instances, those of the scene first.
-    pub(super) fn instances(&self) -> impl Iterator<Item = &Placed<M>> {
+    pub(super) fn instances(&self) -> impl Iterator<Item = &PlacedObject<M>> {
         self.scene.iter().chain(self.objects.iter().flatten())
     }
 
@@ -224,18 +224,18 @@ impl<M: AffineMap> Structure<M> {
     /// shape; `None` outside if they differ or there are none.
     pub(super) fn initial(&self) -> Option<Option<usize>> {
         let fertile = self.instances().filter(|placed| placed.object.is_some());
-        let mut looks = fertile.map(|placed| placed.visible.then_some(placed.shape));
-        let first = looks.next()?;
-        looks.all(|look| look == first).then_some(first)
+        let mut shapes = fertile.map(|placed| placed.visible.then_some(placed.shape));
+        let first = shapes.next()?;
+        shapes.all(|shape| shape == first).then_some(first)
     }
 
     /// Returns the name of an instance for messages: `map 2`, `instance 3 of object 1`, `element 1 of the
     /// initiator`. With no `object`, the instance is one of the scene.
     pub(super) fn called(&self, object: Option<usize>, number: usize) -> String {
         let (what, scene, of) = match self.words {
-            Words::Maps => return format!("map {}", number + 1),
-            Words::Instances => ("instance", "the scene", "object"),
-            Words::Elements => ("element", "the initiator", "generator"),
+            Terms::Maps => return format!("map {}", number + 1),
+            Terms::Instances => ("instance", "the scene", "object"),
+            Terms::Elements => ("element", "the initiator", "generator"),
         };
         let number = number + 1;
         match object {

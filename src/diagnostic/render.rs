@@ -87,7 +87,7 @@ fn one(renderer: &Renderer, diagnostic: &Diagnostic) -> String {
     }
     let text = renderer.render(&[group]);
     match window {
-        Some(window) => window.mend_column(&text),
+        Some(window) => window.correct_column(&text),
         None => text,
     }
 }
@@ -133,7 +133,7 @@ impl<'a> Window<'a> {
 
     /// Replaces the column in the rendered heading, which the renderer counts from the start of the
     /// window, by the column in the line.
-    fn mend_column(&self, rendered: &str) -> String {
+    fn correct_column(&self, rendered: &str) -> String {
         let (name, line) = (self.name, self.line);
         let counted = self.text[..self.underlined.start].chars().count() + 1;
         let heading = |column| format!("{name}:{line}:{column}\n");

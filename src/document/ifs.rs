@@ -14,7 +14,7 @@ use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint
 #[derive(Clone, Debug)]
 pub struct IfsDocument {
     /// Metadata of the file.
-    pub heading: MetadataDocument,
+    pub metadata: MetadataDocument,
     /// Whether the system lies in space.
     pub is_in_space: bool,
     /// The maps; `None` if they cannot be read.

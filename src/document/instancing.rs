@@ -12,7 +12,7 @@ use super::{MetadataDocument, ShapeDocument, TurnDocument, Written, WrittenNumbe
 #[derive(Clone, Debug)]
 pub struct InstancingDocument {
     /// Metadata of the file.
-    pub heading: MetadataDocument,
+    pub metadata: MetadataDocument,
     /// Whether the structure lies in space.
     pub is_in_space: bool,
     /// The objects, in the order of the file.

@@ -11,7 +11,7 @@ use super::{MetadataDocument, WrittenNumber};
 #[derive(Clone, Debug)]
 pub struct LSystemDocument {
     /// Metadata of the file.
-    pub heading: MetadataDocument,
+    pub metadata: MetadataDocument,
     /// Angle increment of `+` and `-`, in degrees.
     pub angle: Option<WrittenNumber>,
     /// Initial heading of the turtle, in degrees counter-clockwise from the x axis.

@@ -127,10 +127,10 @@ macro_rules! mapping {
         mapping!(@ {$(#[$doc])* $name $shape $what $hint, &[]} [] $($table)*);
     };
     (
-        $(#[$doc:meta])* struct $name:ident: $shape:ident = $what:literal, $hint:expr, $ways:expr;
+        $(#[$doc:meta])* struct $name:ident: $shape:ident = $what:literal, $hint:expr, $alternatives:expr;
         $($table:tt)*
     ) => {
-        mapping!(@ {$(#[$doc])* $name $shape $what $hint, $ways} [] $($table)*);
+        mapping!(@ {$(#[$doc])* $name $shape $what $hint, $alternatives} [] $($table)*);
     };
     (@ $head:tt [$($done:tt)*] needed $($rest:tt)+) => {
         mapping!(# Always $head [$($done)*] $($rest)*);
@@ -148,7 +148,7 @@ macro_rules! mapping {
         mapping!(# $needed $head $done $key as $key: $($rest)*);
     };
     (
-        @ {$(#[$doc:meta])* $name:ident $shape:ident $what:literal $hint:expr, $ways:expr}
+        @ {$(#[$doc:meta])* $name:ident $shape:ident $what:literal $hint:expr, $alternatives:expr}
         [$({
             $needed:ident $key:ident $field:ident ($type:ty) ($form:expr) ($about:expr) [$($absent:tt)*]
         })*]
@@ -170,7 +170,7 @@ macro_rules! mapping {
                 needed: $crate::document::shape::Needed::$needed,
                 absent: $crate::document::shape::keys!(? $($absent)*),
             }),*]],
-            ways: $ways,
+            alternatives: $alternatives,
             hint: $hint,
         };
 

@@ -65,7 +65,7 @@ use crate::expression::Expression;
 use crate::kind::Kind;
 
 use node::Node;
-use read::{KindTable, OfKind, read_heading};
+use read::{KindTable, OfKind, read_metadata};
 use reader::Reader;
 
 /// Makes [`KindDocument`] from a table of kinds and their documents.
@@ -80,7 +80,7 @@ macro_rules! documents {
             /// Returns the metadata that files of all kinds have.
             #[must_use]
             pub fn metadata(&self) -> &MetadataDocument {
-                match self { $(Self::$kind(document) => &document.heading,)* }
+                match self { $(Self::$kind(document) => &document.metadata,)* }
             }
 
             /// Returns the definition of a kind.
@@ -92,11 +92,11 @@ macro_rules! documents {
             /// found.
             fn read(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Option<Self> {
                 let fields = reader.fields(node, Self::table(kind).shape)?;
-                let heading = read_heading(reader, &fields);
+                let metadata = read_metadata(reader, &fields);
                 Some(match kind {
                     $(Kind::$kind => {
-                        let mut document = <$document>::read(reader, &fields, heading);
-                        document.heading.complete = complete && !reader.names_are_missing;
+                        let mut document = <$document>::read(reader, &fields, metadata);
+                        document.metadata.complete = complete && !reader.names_are_missing;
                         Self::$kind(document)
                     })*
                 })

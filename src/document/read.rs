@@ -26,7 +26,7 @@ pub use elements::{InitiatorDocument, Listed};
 pub(super) use generator::GENERATOR;
 pub use generator::{MoveDocument, RotateDocument};
 pub use instancing::TintDocument;
-pub(super) use metadata::{DESCRIPTION, check_description, read_heading};
+pub(super) use metadata::{DESCRIPTION, check_description, read_metadata};
 pub(super) use parameters::{PARAMETER, PARAMS};
 pub(super) use rule::RULE;
 pub use select::CaseDocument;
@@ -53,7 +53,7 @@ pub(super) trait OfKind {
     const TABLE: &'static KindTable;
 
     /// Reads the keys that only this kind has.
-    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self;
+    fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self;
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 #[derive(Clone, Debug)]
 pub struct RuleDocument {
     /// Metadata of the file.
-    pub heading: MetadataDocument,
+    pub metadata: MetadataDocument,
     /// Whether it lies in space.
     pub is_in_space: bool,
     /// Initiator.

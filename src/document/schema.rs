@@ -114,17 +114,20 @@ impl Definitions {
         let values = Object::default().with("additionalProperties", required(&PARAMETER, true));
         let alone = required(shape, true)
             .with("properties", Object::default().with(PARAMS.name, values))
-            .and(ways(shape, true));
+            .and(alternatives(shape, true));
         self.keys(shape)
             .with("if", extends)
-            .with("then", required(shape, false).and(ways(shape, false)))
+            .with(
+                "then",
+                required(shape, false).and(alternatives(shape, false)),
+            )
             .with("else", alone)
     }
 
     fn mapping(&mut self, shape: &Shape) -> Object {
         self.keys(shape)
             .and(required(shape, self.alone))
-            .and(ways(shape, true))
+            .and(alternatives(shape, true))
     }
 
     /// Returns the schema of the keys of a mapping and of their values.
@@ -236,17 +239,17 @@ fn required(shape: &Shape, alone: bool) -> Object {
 
 /// Returns the constraint for alternative sets of keys: one set is required if `needed`, and its
 /// exclusions apply in any case.
-fn ways(shape: &Shape, needed: bool) -> Object {
-    let ways = shape.ways.iter().map(|way| {
-        let needs = needed.then(|| list(way.needs.iter().copied()));
-        let excluded = way.excludes.iter();
+fn alternatives(shape: &Shape, needed: bool) -> Object {
+    let alternatives = shape.alternatives.iter().map(|keys| {
+        let needs = needed.then(|| list(keys.needs.iter().copied()));
+        let excluded = keys.excludes.iter();
         let excluded = excluded.map(|key| ((*key).to_owned(), false.into()));
         Object::default()
             .with_some("required", needs)
             .with("properties", Object(excluded.collect()))
     });
-    let ways = (!shape.ways.is_empty()).then(|| list(ways));
-    Object::default().with_some("anyOf", ways)
+    let alternatives = (!shape.alternatives.is_empty()).then(|| list(alternatives));
+    Object::default().with_some("anyOf", alternatives)
 }
 
 fn of_type(name: &str) -> Object {

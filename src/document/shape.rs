@@ -14,7 +14,7 @@ pub(super) struct Shape {
     /// Possible keys, in groups.
     pub(super) keys: &'static [&'static [Member]],
     /// Alternative sets of keys, of which exactly one is required; empty if there are none.
-    pub(super) ways: &'static [Way],
+    pub(super) alternatives: &'static [KeySet],
     /// Example of the notation, as a help text.
     pub(super) hint: &'static str,
 }
@@ -42,7 +42,7 @@ pub(super) enum Needed {
 }
 
 /// An alternative set of keys, with the keys that it excludes.
-pub(super) struct Way {
+pub(super) struct KeySet {
     pub(super) needs: &'static [&'static str],
     pub(super) excludes: &'static [&'static str],
 }
@@ -118,8 +118,11 @@ pub(super) const fn key(name: &'static str, holds: Form, about: &'static str) ->
 }
 
 /// Defines an alternative set of keys.
-pub(super) const fn way(needs: &'static [&'static str], excludes: &'static [&'static str]) -> Way {
-    Way { needs, excludes }
+pub(super) const fn alternative(
+    needs: &'static [&'static str],
+    excludes: &'static [&'static str],
+) -> KeySet {
+    KeySet { needs, excludes }
 }
 
 /// Makes the definitions of keys from a table of their names, types and descriptions. A key may be

@@ -27,7 +27,7 @@ pub(super) const STYLE: Shape = Shape {
         palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),
             "The colours for `color_by`: a palette's name, or a list of colours that are mixed evenly.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "style: {stroke: black, width: 1.5}",
 };
 
@@ -36,7 +36,7 @@ const WIDTH: Shape = Shape {
     keys: &[&keys![
         needed relative: Form::Positive, "The width as a multiple of the element's length.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "width: 1.5 in pixels, or width: {relative: 0.1} of the element's length",
 };
 

@@ -43,7 +43,7 @@ pub(super) const VIEW: Shape = Shape {
         ],
         &SPACE,
     ],
-    ways: &[],
+    alternatives: &[],
     hint: "view: {window: [x, y, width, height], margin: 10}, or in space view: {from: [30, 25]}",
 };
 
@@ -56,7 +56,7 @@ const SLAB: Shape = Shape {
             => "the slice has no place";
         thickness: Form::Positive, "The thickness in units; a section if left out.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "slice: {normal: [1, 1, 1], at: 1.5, thickness: 0.01}",
 };
 
@@ -67,7 +67,7 @@ const PLANE: Shape = Shape {
         needed at: Form::Number, "The value of normal · x on the plane. Points with at most this value remain."
             => "the cut has no place";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "cut: {normal: [1, 0, 0], at: 0.5}",
 };
 

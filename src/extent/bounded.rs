@@ -11,9 +11,9 @@ pub struct Fineness {
     /// Relative distance from the hulls at which iteration stops.
     pub(super) tolerance: f64,
     /// Limit of the number of corners that are mapped.
-    pub(super) most_work: usize,
+    pub(super) max_work: usize,
     /// Number of corners beyond which polygons are thinned more.
-    pub(super) most_corners: usize,
+    pub(super) max_corners: usize,
     /// Length by which a box may fall short, relative to its extent; rounding adds to it in any case.
     pub(super) spared: f64,
 }
@@ -21,15 +21,15 @@ pub struct Fineness {
 impl Fineness {
     pub(crate) const COARSE: Self = Self {
         tolerance: 1e-4,
-        most_work: 1 << 20,
-        most_corners: 256,
+        max_work: 1 << 20,
+        max_corners: 256,
         spared: 0.0,
     };
 
     pub(super) const FINE: Self = Self {
         tolerance: 1e-8,
-        most_work: 1 << 22,
-        most_corners: 2048,
+        max_work: 1 << 22,
+        max_corners: 2048,
         spared: 1e-10,
     };
 }

@@ -30,7 +30,7 @@ const NEGLIGIBLE: f64 = 1e-17;
 /// and vectors of equal states differ by rounding, so fewer states merge.
 const ROUNDING: f64 = 1e-15;
 
-struct State<F: Frame> {
+struct SupportTerm<F: Frame> {
     object: usize,
     vector: F::Point,
     offset: f64,
@@ -61,7 +61,7 @@ pub struct ApproximantBounds<'g, F: Frame = Frame2> {
 impl<F: Frame> Reach<F> {
     /// Returns an upper bound of x·u over the points x that a state draws, and a lower bound that holds
     /// if it draws anything: of the least x·u, or in the limit with polygons, of the greatest.
-    fn span(&self, state: &State<F>, levels: Option<u32>) -> [f64; 2] {
+    fn span(&self, state: &SupportTerm<F>, levels: Option<u32>) -> [f64; 2] {
         let Some(hulls) = &self.hulls else {
             let size = state.vector.length() * self.radius(levels);
             return [state.offset + size, state.offset - size];
@@ -76,7 +76,7 @@ impl<F: Frame> Reach<F> {
 
     /// Returns the contribution of a state to its offset in the limit, if polygons determine it to within
     /// `negligible`.
-    fn rest(&self, state: &State<F>, negligible: f64) -> Option<f64> {
+    fn rest(&self, state: &SupportTerm<F>, negligible: f64) -> Option<f64> {
         let hulls = self.hulls.as_ref()?;
         let [farthest, surely] = hulls.along(state.object, state.vector);
         (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
@@ -84,7 +84,7 @@ impl<F: Frame> Reach<F> {
 
     /// Returns a bound on the distance, along the vector of a state, of all that it draws from its
     /// origin.
-    fn size(&self, state: &State<F>, levels: Option<u32>) -> f64 {
+    fn size(&self, state: &SupportTerm<F>, levels: Option<u32>) -> f64 {
         match &self.hulls {
             Some(hulls) => {
                 let along = [state.vector, -state.vector];
@@ -380,13 +380,18 @@ pub(crate) fn settled(mut set: Vec<bool>, next: impl Fn(&[bool]) -> Vec<bool>) -
     }
 }
 
-fn child<F: Frame>(instance: &Instance<F>, vector: F::Point, offset: f64, lost: f64) -> State<F> {
+fn child<F: Frame>(
+    instance: &Instance<F>,
+    vector: F::Point,
+    offset: f64,
+    lost: f64,
+) -> SupportTerm<F> {
     let shift = vector.dot(instance.frame.origin());
     // Knuth's exact sum of two doubles (TwoSum) keeps the errors of many levels from accumulating.
     let sum = offset + shift;
     let rounded = sum - offset;
     let error = (offset - (sum - rounded)) + (shift - rounded);
-    State {
+    SupportTerm {
         object: instance.object,
         vector: instance.frame.pullback(vector),
         offset: sum,
@@ -395,13 +400,13 @@ fn child<F: Frame>(instance: &Instance<F>, vector: F::Point, offset: f64, lost: 
 }
 
 /// Keeps the farthest of the states that are equal but for the offset.
-fn merged<F: Frame>(states: impl Iterator<Item = State<F>>) -> Vec<State<F>> {
-    let mut kept: Vec<State<F>> = Vec::new();
+fn merged<F: Frame>(states: impl Iterator<Item = SupportTerm<F>>) -> Vec<SupportTerm<F>> {
+    let mut kept: Vec<SupportTerm<F>> = Vec::new();
     let mut numbers = FastMap::default();
     for state in states {
         match numbers.entry((state.object, key(state.vector))) {
             Entry::Occupied(number) => {
-                let known: &mut State<F> = &mut kept[*number.get()];
+                let known: &mut SupportTerm<F> = &mut kept[*number.get()];
                 if (known.offset, known.lost) < (state.offset, state.lost) {
                     (known.offset, known.lost) = (state.offset, state.lost);
                 }

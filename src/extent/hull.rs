@@ -146,10 +146,10 @@ impl Graph {
                 thinned(&convex_hull(points, 0.0), tolerance)
             });
             let next: Vec<Vec<DVec2>> = next.collect();
-            let ends = work > fineness.most_work && round >= MIN_ROUNDS;
+            let ends = work > fineness.max_work && round >= MIN_ROUNDS;
             if next
                 .iter()
-                .any(|corners| corners.len() > fineness.most_corners)
+                .any(|corners| corners.len() > fineness.max_corners)
             {
                 coarse *= 1.5;
                 tolerance *= 1.5;

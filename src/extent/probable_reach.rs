@@ -97,20 +97,20 @@ mod tests {
     use crate::document::Document;
     use crate::geometry::DVec2;
     use crate::graph::{Graph, Replacement, Successor};
-    use crate::grow::{Evaluator, ReplacementContext, Standing};
+    use crate::grow::{Evaluator, ReplacementContext, TraversalState};
 
     /// Returns the largest distance of end points in the subtree of an element from its middle, down to
     /// elements of length 0.01.
-    fn reached(graph: &Graph, standing: &Standing, object: usize, level: u32) -> f64 {
-        let middle = standing.frame.apply(graph.middle());
+    fn reached(graph: &Graph, state: &TraversalState, object: usize, level: u32) -> f64 {
+        let middle = state.frame.apply(graph.middle());
         let mut evaluator = Evaluator::default();
         let mut farthest: f64 = 0.0;
-        let mut open = vec![(*standing, object, level, level)];
-        while let Some((standing, object, born, level)) = open.pop() {
-            for end in standing.frame.ends() {
+        let mut open = vec![(*state, object, level, level)];
+        while let Some((state, object, born, level)) = open.pop() {
+            for end in state.frame.ends() {
                 farthest = farthest.max(end.distance(middle));
             }
-            if standing.frame.stretch() < 1e-2 {
+            if state.frame.stretch() < 1e-2 {
                 continue;
             }
             let mut made = Successor::default();
@@ -122,7 +122,7 @@ mod tests {
                         level,
                         rank: 0,
                     };
-                    let evaluated = evaluator.evaluate(graph, &standing, object, moment, &mut made);
+                    let evaluated = evaluator.evaluate(graph, &state, object, moment, &mut made);
                     evaluated.unwrap();
                     &made
                 }
@@ -131,7 +131,7 @@ mod tests {
             for (placement, instance) in successor.placed_instances() {
                 let born = if placement.seeds() { level + 1 } else { born };
                 open.push((
-                    standing.child(graph, instance),
+                    state.child(graph, instance),
                     instance.object,
                     born,
                     level + 1,
@@ -154,9 +154,9 @@ mod tests {
         let mut farthest: f64 = 0.0;
         let object = graph.initiator(0).instances[0].object;
         for seed in 0..2_000 {
-            let mut standing: Standing = Standing::whole(seed);
-            standing.frame = standing.frame.moved_to(DVec2::new(0.5, 0.25));
-            let reached = reached(&graph, &standing, object, 0);
+            let mut state: TraversalState = TraversalState::whole(seed);
+            state.frame = state.frame.moved_to(DVec2::new(0.5, 0.25));
+            let reached = reached(&graph, &state, object, 0);
             assert!(reached <= reaches[object], "{seed}: {reached}");
             farthest = farthest.max(reached);
         }

@@ -7,7 +7,7 @@ use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Successor};
 
 use crate::grow::{
-    Enter, Evaluator, Growth, ReplacementContext, Standing, Subtree, seed_placement,
+    Enter, Evaluator, Growth, ReplacementContext, Subtree, TraversalState, seed_placement,
 };
 use crate::parallel::is_cancelled;
 use crate::priority::Keyed;
@@ -26,14 +26,14 @@ pub(crate) struct Reaches<'a> {
 
 /// Element to be replaced.
 struct Node<F: Frame> {
-    standing: Standing<F>,
+    state: TraversalState<F>,
     object: usize,
     /// Step of birth of its fractal.
     born: u32,
     level: u32,
 }
 
-struct Search<'a, F: Frame, E> {
+struct Maximisation<'a, F: Frame, E> {
     graph: &'a Graph<F>,
     steps: u32,
     reaches: &'a Reaches<'a>,
@@ -60,7 +60,7 @@ pub(crate) fn search<F: Frame>(
     if graph.counts_index() || !reaches.all.iter().all(|reach| reach.is_finite()) {
         return None;
     }
-    let mut search = Search {
+    let mut search = Maximisation {
         graph,
         steps: growth.steps,
         reaches,
@@ -75,7 +75,7 @@ pub(crate) fn search<F: Frame>(
     for &direction in F::Point::AXES {
         search.direction = direction;
         search.heap.clear();
-        let whole = Standing::whole(growth.seed);
+        let whole = TraversalState::whole(growth.seed);
         for instance in &graph.initiator(growth.steps).instances {
             search.add(whole.root(graph, instance), instance.object, 0, 0);
         }
@@ -93,14 +93,14 @@ pub(crate) fn search<F: Frame>(
                 rank: 0,
             };
             let successor =
-                evaluator.successor(graph, &node.standing, node.object, moment, &mut drawn);
+                evaluator.successor(graph, &node.state, node.object, moment, &mut drawn);
             search.replace(&node, successor.ok()?);
         }
     }
     Some(search.bounds)
 }
 
-impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
+impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Maximisation<'_, F, E> {
     /// Returns the extent, in the direction of the search, of the box found so far.
     fn found(&self) -> f64 {
         if self.bounds.is_empty() {
@@ -113,24 +113,24 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
     fn replace(&mut self, node: &Node<F>, successor: &Successor<F>) {
         let level = node.level + 1;
         for instance in &successor.body.instances {
-            let standing = node.standing.child(self.graph, instance);
-            self.add(standing, instance.object, node.born, level);
+            let state = node.state.child(self.graph, instance);
+            self.add(state, instance.object, node.born, level);
         }
         for seed in &successor.seeds {
-            let start = seed_placement(self.graph, &node.standing, seed.placement);
+            let start = seed_placement(self.graph, &node.state, seed.placement);
             for instance in &seed.chain.instances {
-                let standing = start.child(self.graph, instance);
-                self.add(standing, instance.object, level, level);
+                let state = start.child(self.graph, instance);
+                self.add(state, instance.object, level, level);
             }
         }
     }
 
     /// Adds an element: extends the box by its outline, or queues it if its subtree may extend the box.
-    fn add(&mut self, standing: Standing<F>, object: usize, born: u32, level: u32) {
+    fn add(&mut self, state: TraversalState<F>, object: usize, born: u32, level: u32) {
         // The slack covers rounding in the bound, which could exclude an element that decides the box.
         const SLACK: f64 = 1.0 + 1e-9;
         let subtree = Subtree {
-            frame: standing.frame,
+            frame: state.frame,
             object,
             born: level,
         };
@@ -141,21 +141,21 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Search<'_, F, E> {
         } else {
             (self.enter)(&subtree)
         };
-        let length = standing.frame.stretch();
+        let length = state.frame.stretch();
         match enter {
             Enter::Keep if own.visible => {
                 let base_element = &self.graph.base_elements()[own.base_element];
                 let pad = self.reaches.pads[object] * length;
-                base_element.add_to(&mut self.bounds, &standing.frame, pad);
+                base_element.add_to(&mut self.bounds, &state.frame, pad);
             }
             Enter::Keep | Enter::Skip => {}
             Enter::Replace => {
-                let middle = standing.frame.apply(self.graph.middle());
+                let middle = state.frame.apply(self.graph.middle());
                 let farthest =
                     middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;
                 if farthest > self.found() {
                     let item = Node {
-                        standing,
+                        state,
                         object,
                         born,
                         level,

@@ -42,7 +42,7 @@ impl Goal {
     ) -> Result<Self, CompileError> {
         Ok(match (steps, detail) {
             (None, Some(pixels)) if !model.as_kind().starts_anew() => Self::Detail(pixels),
-            (None, None) if goes_on_to_a_detail(model, &compile) => Self::Detail(1.0),
+            (None, None) if needs_detail(model, &compile) => Self::Detail(1.0),
             (Some(steps), pixels) => Self::Steps(steps, pixels),
             (None, pixels) => Self::Steps(proposed_steps(model, compile)?, pixels),
         })
@@ -170,10 +170,7 @@ pub(crate) fn steps_of_graph<F: Frame>(model: &Model, graph: &Graph<F>) -> u32 {
 
 /// Returns whether a model is drawn to a pixel where neither steps nor a detail are given: a system, or a
 /// structure without end, that contracts and proposes no number of steps.
-fn goes_on_to_a_detail(
-    model: &Model,
-    compile: impl Fn(u32) -> Result<Graph, CompileError>,
-) -> bool {
+fn needs_detail(model: &Model, compile: impl Fn(u32) -> Result<Graph, CompileError>) -> bool {
     let has_limit = || compile(0).is_ok_and(|graph| graph.limit_bounds().is_some());
     model.metadata().steps.is_none() && model.as_kind().is_drawn_to_limit(&has_limit)
 }

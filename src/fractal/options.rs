@@ -41,16 +41,16 @@ impl Fractal {
     ) -> Result<Self, Error> {
         for setting in settings {
             let setting: Setting = setting.into();
-            let heading = self.document.as_ref().map(Document::metadata);
+            let metadata = self.document.as_ref().map(Document::metadata);
             let has = |it: &MetadataDocument| {
                 it.params
                     .iter()
                     .any(|param| param.name.value == setting.name)
             };
-            if !heading.is_some_and(has) {
-                let hint = heading.map_or_else(
+            if !metadata.is_some_and(has) {
+                let hint = metadata.map_or_else(
                     || "it has none".into(),
-                    |heading| heading.instead_of(&setting.name),
+                    |metadata| metadata.instead_of(&setting.name),
                 );
                 let message = format!("there is no parameter '{}'", setting.name);
                 return Err(Diagnostic::error(message).hint(hint).into());

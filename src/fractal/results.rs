@@ -353,13 +353,13 @@ impl Fractal {
     }
 
     pub(super) fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
-        let heading = self.model.metadata();
-        let description = &heading.description;
+        let metadata = self.model.metadata();
+        let description = &metadata.description;
         Ok(Options {
             format,
             size,
-            style: self.style.clone().unwrap_or_else(|| heading.style.clone()),
-            view: self.view.unwrap_or(heading.view),
+            style: self.style.clone().unwrap_or_else(|| metadata.style.clone()),
+            view: self.view.unwrap_or(metadata.view),
             threads: self.threads,
             png: self.png_encoding,
             detail: match self.model.is_in_space() {

@@ -41,7 +41,7 @@ pub struct Forecast<'g, F: Frame = Frame2> {
     /// Whether all maps are similarities.
     is_similar: bool,
     /// Elements of the current approximant, by object.
-    standing: BTreeMap<usize, Tally>,
+    population: BTreeMap<usize, Tally>,
     fractals: Count,
     step: u32,
     /// Approximate number of elements that were created in the last step next to one of another length,
@@ -230,7 +230,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
             graph,
             is_plain: graph.is_plain(),
             is_similar: graph.is_similar(),
-            standing: BTreeMap::new(),
+            population: BTreeMap::new(),
             fractals: Count::from(1u64),
             step: 0,
             new_lengths: [0.0; 2],
@@ -282,9 +282,9 @@ impl<'g, F: Frame> Forecast<'g, F> {
     fn add(&mut self, object: usize, count: &Count, sums: Sums) {
         let area = sums.square * self.own_area(object);
         self.work += 1;
-        let standing = self.standing.entry(object).or_default();
-        standing.count += count;
-        standing.sums += Sums { area, ..sums };
+        let population = self.population.entry(object).or_default();
+        population.count += count;
+        population.sums += Sums { area, ..sums };
     }
 
     /// Returns the area of an object's base element if it is closed and drawn, otherwise 0.
@@ -320,14 +320,14 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// Returns the number of elements of the current approximant.
     #[must_use]
     pub fn elements(&self) -> Count {
-        self.standing.values().map(|tally| &tally.count).sum()
+        self.population.values().map(|tally| &tally.count).sum()
     }
 
     /// Returns the size of the current approximant.
     #[must_use]
     pub fn level(&self) -> Level {
         let plain = self.is_plain;
-        let all = || self.standing.iter();
+        let all = || self.population.iter();
         let fertile = all().filter(|(object, _)| self.graph.is_fertile(**object));
         let bulge = |(&object, tally): (&usize, &Tally)| {
             let number = self.graph.objects[object].base_element;
@@ -354,7 +354,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
 
     /// Iterates over the elements of the current approximant, by object; `None` if they depend on draws.
     pub fn populations(&self) -> Option<impl Iterator<Item = Population>> {
-        let populations = self.standing.iter().map(|(&object, tally)| Population {
+        let populations = self.population.iter().map(|(&object, tally)| Population {
             object,
             count: tally.count.to_f64(),
             length: tally.sums.length,
@@ -368,7 +368,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
     /// requires.
     fn is_resolved(&self) -> bool {
-        let mut objects = self.standing.keys();
+        let mut objects = self.population.keys();
         !objects.any(|&number| self.graph.objects[number].is_unresolved())
     }
 
@@ -376,8 +376,8 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// merged.
     fn standing_by_behaviour(&mut self) -> BTreeMap<usize, Tally> {
         let mut first = BTreeMap::new();
-        let mut standing: BTreeMap<usize, Tally> = BTreeMap::new();
-        for (number, tally) in std::mem::take(&mut self.standing) {
+        let mut population: BTreeMap<usize, Tally> = BTreeMap::new();
+        for (number, tally) in std::mem::take(&mut self.population) {
             let number = if self.graph.is_fertile(number) {
                 *first
                     .entry(self.graph.objects[number].behaviour)
@@ -385,11 +385,11 @@ impl<'g, F: Frame> Forecast<'g, F> {
             } else {
                 number
             };
-            let standing: &mut Tally = standing.entry(number).or_default();
-            standing.count += &tally.count;
-            standing.sums += tally.sums;
+            let population: &mut Tally = population.entry(number).or_default();
+            population.count += &tally.count;
+            population.sums += tally.sums;
         }
-        standing
+        population
     }
 
     /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved

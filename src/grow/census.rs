@@ -34,7 +34,7 @@ struct Key {
 
 /// Elements of one step with equal descendants.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Kind {
+pub(crate) struct Cohort {
     pub(crate) object: usize,
     /// Direction, composed along the path through seeds of any placement.
     pub(crate) direction: Direction,
@@ -48,12 +48,12 @@ pub(crate) struct Kind {
     becomes: u128,
 }
 
-type Standing = BTreeMap<Key, Kind>;
+type Cohorts = BTreeMap<Key, Cohort>;
 
 /// Kinds of elements at every step of a growth.
 #[derive(Debug)]
 pub(crate) struct Census {
-    steps: Vec<Standing>,
+    steps: Vec<Cohorts>,
     /// Length below which elements are not replaced; 0 if there is no such length.
     shortest: f64,
     largest: Option<u128>,
@@ -77,22 +77,22 @@ impl Census {
         };
         let start = graph.initiator(steps);
         let whole = census.whole();
-        let mut standing = Standing::new();
+        let mut cohorts = Cohorts::new();
         for instance in &start.instances {
-            add(&mut standing, &whole, instance);
+            add(&mut cohorts, &whole, instance);
         }
         let mut kinds = 0;
         let mut is_certain = true;
         for step in 0..=steps {
-            if standing.is_empty() {
+            if cohorts.is_empty() {
                 break;
             }
-            kinds += standing.len();
+            kinds += cohorts.len();
             if kinds > MAX_KINDS {
                 return None;
             }
-            let mut next = Standing::new();
-            for kind in standing.values_mut() {
+            let mut next = Cohorts::new();
+            for kind in cohorts.values_mut() {
                 let Some(successor) = graph.objects()[kind.object].successor() else {
                     continue;
                 };
@@ -108,8 +108,8 @@ impl Census {
                     add(&mut next, kind, instance);
                 }
             }
-            census.steps.push(standing);
-            standing = next;
+            census.steps.push(cohorts);
+            cohorts = next;
         }
         let largest = census.count_up(graph, start);
         census.largest = Some(largest).filter(|&largest| is_certain && largest <= MOST);
@@ -117,8 +117,8 @@ impl Census {
     }
 
     /// Returns the kind of the unit frame, in which the initiator stands.
-    fn whole(&self) -> Kind {
-        Kind {
+    fn whole(&self) -> Cohort {
+        Cohort {
             object: 0,
             direction: Direction::Normal,
             count: 1,
@@ -155,7 +155,7 @@ impl Census {
     }
 
     /// Iterates over the kinds of elements born in each step.
-    pub(crate) fn steps(&self) -> impl Iterator<Item = impl Iterator<Item = &Kind>> {
+    pub(crate) fn steps(&self) -> impl Iterator<Item = impl Iterator<Item = &Cohort>> {
         self.steps.iter().map(BTreeMap::values)
     }
 
@@ -181,12 +181,12 @@ impl Census {
             length: rounded(length),
             direction: Direction::Normal,
         };
-        let standing = self.steps.get(subtree.born as usize);
-        let known = standing.and_then(|standing| {
-            let not_shorter = standing.range(key..).next();
-            let shorter = standing.range(..key).next_back();
+        let cohorts = self.steps.get(subtree.born as usize);
+        let known = cohorts.and_then(|cohorts| {
+            let not_shorter = cohorts.range(key..).next();
+            let shorter = cohorts.range(..key).next_back();
             let alike = [not_shorter, shorter].into_iter().flatten();
-            let off = |kind: &Kind| (kind.length - length).abs();
+            let off = |kind: &Cohort| (kind.length - length).abs();
             alike
                 .map(|(_, kind)| kind)
                 .filter(|kind| kind.object == subtree.object)
@@ -201,7 +201,7 @@ fn rounded(length: f64) -> u64 {
 }
 
 /// Returns the key and the length of an instance in the place of an element of a kind.
-fn child<F: Frame>(parent: &Kind, instance: &Instance<F>) -> (Key, f64) {
+fn child<F: Frame>(parent: &Cohort, instance: &Instance<F>) -> (Key, f64) {
     let length = parent.length * instance.frame.stretch();
     let key = Key {
         object: instance.object,
@@ -211,9 +211,9 @@ fn child<F: Frame>(parent: &Kind, instance: &Instance<F>) -> (Key, f64) {
     (key, length)
 }
 
-fn add<F: Frame>(standing: &mut Standing, parent: &Kind, instance: &Instance<F>) {
+fn add<F: Frame>(cohorts: &mut Cohorts, parent: &Cohort, instance: &Instance<F>) {
     let (key, length) = child(parent, instance);
-    let kind = standing.entry(key).or_insert(Kind {
+    let kind = cohorts.entry(key).or_insert(Cohort {
         object: key.object,
         direction: key.direction,
         count: 0,
@@ -225,10 +225,10 @@ fn add<F: Frame>(standing: &mut Standing, parent: &Kind, instance: &Instance<F>)
 }
 
 /// Returns the number of descendants of a chain in the place of an element of a kind.
-fn sum<F: Frame>(standing: &Standing, parent: &Kind, chain: &Chain<F>) -> u128 {
+fn sum<F: Frame>(cohorts: &Cohorts, parent: &Cohort, chain: &Chain<F>) -> u128 {
     let children = chain.instances.iter().map(|instance| {
         let (key, _) = child(parent, instance);
-        standing.get(&key).map_or(0, |kind| kind.becomes)
+        cohorts.get(&key).map_or(0, |kind| kind.becomes)
     });
     children.fold(0, u128::saturating_add)
 }

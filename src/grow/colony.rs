@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Seed};
 
-use super::start::{Standing, Start, StartChain};
+use super::start::{Start, StartChain, TraversalState};
 use super::walk::walk_over;
 use super::{Visitor, WalkError, Walked};
 
@@ -28,7 +28,7 @@ pub struct Colony<'g, F: Frame = Frame2> {
     graph: &'g Graph<F>,
     /// Index of the object that seeded it, and of the seed in its successor.
     seed: [usize; 2],
-    standing: Standing<F>,
+    state: TraversalState<F>,
     born: u32,
     steps: u32,
 }
@@ -72,7 +72,7 @@ impl<'g, F: Frame> Colony<'g, F> {
         Some(Self {
             graph,
             seed,
-            standing: start.standing,
+            state: start.state,
             born: start.born,
             steps,
         })
@@ -80,7 +80,7 @@ impl<'g, F: Frame> Colony<'g, F> {
 
     /// Returns the frame of the element that seeded it.
     pub(crate) fn frame(&self) -> F {
-        self.standing.frame
+        self.state.frame
     }
 
     /// Returns the step in which its first fractal is born.
@@ -106,7 +106,7 @@ impl<'g, F: Frame> Colony<'g, F> {
                 chain: &seed.chain,
                 seed: self.seed,
             },
-            standing: self.standing,
+            state: self.state,
             born: self.born,
             seeded: 0..0,
         };
@@ -118,7 +118,7 @@ impl Colony<'_> {
     /// Returns the colony with the map of its frame replaced.
     pub(crate) fn moved_to(&self, map: DAffine2) -> Self {
         let mut moved = *self;
-        moved.standing.frame = Frame2::new(map, self.standing.frame.direction());
+        moved.state.frame = Frame2::new(map, self.state.frame.direction());
         moved
     }
 }
@@ -146,14 +146,14 @@ pub(crate) struct ColonyKind {
 impl ColonyKind {
     /// Returns one of the colonies.
     pub(crate) fn example<'g>(&self, graph: &'g Graph) -> Colony<'g> {
-        let standing = Standing {
+        let state = TraversalState {
             frame: self.frame,
-            ..Standing::whole(0)
+            ..TraversalState::whole(0)
         };
         Colony {
             graph,
             seed: self.seed,
-            standing,
+            state,
             born: self.born,
             steps: self.steps,
         }
@@ -204,27 +204,27 @@ impl ColonyKinds {
         let leads = graph.leads_to_seeds();
         let mut kinds = Self::default();
         let mut turns: Vec<BTreeMap<[i64; 4], u64>> = Vec::new();
-        let mut standing = Fertile::new();
-        let add = |standing: &mut Fertile, from: (Direction, DMat2, u64), chain: &Chain| {
+        let mut state = Fertile::new();
+        let add = |state: &mut Fertile, from: (Direction, DMat2, u64), chain: &Chain| {
             let (direction, linear, count) = from;
             for instance in chain.instances.iter().filter(|it| leads[it.object]) {
                 let linear = linear * instance.frame.map().matrix2;
                 let direction = direction * instance.frame.direction();
                 let length = round(libm::log2(stretch(&linear)) * TURNS);
                 let key = (instance.object, direction, length, turn(&linear));
-                standing.entry(key).or_insert((linear, 0)).1 += count;
+                state.entry(key).or_insert((linear, 0)).1 += count;
             }
         };
         let start = (Direction::Normal, DMat2::IDENTITY, 1);
-        add(&mut standing, start, graph.initiator(steps));
+        add(&mut state, start, graph.initiator(steps));
         let mut visited = 0;
         for step in 0..steps {
-            visited += standing.len();
+            visited += state.len();
             if visited > MAX_KINDS {
                 return Self::default();
             }
             let mut next = Fertile::new();
-            for ((object, direction, ..), (linear, count)) in standing {
+            for ((object, direction, ..), (linear, count)) in state {
                 let Some(successor) = graph.objects()[object].successor() else {
                     continue;
                 };
@@ -251,7 +251,7 @@ impl ColonyKinds {
                     *turns[kind].entry(turn(&turned.matrix2)).or_default() += count;
                 }
             }
-            standing = next;
+            state = next;
         }
         for (kind, turns) in kinds.all.iter_mut().zip(turns) {
             kind.turns = turns.len() as u64;

@@ -6,8 +6,8 @@ use crate::graph::{Chain, CompileError, Graph, Replacement, Seed, Successor};
 use super::block::{Blocks, Run};
 use super::census::Census;
 use super::evaluator::{Evaluator, ReplacementContext};
-use super::found::{Found, FoundSubtree, Next, Stop};
-use super::start::{Standing, Start, StartChain, birth, seed_placement};
+use super::found::{FoundElement, FoundSubtree, Next, Stop};
+use super::start::{Start, StartChain, TraversalState, birth, seed_placement};
 use super::{Enter, Subtree};
 
 /// Number of visits between two opportunities to stop.
@@ -23,7 +23,7 @@ enum Source<'g, F: Frame> {
 }
 
 struct Entry<'g, F: Frame> {
-    standing: Standing<F>,
+    state: TraversalState<F>,
     source: Source<'g, F>,
     reversed: bool,
     /// Number of instances visited.
@@ -98,9 +98,9 @@ impl<'g, F: Frame> Descent<'g, F> {
             born: start.born,
             target,
             stack: vec![Entry {
-                standing: start.standing,
+                state: start.state,
                 source: Source::Start,
-                reversed: start.standing.frame.direction().is_reversed(),
+                reversed: start.state.frame.direction().is_reversed(),
                 next: 0,
                 meets_end: true,
                 level: start.born,
@@ -128,13 +128,13 @@ impl<'g, F: Frame> Descent<'g, F> {
         direction: Direction,
     ) -> Self {
         let mut start = Start::initiator(graph, steps, 0);
-        start.standing.frame = start.standing.frame.with_direction(direction);
+        start.state.frame = start.state.frame.with_direction(direction);
         let mut descent = Self::new(graph, &start, steps);
         descent.stack.clear();
         descent.joined = true;
         if let Replacement::Fixed(_) = graph.objects()[object].replacement {
             // Fixed successors need no evaluation, which could fail.
-            let _ = descent.push(start.standing, object, 0, 0, true);
+            let _ = descent.push(start.state, object, 0, 0, true);
         }
         descent
     }
@@ -153,7 +153,7 @@ impl<'g, F: Frame> Descent<'g, F> {
 
     /// Takes over an element from another descent, and returns its rank: the other descent's, if a census
     /// counts the elements that are not visited.
-    pub(super) fn come_to(&mut self, found: &Found<F>) -> u128 {
+    pub(super) fn come_to(&mut self, found: &FoundElement<F>) -> u128 {
         self.index = match self.census {
             Some(_) => found.index,
             None => self.index + 1,
@@ -173,8 +173,8 @@ impl<'g, F: Frame> Descent<'g, F> {
     where
         'g: 'b,
     {
-        let Found {
-            standing,
+        let FoundElement {
+            state,
             object,
             level,
             rank,
@@ -186,11 +186,11 @@ impl<'g, F: Frame> Descent<'g, F> {
         }
         let meets_end = subtree.meets_end;
         if let Some(run) =
-            blocks.and_then(|blocks| self.run(&standing, object, level, meets_end, blocks))
+            blocks.and_then(|blocks| self.run(&state, object, level, meets_end, blocks))
         {
             return Ok(Some(run));
         }
-        self.push(standing, object, level, rank, meets_end)?;
+        self.push(state, object, level, rank, meets_end)?;
         Ok(None)
     }
 
@@ -198,7 +198,7 @@ impl<'g, F: Frame> Descent<'g, F> {
     #[inline]
     fn run<'b>(
         &mut self,
-        standing: &Standing<F>,
+        state: &TraversalState<F>,
         object: usize,
         level: u32,
         meets_end: bool,
@@ -207,7 +207,7 @@ impl<'g, F: Frame> Descent<'g, F> {
     where
         'g: 'b,
     {
-        let block = blocks.get(self.graph, object, self.target - level, &standing.frame)?;
+        let block = blocks.get(self.graph, object, self.target - level, &state.frame)?;
         let joined = std::mem::replace(&mut self.joined, block.meets_end && meets_end);
         self.visited += block.len();
         let index = self.index + 1;
@@ -215,9 +215,9 @@ impl<'g, F: Frame> Descent<'g, F> {
         Some(Run {
             block,
             object,
-            frame: standing.frame,
-            length: standing.length,
-            appearance: standing.appearance,
+            frame: state.frame,
+            length: state.length,
+            appearance: state.appearance,
             born: level,
             joined,
             index,
@@ -274,10 +274,10 @@ impl<'g, F: Frame> Descent<'g, F> {
             entry.next += 1;
             let is_root = matches!(entry.source, Source::Start)
                 && matches!(start.chain, StartChain::Initiator(_));
-            let standing = if is_root {
-                entry.standing.root(self.graph, instance)
+            let state = if is_root {
+                entry.state.root(self.graph, instance)
             } else {
-                entry.standing.child(self.graph, instance)
+                entry.state.child(self.graph, instance)
             };
             let born = if is_root {
                 birth(self.graph, instance)
@@ -298,7 +298,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                 0
             };
             let subtree = Subtree {
-                frame: standing.frame,
+                frame: state.frame,
                 object,
                 born: level,
             };
@@ -324,8 +324,8 @@ impl<'g, F: Frame> Descent<'g, F> {
                     Some(census) if !ends => census.becomes(&subtree),
                     _ => 1,
                 };
-                return Ok(Next::Element(Found {
-                    standing,
+                return Ok(Next::Element(FoundElement {
+                    state,
                     object,
                     level,
                     joined: joined && goes_on,
@@ -344,18 +344,18 @@ impl<'g, F: Frame> Descent<'g, F> {
             }
             match stop {
                 Stop::AtBlocks(blocks) => {
-                    if let Some(run) = self.run(&standing, object, level, meets_end, blocks) {
+                    if let Some(run) = self.run(&state, object, level, meets_end, blocks) {
                         return Ok(Next::Run(run));
                     }
                 }
                 Stop::AtSubtrees(sizes) => {
-                    let length = standing.frame.stretch();
+                    let length = state.frame.stretch();
                     if let Some(size) = sizes.cut(object, self.target - level, length) {
                         let joined = std::mem::replace(&mut self.joined, true);
                         self.index += self.census.map_or(0, |census| census.becomes(&subtree));
                         return Ok(Next::Subtree(FoundSubtree {
-                            root: Found {
-                                standing,
+                            root: FoundElement {
+                                state,
                                 object,
                                 level,
                                 joined,
@@ -369,7 +369,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                 }
                 Stop::Nowhere => {}
             }
-            self.push(standing, object, level, rank, meets_end)?;
+            self.push(state, object, level, rank, meets_end)?;
         }
     }
 
@@ -386,7 +386,7 @@ impl<'g, F: Frame> Descent<'g, F> {
     /// Enters the successor that replaces an element.
     fn push(
         &mut self,
-        standing: Standing<F>,
+        state: TraversalState<F>,
         object: usize,
         level: u32,
         rank: u64,
@@ -394,14 +394,14 @@ impl<'g, F: Frame> Descent<'g, F> {
     ) -> Result<(), CompileError> {
         let source = match &self.graph.objects()[object].replacement {
             Replacement::Fixed(successor) => Source::Fixed(&successor.body),
-            _ => Source::Pooled(self.evaluate(&standing, object, level, rank)?),
+            _ => Source::Pooled(self.evaluate(&state, object, level, rank)?),
         };
         let chain = match source {
             Source::Fixed(chain) => chain,
             Source::Pooled(number) => &self.pool[number].body,
             Source::Start => unreachable!("a start is never pushed"),
         };
-        let reversed = standing.frame.direction().is_reversed();
+        let reversed = state.frame.direction().is_reversed();
         let [mut first, mut end] = chain.meets_frame;
         if reversed {
             (first, end) = (end, first);
@@ -411,7 +411,7 @@ impl<'g, F: Frame> Descent<'g, F> {
             self.ranks.enter((level + 1 - self.born) as usize);
         }
         self.stack.push(Entry {
-            standing,
+            state,
             source,
             reversed,
             next: 0,
@@ -424,7 +424,7 @@ impl<'g, F: Frame> Descent<'g, F> {
     /// Computes the successor of an element into the pool, and returns its number there.
     fn evaluate(
         &mut self,
-        standing: &Standing<F>,
+        state: &TraversalState<F>,
         object: usize,
         level: u32,
         rank: u64,
@@ -440,17 +440,20 @@ impl<'g, F: Frame> Descent<'g, F> {
         };
         let successor = &mut self.pool[number];
         self.evaluator
-            .evaluate(self.graph, standing, object, moment, successor)?;
+            .evaluate(self.graph, state, object, moment, successor)?;
         Ok(number)
     }
 
     /// Returns the fractals that an element of approximant `target` seeds when it is replaced.
-    pub(super) fn seeds(&mut self, found: &Found<F>) -> Result<Vec<Start<'g, F>>, CompileError> {
-        let standing = found.standing;
+    pub(super) fn seeds(
+        &mut self,
+        found: &FoundElement<F>,
+    ) -> Result<Vec<Start<'g, F>>, CompileError> {
+        let state = found.state;
         let graph = self.graph;
         let start = |seed: &Seed<F>, chain| Start {
             chain,
-            standing: seed_placement(graph, &standing, seed.placement),
+            state: seed_placement(graph, &state, seed.placement),
             born: found.level + 1,
             seeded: 0..0,
         };
@@ -473,7 +476,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                 })
                 .collect()),
             _ => {
-                let number = self.evaluate(&standing, found.object, found.level, found.rank)?;
+                let number = self.evaluate(&state, found.object, found.level, found.rank)?;
                 let starts = self.pool[number]
                     .seeds
                     .iter()

@@ -6,7 +6,7 @@ use crate::geometry::{Frame, Frame2};
 use crate::graph::Graph;
 
 use super::descent::Descent;
-use super::found::{Found, Next, Stop};
+use super::found::{FoundElement, Next, Stop};
 use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
@@ -15,11 +15,11 @@ use super::{Element, Enter, FractalInfo, Growth, WalkError};
 
 impl<F: Frame> Element<F> {
     #[inline]
-    pub(super) fn found(graph: &Graph<F>, found: &Found<F>) -> Self {
+    pub(super) fn found(graph: &Graph<F>, found: &FoundElement<F>) -> Self {
         Self {
-            frame: found.standing.frame,
-            length: found.standing.length,
-            appearance: found.standing.appearance,
+            frame: found.state.frame,
+            length: found.state.length,
+            appearance: found.state.appearance,
             index: found.index,
             object: found.object,
             born: found.level,

@@ -4,7 +4,7 @@ use crate::geometry::{Frame, Frame2};
 use crate::graph::{Buffers, CompileError, Graph, Replacement, Successor};
 use crate::rule;
 
-use super::start::Standing;
+use super::start::TraversalState;
 
 /// Circumstances of a replacement, as far as they do not depend on the place.
 #[derive(Clone, Copy, Debug)]
@@ -20,12 +20,12 @@ pub(crate) struct ReplacementContext {
 impl ReplacementContext {
     /// Returns the values that a rule's expressions see of the element.
     #[expect(clippy::cast_precision_loss, reason = "no walk counts to 2⁵³")]
-    pub(crate) fn seen<F: Frame>(self, standing: &Standing<F>) -> rule::ElementContext {
+    pub(crate) fn seen<F: Frame>(self, state: &TraversalState<F>) -> rule::ElementContext {
         rule::ElementContext {
             index: self.rank.max(1) as f64,
             age: f64::from(self.level - self.born),
             step: f64::from(self.level),
-            length: standing.length,
+            length: state.length,
         }
     }
 }
@@ -39,7 +39,7 @@ impl<F: Frame> Evaluator<F> {
     pub(crate) fn successor<'s>(
         &mut self,
         graph: &'s Graph<F>,
-        standing: &Standing<F>,
+        state: &TraversalState<F>,
         object: usize,
         moment: ReplacementContext,
         made: &'s mut Successor<F>,
@@ -47,7 +47,7 @@ impl<F: Frame> Evaluator<F> {
         if let Some(successor) = graph.objects()[object].successor() {
             return Ok(successor);
         }
-        self.evaluate(graph, standing, object, moment, made)?;
+        self.evaluate(graph, state, object, moment, made)?;
         Ok(made)
     }
 
@@ -55,7 +55,7 @@ impl<F: Frame> Evaluator<F> {
     pub(crate) fn evaluate(
         &mut self,
         graph: &Graph<F>,
-        standing: &Standing<F>,
+        state: &TraversalState<F>,
         object: usize,
         moment: ReplacementContext,
         successor: &mut Successor<F>,
@@ -63,7 +63,7 @@ impl<F: Frame> Evaluator<F> {
         let Replacement::Evaluated(alternatives) = &graph.objects()[object].replacement else {
             unreachable!("a graph is walked no deeper than it is resolved");
         };
-        let (path, context) = (standing.path, moment.seen(standing));
+        let (path, context) = (state.path, moment.seen(state));
         let source = graph.source();
         source.evaluate(alternatives, path, &context, &mut self.0, successor)
     }

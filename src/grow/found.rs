@@ -4,12 +4,12 @@ use crate::geometry::{Frame, Frame2};
 
 use super::block::{Blocks, Run};
 use super::sizes::Sizes;
-use super::start::Standing;
+use super::start::TraversalState;
 
 /// Element that a descent has reached.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found<F: Frame = Frame2> {
-    pub(super) standing: Standing<F>,
+pub(super) struct FoundElement<F: Frame = Frame2> {
+    pub(super) state: TraversalState<F>,
     pub(super) object: usize,
     /// Step of its birth.
     pub(super) level: u32,
@@ -24,7 +24,7 @@ pub(super) struct Found<F: Frame = Frame2> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundSubtree<F: Frame> {
     /// Root of the subtree; `joined` is whether the preceding element ends where it starts.
-    pub(super) root: Found<F>,
+    pub(super) root: FoundElement<F>,
     /// Upper bound of its number of descendants.
     pub(super) size: u64,
     /// Whether its end point is also that of every replaced ancestor of which it is the last part.
@@ -34,7 +34,7 @@ pub(super) struct FoundSubtree<F: Frame> {
 /// Next position of a descent.
 pub(super) enum Next<'b, F: Frame> {
     /// Element of the approximant.
-    Element(Found<F>),
+    Element(FoundElement<F>),
     /// Consecutive elements, if the descent stops at blocks.
     Run(Run<'b, F>),
     /// Element to be replaced, if the descent stops at subtrees. The descent assumes that its last

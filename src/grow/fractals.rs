@@ -7,7 +7,7 @@ use crate::graph::{Graph, Instance, Object, Replacement};
 
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
-use super::found::{Found, Next, Stop};
+use super::found::{FoundElement, Next, Stop};
 use super::start::Start;
 use super::walk::Sink;
 use super::{Enter, FractalInfo, Subtree};
@@ -36,7 +36,7 @@ impl<'g, F: Frame> Parent<'g, F> {
     }
 
     /// Queues fractals that were seeded earlier by elements of the approximant before those of a root.
-    fn take_sown(&mut self, graph: &'g Graph<F>, root: u32) {
+    fn take_seeded(&mut self, graph: &'g Graph<F>, root: u32) {
         while let Some(number) = self.start.seeded.clone().next() {
             let seeded = &graph.roots.seeded[number];
             if seeded.born > self.step + 1 || seeded.before > root {
@@ -156,7 +156,7 @@ impl<'g, F: Frame> Fractals<'g, F> {
                 Next::Element(found) => {
                     if found.level == step && replaces(graph, leads_to_seeds, &found, sink) {
                         parent.is_fertile |= self.goes_on[found.object];
-                        parent.take_sown(graph, found.standing.root);
+                        parent.take_seeded(graph, found.state.root);
                         parent.queue.extend(parent.descent.seeds(&found)?);
                         parent.queue.reverse();
                     }
@@ -164,7 +164,7 @@ impl<'g, F: Frame> Fractals<'g, F> {
                 Next::Run(_) | Next::Subtree(_) => unreachable!("seeds are looked for one by one"),
                 Next::Pause => {}
                 Next::End => {
-                    parent.take_sown(graph, u32::MAX);
+                    parent.take_seeded(graph, u32::MAX);
                     parent.queue.reverse();
                     if parent.queue.is_empty() && !parent.go_on(graph, last_birth) {
                         self.parents.pop();
@@ -227,14 +227,14 @@ impl<'g, F: Frame> Fractals<'g, F> {
 fn replaces<'g, F: Frame, S: Sink<'g, F>>(
     graph: &Graph<F>,
     leads_to_seeds: &[bool],
-    found: &Found<F>,
+    found: &FoundElement<F>,
     sink: &mut S,
 ) -> bool {
     if !graph.is_fertile(found.object) {
         return false;
     }
     let subtree = Subtree {
-        frame: found.standing.frame,
+        frame: found.state.frame,
         object: found.object,
         born: found.level,
     };

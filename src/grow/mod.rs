@@ -43,12 +43,12 @@ pub use progress::Progress;
 pub use spans::{Seam, walk_in_spans};
 pub use walk::{Growth, Walked, walk};
 
-pub(crate) use cells::{Field, Found, Layer, LimitCells, Search, Stopped};
-pub(crate) use census::{Census, Kind};
+pub(crate) use cells::{CellSearch, Field, FoundCells, Layer, LimitCells, Stopped};
+pub(crate) use census::{Census, Cohort};
 pub(crate) use colony::{ColonyKind, ColonyKinds};
 pub(crate) use evaluator::{Evaluator, ReplacementContext};
 pub(crate) use spans::{Division, Ranks, walk_with};
-pub(crate) use start::{Standing, seed_placement};
+pub(crate) use start::{TraversalState, seed_placement};
 
 use std::ops::RangeInclusive;
 

@@ -53,12 +53,12 @@ struct Outliner<'g> {
     left: usize,
     is_ring: bool,
     /// Lines of the current fractal; the next element may continue the last one.
-    lines: Vec<Line>,
+    lines: Vec<Chain>,
     done: Vec<BaseElement>,
 }
 
 /// Elements that join.
-struct Line {
+struct Chain {
     start: DVec2,
     pieces: Vec<Piece>,
     /// Whether its first element joins the preceding element.
@@ -109,7 +109,7 @@ impl Visitor for Outliner<'_> {
                 line.pieces.extend(pieces);
                 line.meets_end = meets_end;
             }
-            None => self.lines.push(Line {
+            None => self.lines.push(Chain {
                 start,
                 pieces: pieces.collect(),
                 joined: element.joined,

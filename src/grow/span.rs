@@ -4,13 +4,13 @@ use crate::geometry::Frame;
 
 use super::FractalInfo;
 use super::colony::{Colony, Taken};
-use super::found::{Found, FoundSubtree};
+use super::found::{FoundElement, FoundSubtree};
 
 /// Item of a span.
-pub(super) enum Item<'w, F: Frame> {
+pub(super) enum SpanItem<'w, F: Frame> {
     /// Beginning of a fractal, with the step of its birth.
     Begin(FractalInfo, u32),
-    Element(Found<F>),
+    Element(FoundElement<F>),
     Subtree(FoundSubtree<F>),
     /// Part of a colony that the visitor takes.
     Colony(Colony<'w, F>, Taken),
@@ -34,7 +34,7 @@ pub(super) struct Span<'w, F: Frame> {
     pub(super) from: Position,
     /// Position where it ends.
     pub(super) to: Position,
-    pub(super) items: Vec<Item<'w, F>>,
+    pub(super) items: Vec<SpanItem<'w, F>>,
     /// Upper bound of its number of elements, plus 1 for each subtree and each fractal that begins.
     pub(super) size: u64,
     /// Number of visits above its subtrees.
@@ -49,13 +49,16 @@ impl<'w, F: Frame> Span<'w, F> {
         (self.size, self.visited) = (0, 0);
     }
 
-    pub(super) fn push(&mut self, item: Item<'w, F>, size: u64) {
+    pub(super) fn push(&mut self, item: SpanItem<'w, F>, size: u64) {
         self.items.push(item);
         self.size += size;
     }
 
     /// Returns whether the span begins within a fractal.
     pub(super) fn goes_on(&self) -> bool {
-        !matches!(self.items.first(), Some(Item::Begin(..) | Item::Colony(..)))
+        !matches!(
+            self.items.first(),
+            Some(SpanItem::Begin(..) | SpanItem::Colony(..))
+        )
     }
 }

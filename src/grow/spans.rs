@@ -12,15 +12,15 @@ use std::sync::Arc;
 
 use crate::geometry::Frame;
 use crate::graph::Graph;
-use crate::parallel::{Line, Team, with_team};
+use crate::parallel::{Pipeline, Team, with_team};
 
 use super::block::{Blocks, MAX_LEAVES};
 use super::census::Census;
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
-use super::found::{Found, Next, Stop};
+use super::found::{FoundElement, Next, Stop};
 use super::sizes::Sizes;
-use super::span::{Item, Position, Span};
+use super::span::{Position, Span, SpanItem};
 use super::start::Start;
 use super::tally::Tally;
 use super::walk::{Sink, Visiting, send};
@@ -222,22 +222,22 @@ impl<F: Frame, V: Visitor<F>> Job<'_, F, V> {
         self.descent.index = from.before;
         for item in &self.span.items {
             match item {
-                Item::Begin(fractal, step) => {
+                SpanItem::Begin(fractal, step) => {
                     outcome.fractals += 1;
                     born = *step;
                     self.descent.index = 0;
                     visiting.begin(*fractal)?;
                 }
-                Item::Element(found) => {
+                SpanItem::Element(found) => {
                     let joined = joined && found.joined;
                     let index = self.descent.come_to(found);
-                    visiting.element(&Found {
+                    visiting.element(&FoundElement {
                         joined,
                         index,
                         ..*found
                     })?;
                 }
-                Item::Subtree(subtree) => {
+                SpanItem::Subtree(subtree) => {
                     let joined = joined && subtree.root.joined;
                     let run = self.descent.enter(subtree, born, joined, blocks)?;
                     run.iter().try_for_each(|run| visiting.run(run))?;
@@ -253,14 +253,14 @@ impl<F: Frame, V: Visitor<F>> Job<'_, F, V> {
                         outcome.visited += std::mem::take(&mut self.descent.visited);
                     }
                 }
-                Item::Colony(colony, taken) => {
+                SpanItem::Colony(colony, taken) => {
                     outcome.fractals += taken.walked().fractals;
                     visiting.colony(colony, *taken)?;
                 }
-                Item::End(meets_end) => visiting.end(joined && *meets_end)?,
+                SpanItem::End(meets_end) => visiting.end(joined && *meets_end)?,
             }
             joined = match item {
-                Item::Subtree(_) => self.descent.ends_joined(),
+                SpanItem::Subtree(_) => self.descent.ends_joined(),
                 // The next item has its own flag.
                 _ => true,
             };
@@ -331,7 +331,7 @@ struct Spans<'t, 'w, 'v, F: Frame, V: Visitor<F>, N, T> {
     census: Option<&'w Census>,
     /// Whether a fractal has begun and not ended.
     is_open: bool,
-    line: Line<'t, 'w, Job<'w, F, V>>,
+    line: Pipeline<'t, 'w, Job<'w, F, V>>,
     order: Order<'v, T>,
     fresh: N,
     /// Whether `take` or the work of a span has failed.
@@ -408,17 +408,17 @@ where
             born,
             before: 0,
         };
-        self.span.push(Item::Begin(fractal, born), 1);
+        self.span.push(SpanItem::Begin(fractal, born), 1);
         Ok(())
     }
 
     fn found(&mut self, next: Next<'_, F>) -> Result<(), Self::Error> {
         self.make_room()?;
         let (item, size, rank) = match next {
-            Next::Element(found) => (Item::Element(found), 1, found.index),
+            Next::Element(found) => (SpanItem::Element(found), 1, found.index),
             Next::Subtree(subtree) => {
                 let (size, rank) = (1 + subtree.size, subtree.root.index);
-                (Item::Subtree(subtree), size, rank)
+                (SpanItem::Subtree(subtree), size, rank)
             }
             Next::Run(_) | Next::Pause | Next::End => unreachable!("blocks are left to spans"),
         };
@@ -432,7 +432,7 @@ where
     /// Ends the fractal in the span of its last item.
     fn end(&mut self, joined: bool) -> Result<(), Self::Error> {
         self.is_open = false;
-        self.span.push(Item::End(joined), 0);
+        self.span.push(SpanItem::End(joined), 0);
         Ok(())
     }
 
@@ -442,7 +442,7 @@ where
 
     fn colony(&mut self, colony: Colony<'w, F>, taken: Taken) -> Result<(), Self::Error> {
         self.make_room()?;
-        self.span.push(Item::Colony(colony, taken), 1);
+        self.span.push(SpanItem::Colony(colony, taken), 1);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use crate::rule::Placement;
 
 /// Placement of an element with all that its descendants inherit.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing<F: Frame = Frame2> {
+pub(crate) struct TraversalState<F: Frame = Frame2> {
     pub(crate) frame: F,
     /// Length relative to that of the initiator's element from which it descends.
     pub(crate) length: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Standing<F: Frame = Frame2> {
     pub(crate) appearance: Appearance,
 }
 
-impl<F: Frame> Standing<F> {
+impl<F: Frame> TraversalState<F> {
     /// Returns the placement of the initiator.
     pub(crate) fn whole(seed: u64) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl<F: Frame> Standing<F> {
 #[derive(Clone, Debug)]
 pub(super) struct Start<'g, F: Frame = Frame2> {
     pub(super) chain: StartChain<'g, F>,
-    pub(super) standing: Standing<F>,
+    pub(super) state: TraversalState<F>,
     /// Step in which the fractal is born.
     pub(super) born: u32,
     /// Fractals that it seeded before the growth of this graph: range in [`Roots::seeded`](crate::graph::Roots).
@@ -106,7 +106,7 @@ impl<'g, F: Frame> Start<'g, F> {
     pub(super) fn initiator(graph: &'g Graph<F>, steps: u32, seed: u64) -> Self {
         Self {
             chain: StartChain::Initiator(graph.initiator(steps)),
-            standing: Standing::whole(seed),
+            state: TraversalState::whole(seed),
             born: 0,
             seeded: graph.roots.seeded_by(0),
         }
@@ -118,7 +118,7 @@ impl<'g, F: Frame> Start<'g, F> {
         Self {
             chain: StartChain::Initiator(&seeded.chain),
             // Each root has its own path, so the seed is unused.
-            standing: Standing::whole(0),
+            state: TraversalState::whole(0),
             born: seeded.born,
             seeded: graph.roots.seeded_by(number + 1),
         }
@@ -153,18 +153,18 @@ pub(super) fn birth<F: Frame>(graph: &Graph<F>, instance: &Instance<F>) -> Optio
 /// Returns the placement of a part that an element seeds.
 pub(crate) fn seed_placement<F: Frame>(
     graph: &Graph<F>,
-    standing: &Standing<F>,
+    state: &TraversalState<F>,
     placement: Placement,
-) -> Standing<F> {
+) -> TraversalState<F> {
     if placement != Placement::SeedsAsInitiator {
-        return *standing;
+        return *state;
     }
     // Positions in the initiator count from 0 in the order of listing.
-    let root = graph.initiator(0).instances[standing.root as usize].frame;
-    let [origin, _] = standing.frame.ends();
-    Standing {
+    let root = graph.initiator(0).instances[state.root as usize].frame;
+    let [origin, _] = state.frame.ends();
+    TraversalState {
         frame: root.moved_to(origin),
         length: 1.0,
-        ..*standing
+        ..*state
     }
 }

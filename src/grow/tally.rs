@@ -17,7 +17,7 @@ pub(super) struct Tally<'v> {
     /// Number of elements already reported as progress.
     reported: u64,
     visited: u64,
-    next_look: u64,
+    next_check: u64,
 }
 
 impl<'v> Tally<'v> {
@@ -27,7 +27,7 @@ impl<'v> Tally<'v> {
             walked: Walked::default(),
             reported: 0,
             visited: 0,
-            next_look: PATIENCE,
+            next_check: PATIENCE,
         }
     }
 
@@ -52,15 +52,15 @@ impl<'v> Tally<'v> {
     #[inline]
     pub(super) fn visit<E>(&mut self, count: u64) -> Result<(), WalkError<E>> {
         self.visited += count;
-        if self.visited < self.next_look {
+        if self.visited < self.next_check {
             return Ok(());
         }
         self.look()
     }
 
     fn look<E>(&mut self) -> Result<(), WalkError<E>> {
-        self.next_look = self.visited + PATIENCE;
-        self.tell_progress();
+        self.next_check = self.visited + PATIENCE;
+        self.report_progress();
         let most = FEW_VISITS.max(self.growth.max_elements.saturating_mul(VISITS_AN_ELEMENT));
         if self.visited > most {
             return Err(WalkError::TooLong { limit: most });
@@ -71,7 +71,7 @@ impl<'v> Tally<'v> {
         }
     }
 
-    fn tell_progress(&mut self) {
+    fn report_progress(&mut self) {
         if let Some(progress) = self.growth.progress {
             progress.count(self.walked.elements - self.reported);
             self.reported = self.walked.elements;
@@ -80,7 +80,7 @@ impl<'v> Tally<'v> {
 
     /// Reports the remaining progress, and returns the totals.
     pub(super) fn finish(mut self) -> Walked {
-        self.tell_progress();
+        self.report_progress();
         self.walked
     }
 }

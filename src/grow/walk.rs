@@ -10,7 +10,7 @@ use super::block::{Blocks, Run};
 use super::census::Census;
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
-use super::found::{Found, Next, Stop};
+use super::found::{FoundElement, Next, Stop};
 use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
@@ -218,7 +218,7 @@ impl<'g, 'v, F: Frame, V: Visitor<F>> Visiting<'g, 'v, F, V> {
     }
 
     #[inline]
-    pub(super) fn element(&mut self, found: &Found<F>) -> Result<(), WalkError<V::Error>> {
+    pub(super) fn element(&mut self, found: &FoundElement<F>) -> Result<(), WalkError<V::Error>> {
         self.seen += 1;
         let element = Element::found(self.graph, found);
         self.visitor.element(&element).map_err(WalkError::Visitor)

@@ -9,7 +9,7 @@ use crate::metadata::Metadata;
 /// Guarantee: the system does not diverge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System<M: AffineMap = DAffine2> {
-    pub(crate) heading: Metadata,
+    pub(crate) metadata: Metadata,
     pub(crate) ifs: Ifs<M>,
     /// The maps as written, in the coordinates of the file.
     pub(crate) written: Vec<M::Written>,
@@ -24,7 +24,7 @@ impl<M: AffineMap> System<M> {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     /// Returns the system of maps.
@@ -85,7 +85,7 @@ impl<M: AffineMap> System<M> {
         }
         let ifs = Ifs::new(definition)?;
         Ok(Self {
-            heading: self.heading.clone(),
+            metadata: self.metadata.clone(),
             contraction: ifs.contraction(),
             ifs,
             written: written.map(|(_, map)| map.clone()).collect(),

@@ -49,7 +49,7 @@ use crate::metadata::Metadata;
 /// An L-system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LSystem {
-    pub(crate) heading: Metadata,
+    pub(crate) metadata: Metadata,
     pub(crate) start: f64,
     pub(crate) length: f64,
     pub(crate) symbols: Vec<Symbol>,
@@ -176,7 +176,7 @@ impl LSystem {
     /// Returns the metadata that files of all kinds have.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     /// Returns the start heading in degrees, counter-clockwise from the right.

@@ -86,13 +86,13 @@ impl LSystem {
         steps: u32,
         seed: u64,
         max_elements: u64,
-        most_work: u64,
+        max_work: u64,
     ) -> Result<Word, RewriteError> {
         let mut word = Word::axiom(self, seed);
         let mut rewriter = Rewriter::new(self);
         for step in 1..=steps {
             let mut next = Word::default();
-            rewriter.step(&word, &mut next, step, max_elements, most_work)?;
+            rewriter.step(&word, &mut next, step, max_elements, max_work)?;
             // Without draws, a word that a step leaves unchanged never changes again.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
@@ -144,7 +144,7 @@ impl LSystem {
     pub(super) fn too_long(
         &self,
         steps: u32,
-        most_modules: u64,
+        max_modules: u64,
         max_elements: u64,
     ) -> Option<RewriteError> {
         let mut lengths = self.lengths()?;
@@ -153,7 +153,7 @@ impl LSystem {
         let soon = u32::try_from(MAX_FORECAST / work.max(1)).unwrap_or(u32::MAX);
         for step in 0..=steps.min(soon) {
             let (modules, elements) = lengths.count();
-            let modules = (modules, most_modules, "modules");
+            let modules = (modules, max_modules, "modules");
             let too_long = check_length(step, &[modules, (elements, max_elements, "elements")]);
             if too_long.is_err() || !lengths.advance() {
                 return too_long.err();
@@ -289,7 +289,7 @@ impl<'s> Rewriter<'s> {
         next: &mut Word,
         step: u32,
         max_elements: u64,
-        most_work: u64,
+        max_work: u64,
     ) -> Result<(), RewriteError> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
@@ -313,7 +313,7 @@ impl<'s> Rewriter<'s> {
                 next.arguments.extend(arguments);
                 next.paths.extend(path);
             }
-            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > most_work {
+            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > max_work {
                 return Err(RewriteError::TooMuchWork { step });
             }
             let new = &next.symbols[from..];

@@ -27,7 +27,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Bracketing {
     Module,
     Ignored,
     Open,
@@ -41,12 +41,12 @@ impl<'a> Surroundings<'a> {
     )]
     pub(super) fn new(system: &'a LSystem, word: &'a Word) -> Self {
         let count = word.len();
-        let kinds: Vec<Kind> = { system.symbols.iter() }
+        let kinds: Vec<Bracketing> = { system.symbols.iter() }
             .map(|symbol| match symbol {
-                symbol if symbol.is_push() => Kind::Open,
-                symbol if symbol.is_pop() => Kind::Close,
-                symbol if symbol.ignored => Kind::Ignored,
-                _ => Kind::Module,
+                symbol if symbol.is_push() => Bracketing::Open,
+                symbol if symbol.is_pop() => Bracketing::Close,
+                symbol if symbol.ignored => Bracketing::Ignored,
+                _ => Bracketing::Module,
             })
             .collect();
         let kind = |at: u32| kinds[word.symbols[at as usize] as usize];
@@ -68,10 +68,10 @@ impl<'a> Surroundings<'a> {
             argument += system.symbols[symbol as usize].arity;
             all.before.push(last);
             match kind(at) {
-                Kind::Module => last = at,
-                Kind::Ignored => {}
-                Kind::Open => open.push((at, last)),
-                Kind::Close => {
+                Bracketing::Module => last = at,
+                Bracketing::Ignored => {}
+                Bracketing::Open => open.push((at, last)),
+                Bracketing::Close => {
                     if let Some((opening, before)) = open.pop() {
                         all.end[opening as usize] = at;
                         last = before;
@@ -83,10 +83,10 @@ impl<'a> Surroundings<'a> {
         for at in (0..count as u32).rev() {
             let here = at as usize;
             all.next[here] = next;
-            let is_branch = next != NONE && kind(next) == Kind::Open;
+            let is_branch = next != NONE && kind(next) == Bracketing::Open;
             let over = is_branch.then(|| all.end[next as usize]);
             all.ahead[here] = over.map_or(next, |end| all.ahead[end as usize]);
-            if kind(at) != Kind::Ignored {
+            if kind(at) != Bracketing::Ignored {
                 next = at;
             }
         }

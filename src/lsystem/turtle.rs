@@ -37,7 +37,7 @@ pub struct Drawing {
 
 /// State of the turtle, which brackets save and restore.
 #[derive(Clone, Copy, Debug)]
-struct State {
+struct TurtleState {
     place: DVec2,
     heading: u64,
     /// Second heading.
@@ -49,7 +49,7 @@ struct State {
     colour: i64,
 }
 
-impl State {
+impl TurtleState {
     fn direction(&self) -> Direction {
         if self.mirrored {
             Direction::YReflected
@@ -60,22 +60,22 @@ impl State {
 }
 
 /// A polygon that has not been closed.
-struct Open {
-    state: State,
+struct OpenPolygon {
+    state: TurtleState,
     vertices: Vec<DVec2>,
     /// The number of saved states at its start.
     depth: usize,
     /// The least number of saved states since.
-    least_depth: usize,
+    min_depth: usize,
 }
 
 /// An interpreter that reads modules one by one and draws.
 pub(crate) struct Turtle<'s> {
     system: &'s LSystem,
     compass: Compass,
-    state: State,
-    saved: Vec<State>,
-    open: Vec<Open>,
+    state: TurtleState,
+    saved: Vec<TurtleState>,
+    open: Vec<OpenPolygon>,
     /// Modules since the outermost polygon was opened: symbols, and the bits of arguments.
     inside: (Vec<u32>, Vec<u64>),
     /// Elements drawn and not yet taken, and the outlines of all polygons.
@@ -119,7 +119,7 @@ impl<'s> Turtle<'s> {
         Self {
             system,
             compass,
-            state: State {
+            state: TurtleState {
                 place: DVec2::ZERO,
                 heading,
                 other: heading,
@@ -188,7 +188,7 @@ impl<'s> Turtle<'s> {
                     self.state = saved;
                 }
                 if let Some(open) = self.open.last_mut() {
-                    open.least_depth = open.least_depth.min(self.saved.len());
+                    open.min_depth = open.min_depth.min(self.saved.len());
                 }
                 self.is_down = false;
             }
@@ -207,11 +207,11 @@ impl<'s> Turtle<'s> {
                     self.inside.0.clear();
                     self.inside.1.clear();
                 }
-                self.open.push(Open {
+                self.open.push(OpenPolygon {
                     state: *state,
                     vertices: Vec::new(),
                     depth: self.saved.len(),
-                    least_depth: self.saved.len(),
+                    min_depth: self.saved.len(),
                 });
             }
             Action::Close => self.close(symbol, arguments),
@@ -240,7 +240,7 @@ impl<'s> Turtle<'s> {
         if steps * self.state.step == 0.0 {
             return;
         }
-        let State { width, colour, .. } = self.state;
+        let TurtleState { width, colour, .. } = self.state;
         let alike = self.last == Some((width, colour));
         self.last = Some((width, colour));
         let direction = self.state.direction();
@@ -261,9 +261,9 @@ impl<'s> Turtle<'s> {
             return;
         };
         if let Some(outer) = self.open.last_mut() {
-            outer.least_depth = outer.least_depth.min(open.least_depth);
+            outer.min_depth = outer.min_depth.min(open.min_depth);
         }
-        let State { place, step, .. } = open.state;
+        let TurtleState { place, step, .. } = open.state;
         let along = self.compass.direction(open.state.heading) * step;
         let direction = open.state.direction();
         let frame = Frame2::between(place, place + along, direction);
@@ -273,8 +273,8 @@ impl<'s> Turtle<'s> {
         let number = self.drawing.polygons.len();
         let mut made = number;
         // A polygon across the end of an outer bracket depends on more than the modules inside it.
-        let is_told = open.least_depth == open.depth && !self.system.depends_on_the_way();
-        if self.open.is_empty() && is_told {
+        let is_local = open.min_depth == open.depth && !self.system.depends_on_the_way();
+        if self.open.is_empty() && is_local {
             self.remember(symbol, arguments);
             made = *self.known.entry(self.inside.clone()).or_insert(number);
         }
@@ -288,7 +288,7 @@ impl<'s> Turtle<'s> {
             let outline = outline.unwrap_or_else(BaseElement::line);
             self.drawing.polygons.push(outline);
         }
-        let State { width, colour, .. } = open.state;
+        let TurtleState { width, colour, .. } = open.state;
         self.last = Some((width, colour));
         self.drawing.elements.push(Placed {
             frame,

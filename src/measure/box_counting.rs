@@ -67,7 +67,7 @@ pub struct Window {
     /// Largest size.
     pub coarsest: f64,
     /// Minimum count: a few boxes depend only on the position of the grid.
-    pub least_boxes: u64,
+    pub min_boxes: u64,
 }
 
 impl BoxCounting {
@@ -110,7 +110,7 @@ impl BoxCounting {
         let window = Window {
             finest: 0.0,
             coarsest: extent / 2.0,
-            least_boxes: MIN_BOXES,
+            min_boxes: MIN_BOXES,
         };
         let base = base.unwrap_or_else(|| whole_power(set.period()));
         let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
@@ -207,7 +207,7 @@ impl BoxCounting {
         let window = Window {
             finest: finest.max(enough.last().copied().unwrap_or(f64::INFINITY)),
             coarsest: sizes.first().copied().unwrap_or_default(),
-            least_boxes: 4,
+            min_boxes: 4,
         };
         Self::by(&sample.scales(), &window, |readings| {
             averaged(readings, real(sample.dimension)).or_else(|| estimate(readings))
@@ -230,7 +230,7 @@ impl BoxCounting {
         let used = |scale: &Scale| {
             scale.size * SLACK >= window.finest
                 && scale.size <= window.coarsest * SLACK
-                && scale.count >= window.least_boxes
+                && scale.count >= window.min_boxes
         };
         let readings = readings(scales.iter().filter(|scale| used(scale)));
         let finer = &readings[readings.len() / 2..];

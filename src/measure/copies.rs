@@ -29,7 +29,7 @@ pub(super) struct Copies<M = DAffine2> {
 /// Copies with their shares of the mass of the set that holds them, and the masses of the copies of the
 /// whole.
 #[derive(Clone, Debug)]
-pub(super) struct Shared<M = DAffine2> {
+pub(super) struct WeightedCopies<M = DAffine2> {
     pub(super) copies: Copies<M>,
     pub(super) shares: Vec<f64>,
     pub(super) masses: Vec<f64>,
@@ -98,7 +98,7 @@ impl<M: Affine> Copies<M> {
     /// against the number in it.
     ///
     /// Returns `None` where maps do not contract, or where no set holds copies of itself.
-    pub(super) fn natural(self) -> Option<Shared<M>> {
+    pub(super) fn natural(self) -> Option<WeightedCopies<M>> {
         let values: Vec<SingularValues> = self
             .copies
             .iter()
@@ -164,7 +164,7 @@ impl<M: Affine> Copies<M> {
             }
         }
         let masses = self.masses(most, &levels, &heights)?;
-        Some(Shared {
+        Some(WeightedCopies {
             copies: self,
             shares,
             masses,
@@ -302,7 +302,7 @@ impl SingularValues {
     }
 }
 
-impl<M: Affine> Shared<M> {
+impl<M: Affine> WeightedCopies<M> {
     /// Returns the measure that the weights of a system define: that of random iteration without condensation
     /// sets (Demko, Hodges & Naylor 1985; of recurrent systems: Barnsley, Elton & Hardin 1989).
     ///

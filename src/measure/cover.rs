@@ -111,12 +111,12 @@ pub(super) fn least<M: Space>(
     let scale = |(number, &size): (usize, &f64)| {
         let last = number.checked_sub(1);
         let growth = |last| logs(number).zip(logs(last)).map(|(log, last)| log - last);
-        let of_least = |last| logarithm(least(number)) - logarithm(least(last));
+        let of_min = |last| logarithm(least(number)) - logarithm(least(last));
         Scale {
             size,
             count: least(number),
             scatter: deviation(logs(number)),
-            growth: last.map(of_least).unwrap_or_default(),
+            growth: last.map(of_min).unwrap_or_default(),
             growth_error: last.map(|last| deviation(growth(last))).unwrap_or_default(),
             sampled: false,
         }

@@ -25,8 +25,8 @@ pub use slice::Slice;
 /// sets. Infertile elements are not replaced and add nothing.
 #[derive(Clone, Debug)]
 pub struct LimitSet<M: Affine = DAffine2> {
-    objects: Vec<Part<M>>,
-    start: Vec<Placed<M>>,
+    objects: Vec<ObjectLimit<M>>,
+    start: Vec<LimitCopy<M>>,
     bounds: Bounds<M::Point>,
     /// Whether the set is a [`Slice`] by the plane z = 0, which is covered by one layer of boxes.
     is_layer: bool,
@@ -34,19 +34,19 @@ pub struct LimitSet<M: Affine = DAffine2> {
 
 /// The limit set of an object, in its unit frame.
 #[derive(Clone, Debug)]
-struct Part<M: Affine> {
+struct ObjectLimit<M: Affine> {
     /// A point of the set, and the radius of a ball about it that holds the set.
     point: M::Point,
     radius: f64,
     /// Centre of a box that holds the set, and the radius of a ball about it that holds the set.
     middle: M::Point,
     reach: f64,
-    children: Vec<Placed<M>>,
+    children: Vec<LimitCopy<M>>,
 }
 
 /// A copy of an object's set: its map, and the largest factor by which the map lengthens a vector.
 #[derive(Clone, Copy, Debug)]
-struct Placed<M> {
+struct LimitCopy<M> {
     map: M,
     scale: f64,
     /// Whether the map is a similarity.
@@ -54,7 +54,7 @@ struct Placed<M> {
     object: usize,
 }
 
-impl<M: Affine> Placed<M> {
+impl<M: Affine> LimitCopy<M> {
     fn new(map: M, object: usize) -> Self {
         const TOLERANCE: f64 = 1e-12;
         let linear = map.linear();
@@ -130,7 +130,8 @@ impl<M: Space> LimitSet<M> {
             (0..lasting.len()).map(goes_on).collect()
         });
         let kept = |instance: &&Instance<F>| lasting[instance.object];
-        let placed = |instance: &Instance<F>| Placed::new(*instance.frame.map(), instance.object);
+        let placed =
+            |instance: &Instance<F>| LimitCopy::new(*instance.frame.map(), instance.object);
         let children = |object| fertile(object).filter(kept).map(placed).collect();
         let children = (0..graph.objects().len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();
@@ -144,8 +145,8 @@ impl<M: Space> LimitSet<M> {
     /// Creates the limit set from the copies in every object's set, and those that the whole is made of.
     ///
     /// Precondition: objects that are copied contain copies in turn, and cycles contract.
-    fn of_copies(children: Vec<Vec<Placed<M>>>, start: Vec<Placed<M>>) -> Self {
-        let part = |children| Part {
+    fn of_copies(children: Vec<Vec<LimitCopy<M>>>, start: Vec<LimitCopy<M>>) -> Self {
+        let part = |children| ObjectLimit {
             point: M::Point::ZERO,
             radius: 0.0,
             middle: M::Point::ZERO,
@@ -241,7 +242,7 @@ impl<M: Space> LimitSet<M> {
     /// Returns the bounding box of the set, turned as a grid requires.
     pub(super) fn turned_bounds(&self, grid: &Grid<M>) -> Bounds<M::Point> {
         let turn = M::new(grid.linear(), M::Point::ZERO);
-        let turned = |copy: &Placed<M>| Placed {
+        let turned = |copy: &LimitCopy<M>| LimitCopy {
             map: turn * copy.map,
             ..*copy
         };
@@ -256,7 +257,7 @@ impl<M: Space> LimitSet<M> {
     /// Finds a point of every object's set: the limit of a fixed aperiodic address, which is not a corner.
     fn find_points(&mut self) {
         for start in 0..self.objects.len() {
-            let mut copy = Placed::whole(start);
+            let mut copy = LimitCopy::whole(start);
             for level in 0..MAX_SWEEPS {
                 let children = &self.objects[copy.object].children;
                 if children.is_empty() || copy.scale <= NEGLIGIBLE {
@@ -277,7 +278,7 @@ impl<M: Space> LimitSet<M> {
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
-        let middle = |object| Self::extent(&self.objects, &[Placed::whole(object)]).centre();
+        let middle = |object| Self::extent(&self.objects, &[LimitCopy::whole(object)]).centre();
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();
         let middles = (0..self.objects.len())
             .map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
@@ -313,7 +314,7 @@ impl<M: Space> LimitSet<M> {
     }
 
     /// Returns the bounding box of copies, to about 12 digits.
-    fn extent(objects: &[Part<M>], copies: &[Placed<M>]) -> Bounds<M::Point> {
+    fn extent(objects: &[ObjectLimit<M>], copies: &[LimitCopy<M>]) -> Bounds<M::Point> {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
         for (axis, both) in M::Point::AXES.chunks_exact(2).enumerate() {
             high[axis] = reach(objects, copies, both[0]);
@@ -342,7 +343,7 @@ struct Facing<P> {
 
 impl<P: Point> Facing<P> {
     /// Returns a copy inside this one.
-    fn compose<M: Affine<Point = P>>(&self, inner: &Placed<M>) -> Self {
+    fn compose<M: Affine<Point = P>>(&self, inner: &LimitCopy<M>) -> Self {
         Self {
             vector: inner.map.linear().transposed(self.vector),
             moved: self.moved + self.vector.dot(inner.map.translation()),
@@ -351,7 +352,7 @@ impl<P: Point> Facing<P> {
     }
 
     /// Returns the product of a point of the copy, and an upper bound of all its points' products.
-    fn reach<M: Affine<Point = P>>(&self, objects: &[Part<M>]) -> (f64, f64) {
+    fn reach<M: Affine<Point = P>>(&self, objects: &[ObjectLimit<M>]) -> (f64, f64) {
         let part = &objects[self.object];
         let at = self.moved + self.vector.dot(part.point);
         (at, at + self.vector.length() * part.radius)
@@ -362,7 +363,11 @@ impl<P: Point> Facing<P> {
 ///
 /// The copies whose discs may reach farthest are divided repeatedly. Of copies with equal vectors, the one that is
 /// moved farthest is kept; of more than 256 others, those whose discs reach farthest.
-fn reach<M: Affine>(objects: &[Part<M>], copies: &[Placed<M>], direction: M::Point) -> f64 {
+fn reach<M: Affine>(
+    objects: &[ObjectLimit<M>],
+    copies: &[LimitCopy<M>],
+    direction: M::Point,
+) -> f64 {
     const MAX_COPIES: usize = 256;
     const TOLERANCE: f64 = 1e-13;
     let whole = Facing {
@@ -420,7 +425,7 @@ fn keep_farthest<P: Point>(copies: &mut Vec<Facing<P>>) {
 /// earlier one.
 fn merge<M: Affine, T>(
     items: &mut Vec<T>,
-    copy: impl Fn(&T) -> &Placed<M>,
+    copy: impl Fn(&T) -> &LimitCopy<M>,
     join: impl Fn(&mut T, T),
 ) {
     const SAME: f64 = 1e-5;

@@ -47,14 +47,16 @@ pub fn similarity_dimension<F: Bounded>(graph: &Graph<F>) -> Similarity {
     // The spectral radius of the whole is the largest of those of its strongly connected parts.
     let (_, parts) = parts(graph.behaviours().count(), &edges(graph));
     let parts = parts.into_iter().filter(|(_, edges)| !edges.is_empty());
-    let parts: Vec<Part> = parts.map(|(size, edges)| Part { size, edges }).collect();
+    let parts: Vec<Component> = parts
+        .map(|(size, edges)| Component { size, edges })
+        .collect();
     if parts.is_empty() {
         return Similarity::none(&NoLimit::NothingFertile);
     }
     if !graph.contracts() {
         return Similarity::none(&NoLimit::DoesNotShrink);
     }
-    let parts = parts.into_iter().map(Part::contracted);
+    let parts = parts.into_iter().map(Component::contracted);
     let value = parts.map(|part| part.dimension()).fold(0.0, f64::max);
     let note = (value == 0.0)
         .then(|| "the limit set of the fertile elements is made of single points".into());
@@ -72,7 +74,7 @@ pub(super) fn dimension_of_part(
 ) -> (f64, bool) {
     let edges = ratios.map(|(from, to, ratio)| Edge { from, to, ratio });
     let edges = edges.collect();
-    let part = Part { size, edges }.contracted();
+    let part = Component { size, edges }.contracted();
     (part.dimension(), part.moran_ratios().is_some())
 }
 
@@ -111,13 +113,13 @@ fn edges<F: Frame>(graph: &Graph<F>) -> Vec<Edge> {
 }
 
 /// A strongly connected part of the graph: objects that reach each other.
-struct Part {
+struct Component {
     size: usize,
     /// Edges between the part's objects, numbered from 0.
     edges: Vec<Edge>,
 }
 
-impl Part {
+impl Component {
     /// Returns the part without the objects that have one instance only: an edge to such an object is
     /// replaced by one to the object that it instances, with the product of the ratios. The dimension is
     /// unchanged.

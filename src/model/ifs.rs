@@ -12,7 +12,7 @@ use super::{Model, OfKind};
 
 impl OfKind for Arc<System> {
     fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {

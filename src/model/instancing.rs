@@ -13,7 +13,7 @@ use super::{Model, OfKind};
 
 impl OfKind for Arc<Instancing> {
     fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {

@@ -11,7 +11,7 @@ use super::{Model, OfKind};
 
 impl OfKind for Arc<LSystem> {
     fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     fn compile(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Graph, CompileError> {
@@ -34,7 +34,7 @@ impl OfKind for Arc<LSystem> {
         !Graph::rewrites_edges(self)
     }
 
-    fn deepest(&self, most_steps: u32, max_elements: u64) -> Option<u32> {
-        Some(LSystem::deepest(self, most_steps, max_elements))
+    fn deepest(&self, max_steps: u32, max_elements: u64) -> Option<u32> {
+        Some(LSystem::deepest(self, max_steps, max_elements))
     }
 }

@@ -13,7 +13,7 @@ use super::place::Extent;
 
 impl OfKind for Arc<Rule> {
     fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     fn compile(&self, steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
@@ -35,7 +35,7 @@ impl OfKind for Arc<Rule> {
 
 impl OfKind for Arc<Rule<Frame3>> {
     fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {

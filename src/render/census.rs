@@ -4,14 +4,14 @@ use std::convert::Infallible;
 
 use crate::geometry::Frame2;
 use crate::graph::{Object, Replacement};
-use crate::grow::{Census, Element, FractalInfo, Growth, Kind, WalkError};
+use crate::grow::{Census, Cohort, Element, FractalInfo, Growth, WalkError};
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
 use super::prepass::Prepass;
 
 /// Returns an element of a kind, at an arbitrary place.
-fn element(kind: &Kind, born: u32) -> Element {
+fn element(kind: &Cohort, born: u32) -> Element {
     Element {
         frame: Frame2::UNIT.with_direction(kind.direction),
         length: 1.0,
@@ -59,8 +59,8 @@ impl Prepass<'_> {
             let limit = growth.max_elements;
             return Err(WalkError::TooManyElements { limit });
         }
-        let tells_ranks = self.style().color_by == ColorBy::Index;
-        let is_known = !tells_ranks || prepass.count_ranks(Some(census), growth.steps);
+        let needs_ranks = self.style().color_by == ColorBy::Index;
+        let is_known = !needs_ranks || prepass.count_ranks(Some(census), growth.steps);
         Ok(is_known.then_some(prepass))
     }
 

@@ -16,7 +16,7 @@ pub(super) struct ContributionMask {
     /// Steps in which painted elements are born, if the colour depends on steps.
     pub(super) steps: Option<RangeInclusive<u32>>,
     /// By object, the part of its descendants that is painted; empty unless objects determine classes.
-    objects: Vec<Part>,
+    objects: Vec<Contribution>,
 }
 
 /// Selection of painted elements.
@@ -56,7 +56,7 @@ impl Painted {
 
 /// Part of an object's descendants that is painted.
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+enum Contribution {
     Nothing,
     Some,
     Everything,
@@ -82,7 +82,7 @@ impl ContributionMask {
         if !scene.short_cuts.has(ShortCut::Contribution) {
             return true;
         }
-        if self.objects.get(subtree.object) == Some(&Part::Nothing) {
+        if self.objects.get(subtree.object) == Some(&Contribution::Nothing) {
             return false;
         }
         self.steps.as_ref().is_none_or(|steps| {
@@ -101,27 +101,27 @@ impl ContributionMask {
         match &self.steps {
             _ if !self.stands_alone => None,
             Some(steps) => Some(Painted::Steps(*steps.start(), *steps.end())),
-            None if self.tells_objects() => Some(Painted::Class(class)),
+            None if self.depends_on_objects() => Some(Painted::Class(class)),
             None => (scene.classes.count() == 1).then_some(Painted::All),
         }
     }
 
     /// Returns whether objects determine which elements are painted.
     #[inline]
-    pub(super) fn tells_objects(&self) -> bool {
+    pub(super) fn depends_on_objects(&self) -> bool {
         !self.objects.is_empty()
     }
 
     /// Returns whether all descendants of an object are painted.
     #[inline]
     pub(super) fn paints_all_of(&self, object: usize) -> bool {
-        self.objects.get(object) == Some(&Part::Everything)
+        self.objects.get(object) == Some(&Contribution::Everything)
     }
 }
 
 /// Returns, by object, the part of its descendants that is of a class; empty unless objects determine
 /// classes.
-fn parts(scene: &Scene<'_>, class: u64) -> Vec<Part> {
+fn parts(scene: &Scene<'_>, class: u64) -> Vec<Contribution> {
     let graph = scene.graph;
     let of = |object: &Object| scene.classes.of_object(object);
     let Some(classes) = graph.objects().iter().map(of).collect::<Option<Vec<_>>>() else {
@@ -131,9 +131,9 @@ fn parts(scene: &Scene<'_>, class: u64) -> Vec<Part> {
     let painted = graph.leading_to(|object| is_drawn(object) && classes[object] == class);
     let others = graph.leading_to(|object| !is_drawn(object) || classes[object] != class);
     let part = |(painted, others)| match (painted, others) {
-        (false, _) => Part::Nothing,
-        (true, true) => Part::Some,
-        (true, false) => Part::Everything,
+        (false, _) => Contribution::Nothing,
+        (true, true) => Contribution::Some,
+        (true, false) => Contribution::Everything,
     };
     painted.into_iter().zip(others).map(part).collect()
 }
@@ -143,7 +143,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::convert::Infallible;
 
-    use super::{Part, parts};
+    use super::{Contribution, parts};
     use crate::catalogue::Catalogue;
     use crate::document::Document;
     use crate::graph::Graph;
@@ -227,13 +227,13 @@ mod tests {
             for class in scene.classes.all() {
                 for (part, drawn) in parts(&scene, class).iter().zip(&lineage.drawn) {
                     match part {
-                        Part::Nothing => assert!(!drawn.contains(&class), "{name}"),
-                        Part::Everything => {
+                        Contribution::Nothing => assert!(!drawn.contains(&class), "{name}"),
+                        Contribution::Everything => {
                             assert!(drawn.iter().all(|of| *of == class), "{name}");
                         }
-                        Part::Some => {}
+                        Contribution::Some => {}
                     }
-                    nothing += usize::from(*part == Part::Nothing && !drawn.is_empty());
+                    nothing += usize::from(*part == Contribution::Nothing && !drawn.is_empty());
                 }
             }
             assert_eq!(nothing > 0, leaves_out, "{name}");

@@ -25,7 +25,7 @@ pub(super) const NEARLY: f64 = 1.0 - 1e-9;
 pub(super) struct Culling {
     /// Length of frames below which elements are not replaced, in multiples of [`Graph::unit`].
     shortest: f64,
-    window: Option<Window>,
+    window: Option<VisibleRegion>,
     /// By object, whether it is replaced regardless of its size; empty if no object is.
     is_whole: Arc<[bool]>,
     /// By number of steps, upper bound of the lengths of an element's descendants, as a multiple of its
@@ -35,7 +35,7 @@ pub(super) struct Culling {
 
 /// Visible part of the plane.
 #[derive(Clone, Debug)]
-struct Window {
+struct VisibleRegion {
     bounds: Bounds,
     /// Padding of the bounds around the part that is shown.
     pad: f64,
@@ -92,7 +92,7 @@ impl Culling {
         if !pad.is_finite() || reaches.iter().all(|reach| reach.is_infinite()) {
             return self;
         }
-        let window = Window {
+        let window = VisibleRegion {
             bounds: padded(bounds, pad),
             pad,
             reaches: reaches.into(),
@@ -173,7 +173,7 @@ fn padded(bounds: &Bounds, pad: f64) -> Bounds {
     Bounds::new(bounds.min() - pad, bounds.max() + pad)
 }
 
-impl Window {
+impl VisibleRegion {
     /// Returns whether the subtree of an element lies outside.
     fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
         // Slack for rounding, so that subtrees which just touch the edge stay visible.

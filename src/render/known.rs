@@ -66,8 +66,8 @@ impl<'g> Prepass<'g> {
         seeds: bool,
     ) -> Option<Self> {
         let mut prepass = Self::new(graph, style, steps);
-        let tells_ages = style.color_by == ColorBy::Age && seeds;
-        let stands = Standing::at(graph, growth.steps, tells_ages)?;
+        let with_ages = style.color_by == ColorBy::Age && seeds;
+        let stands = ElementKinds::at(graph, growth.steps, with_ages)?;
         prepass.bounds = prepass.known_bounds(growth)?;
         let used: Vec<u128> = match style.color_by.property() {
             ColorProperty::Uniform | ColorProperty::Tint => vec![0],
@@ -137,7 +137,7 @@ fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
 
 /// Kind of visible elements of an approximant.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Kind {
+struct ElementKind {
     object: usize,
     direction: Direction,
     born: u32,
@@ -146,13 +146,13 @@ struct Kind {
 }
 
 /// All kinds of visible elements of an approximant.
-struct Standing(BTreeSet<Kind>);
+struct ElementKinds(BTreeSet<ElementKind>);
 
-impl Standing {
-    /// Computes the kinds, with the births of their fractals if `tells_ages`; `None` if they depend on draws,
+impl ElementKinds {
+    /// Computes the kinds, with the births of their fractals if `with_ages`; `None` if they depend on draws,
     /// or if there may be many ages.
-    fn at(graph: &Graph, steps: u32, tells_ages: bool) -> Option<Self> {
-        if tells_ages && (steps > MAX_AGES || !graph.roots.elements.is_empty()) {
+    fn at(graph: &Graph, steps: u32, with_ages: bool) -> Option<Self> {
+        if with_ages && (steps > MAX_AGES || !graph.roots.elements.is_empty()) {
             return None;
         }
         let mut stand = BTreeSet::new();
@@ -166,7 +166,7 @@ impl Standing {
                 let replacement = &graph.objects()[object].replacement;
                 if level == steps || matches!(replacement, Replacement::Kept) {
                     if graph.objects()[object].visible {
-                        stand.insert(Kind {
+                        stand.insert(ElementKind {
                             object,
                             direction,
                             born: level,
@@ -175,13 +175,13 @@ impl Standing {
                     }
                     continue;
                 }
-                let is_sown = |placement: Placement| tells_ages && placement.seeds();
+                let is_seeded = |placement: Placement| with_ages && placement.seeds();
                 // The direction is wrong for parts placed as the initiator, but their bounding box is unknown.
                 match replacement {
                     Replacement::Fixed(production) => {
                         next.extend(production.placed_instances().map(|(placement, child)| {
                             let direction = direction * child.frame.direction();
-                            let seeded = if is_sown(placement) {
+                            let seeded = if is_seeded(placement) {
                                 level + 1
                             } else {
                                 seeded
@@ -194,7 +194,11 @@ impl Standing {
                         else {
                             return None;
                         };
-                        if graph.parts(only).iter().any(|part| is_sown(part.placement)) {
+                        if graph
+                            .parts(only)
+                            .iter()
+                            .any(|part| is_seeded(part.placement))
+                        {
                             return None;
                         }
                         let elements = rule.generators()[only.generator].elements();
@@ -212,7 +216,7 @@ impl Standing {
         Some(Self(stand))
     }
 
-    fn values(&self, value: impl Fn(&Kind) -> u128) -> Vec<u128> {
+    fn values(&self, value: impl Fn(&ElementKind) -> u128) -> Vec<u128> {
         self.0.iter().map(value).collect()
     }
 }

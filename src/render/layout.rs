@@ -208,7 +208,7 @@ impl<'a> Surveyor<'a> {
     }
 
     /// Makes the prepass of the set down to a cutoff length, completely or as far as the size of a pixel depends on it.
-    fn look_down_to(&mut self, shortest: f64) -> Result<Prepass<'a>, RenderError> {
+    fn prepass_down_to(&mut self, shortest: f64) -> Result<Prepass<'a>, RenderError> {
         if !self.step_down_to(shortest) {
             let culling = Culling::to_length(self.graph, shortest);
             let style = &self.options.style;
@@ -243,7 +243,7 @@ impl<'a> Surveyor<'a> {
         let start = self.graph.initiator(self.growth.steps).instances.iter();
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max) * self.graph.unit();
         let mut shortest = longest * FIRST_LOOK;
-        let mut prepass = self.look_down_to(shortest)?;
+        let mut prepass = self.prepass_down_to(shortest)?;
         for _ in 0..MAX_LOOKS {
             self.check(&prepass)?;
             if !prepass.bounds.is_empty() {
@@ -251,7 +251,7 @@ impl<'a> Surveyor<'a> {
             }
             shortest *= FIRST_LOOK;
             self.elements += prepass.elements;
-            prepass = self.look_down_to(shortest)?;
+            prepass = self.prepass_down_to(shortest)?;
         }
         for round in 1.. {
             self.check(&prepass)?;
@@ -269,7 +269,7 @@ impl<'a> Surveyor<'a> {
             }
             shortest = next;
             self.elements += prepass.elements;
-            prepass = self.look_down_to(shortest)?;
+            prepass = self.prepass_down_to(shortest)?;
         }
         self.completed(prepass)
     }

@@ -64,7 +64,7 @@ pub use instanced::{NotInstanced, SceneFormat, write_scene};
 pub use mesh::{MeshFormat, MeshOptions, Meshed, write_mesh};
 pub use options::{Detail, Format, Labels, Options, PngEncoding};
 pub(crate) use paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
-pub use picture::{Empty, Instanced, Nearest, Picture};
+pub use picture::{Empty, Instanced, NearestPoint, Picture};
 pub(crate) use pixels::draw_paths;
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};

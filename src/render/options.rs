@@ -148,10 +148,10 @@ impl Options {
 
     /// Returns options with the style and the view that a file proposes.
     #[must_use]
-    pub fn of(heading: &Metadata) -> Self {
+    pub fn of(metadata: &Metadata) -> Self {
         Self {
-            style: heading.style.clone(),
-            view: heading.view,
+            style: metadata.style.clone(),
+            view: metadata.view,
             ..Self::default()
         }
     }

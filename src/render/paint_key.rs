@@ -12,7 +12,7 @@ pub(super) const SPECK_WIDTHS: f64 = 8.0;
 /// Paint key: a path ends where it changes.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct PaintKey {
-    pub(super) kind: Kind,
+    pub(super) kind: PathKind,
     /// Class of the stroke width, in steps of an eighth of an octave, if widths differ; for specks, the width
     /// in eighths of a pixel.
     pub(super) width: i32,
@@ -22,7 +22,7 @@ pub(super) struct PaintKey {
 
 /// Kind of the shapes in a path.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum PathKind {
     /// Open lines.
     Line,
     /// Closed paths of lines, stroked and filled.
@@ -37,7 +37,7 @@ pub(super) enum Kind {
 
 impl PaintKey {
     /// Returns the key of shapes without tint, with the thinnest stroke if widths differ.
-    pub(super) const fn of(kind: Kind) -> Self {
+    pub(super) const fn of(kind: PathKind) -> Self {
         Self {
             kind,
             width: 0,
@@ -50,14 +50,14 @@ impl PaintKey {
     /// sizes do not need a path each.
     pub(super) fn serves(self, other: Self) -> bool {
         const ALIKE: u32 = 2;
-        let is_alike = self.kind == Kind::Speck && self.width.abs_diff(other.width) <= ALIKE;
+        let is_alike = self.kind == PathKind::Speck && self.width.abs_diff(other.width) <= ALIKE;
         let width = if is_alike { self.width } else { other.width };
         self == Self { width, ..other }
     }
 
     /// Returns whether the path consists of closed base elements.
     pub(super) fn is_of_polygons(self) -> bool {
-        matches!(self.kind, Kind::Polygon | Kind::Speck)
+        matches!(self.kind, PathKind::Polygon | PathKind::Speck)
     }
 
     /// Returns the paint of a class that has a colour of its own if colours depend on classes.
@@ -71,10 +71,10 @@ impl PaintKey {
         }
         let stroke = |colour| Some(Stroke { colour, pen });
         let (fill, stroke) = match self.kind {
-            Kind::Line => (None, stroke(colour)),
-            Kind::Ring => (style.fill, stroke(colour)),
-            Kind::Area => (style.fill, None),
-            Kind::Speck => {
+            PathKind::Line => (None, stroke(colour)),
+            PathKind::Ring => (style.fill, stroke(colour)),
+            PathKind::Area => (style.fill, None),
+            PathKind::Speck => {
                 let colour = own.unwrap_or(style.polygons());
                 let pen = Pen {
                     width: f64::from(self.width) / SPECK_WIDTHS,
@@ -84,7 +84,7 @@ impl PaintKey {
                 };
                 (Some(colour), Some(Stroke { colour, pen }))
             }
-            Kind::Polygon => (
+            PathKind::Polygon => (
                 Some(own.unwrap_or(style.polygons())),
                 style
                     .stroke

@@ -7,10 +7,10 @@ use crate::style::Colour;
 
 use super::display::{Replay, Step};
 use super::paint::Position;
-use super::paint_key::{Kind, PaintKey};
+use super::paint_key::{PaintKey, PathKind};
 use super::png::Raster;
 use super::scene::{Pass, Scene};
-use super::sketch::{Line, Mark, Sketch};
+use super::sketch::{LineMark, Mark, Sketch};
 use super::surface::Surface;
 use super::tracer::Tracer;
 
@@ -35,7 +35,7 @@ pub(super) struct Painter<'a, 's, S> {
     /// Current class, if one walk paints all classes.
     class: Option<u64>,
     tracer: Tracer<'s, S>,
-    look: Option<PaintKey>,
+    key: Option<PaintKey>,
     previous: Option<Previous>,
     /// For a ring that is unbroken so far, whether its first element starts where its frame does.
     ring: Option<bool>,
@@ -54,7 +54,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             },
             class: None,
             tracer: Tracer::new(surface),
-            look: None,
+            key: None,
             previous: None,
             ring: None,
             is_first: true,
@@ -77,17 +77,17 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             let is_class = matches!(step, Step::Other(Mark::Class(_)));
             match step {
                 Step::Lines(ends) => self.lines(ends)?,
-                Step::Polygons(look, sides, vertices) => {
+                Step::Polygons(key, sides, vertices) => {
                     (self.previous, self.is_first) = (None, false);
-                    self.begin_path(look)?;
+                    self.begin_path(key)?;
                     self.tracer.polygons(vertices, sides)?;
                 }
                 Step::Batches(batches) => {
-                    self.begin_path(PaintKey::of(Kind::Line))?;
+                    self.begin_path(PaintKey::of(PathKind::Line))?;
                     self.put(|raster| raster.batches(batches))?;
                 }
-                Step::Sprites(look, sprites) => {
-                    self.begin_path(look)?;
+                Step::Sprites(key, sprites) => {
+                    self.begin_path(key)?;
                     self.put(|raster| raster.sprites(sprites))?;
                 }
                 Step::Other(mark) => self.mark(mark, joined, &mut replay)?,
@@ -133,20 +133,20 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             }
             Mark::Line(line) => {
                 let joined = joined && line.joined;
-                self.line(&Line { joined, ..line }, points.point())?;
+                self.line(&LineMark { joined, ..line }, points.point())?;
             }
             Mark::Area => {
                 let start = points.point();
-                self.begin_path(PaintKey::of(Kind::Area))?;
+                self.begin_path(PaintKey::of(PathKind::Area))?;
                 if self.is_first {
                     self.tracer.move_to(start);
                 } else {
                     self.tracer.line_to(start);
                 }
             }
-            Mark::Polygon(look) => {
+            Mark::Polygon(key) => {
                 self.previous = None;
-                self.begin_path(look)?;
+                self.begin_path(key)?;
                 self.tracer.move_to(points.point());
             }
             Mark::Skip { meets_frame } => {
@@ -174,13 +174,13 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     /// Continues the open path if it has a matching paint key, or begins a new one.
-    fn begin_path(&mut self, look: PaintKey) -> io::Result<()> {
-        if self.look.is_some_and(|open| open.serves(look)) {
+    fn begin_path(&mut self, key: PaintKey) -> io::Result<()> {
+        if self.key.is_some_and(|open| open.serves(key)) {
             return Ok(());
         }
         self.end_path()?;
-        self.tracer.begin(&look.paint(self.scene, self.colour))?;
-        self.look = Some(look);
+        self.tracer.begin(&key.paint(self.scene, self.colour))?;
+        self.key = Some(key);
         Ok(())
     }
 
@@ -188,15 +188,15 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
         if let Some(previous) = &mut self.previous {
             previous.drawn = false;
         }
-        if self.look.take().is_some() {
+        if self.key.take().is_some() {
             self.tracer.end()?;
         }
         Ok(())
     }
 
     /// Begins a line of elements, or continues one.
-    fn line(&mut self, line: &Line, start: Position) -> io::Result<()> {
-        self.begin_path(line.look)?;
+    fn line(&mut self, line: &LineMark, start: Position) -> io::Result<()> {
+        self.begin_path(line.key)?;
         let [meets_start, meets_end] = line.meets_frame;
         let previous = self.previous.filter(|_| line.joined);
         let shares = previous.is_some_and(|previous| previous.meets_frame && meets_start);
@@ -237,7 +237,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
 
     /// Permits the surface to hand on the drawn portion of the path; a polygon stays in one piece.
     fn hand_on(&mut self) -> io::Result<()> {
-        if self.look.is_some_and(PaintKey::is_of_polygons) {
+        if self.key.is_some_and(PaintKey::is_of_polygons) {
             return Ok(());
         }
         self.tracer.hand_on()
@@ -251,7 +251,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
     }
 
     fn end(&mut self, joined: bool) -> io::Result<()> {
-        if self.look == Some(PaintKey::of(Kind::Area)) {
+        if self.key == Some(PaintKey::of(PathKind::Area)) {
             self.tracer.close(false);
         } else if let (true, Some(meets_start), Some(previous)) = (joined, self.ring, self.previous)
             && previous.drawn
@@ -259,7 +259,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             self.tracer.close(meets_start && previous.meets_frame);
         }
         // Polygons of different fractals share a path; lines begin a new one.
-        if self.look.is_some_and(|look| !look.is_of_polygons()) {
+        if self.key.is_some_and(|key| !key.is_of_polygons()) {
             self.end_path()?;
         }
         Ok(())

@@ -10,7 +10,7 @@ use super::contribution::ContributionMask;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::paint::Pen;
-use super::paint_key::{Kind, PaintKey};
+use super::paint_key::{PaintKey, PathKind};
 use super::painter::Painter;
 use super::png::Means;
 use super::prepass::span;
@@ -46,7 +46,7 @@ impl Drawing for Scene<'_> {
         }
         for &pass in &self.passes {
             let mask = Arc::new(ContributionMask::of(self, pass));
-            let polygons = PaintKey::of(Kind::Polygon).paint(self, pass.colour(self));
+            let polygons = PaintKey::of(PathKind::Polygon).paint(self, pass.colour(self));
             let broadens = polygons.stroke.is_none() && surface.broadens(&polygons);
             let raster = surface.raster();
             let means = raster.map(|raster| Means::of(self, pass, &mask, raster));

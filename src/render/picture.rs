@@ -33,13 +33,13 @@ pub struct Picture {
 #[non_exhaustive]
 pub struct Empty {
     /// Nearest visible point, if it is known: of a [`ZoomTarget`](super::ZoomTarget).
-    pub nearest: Option<Nearest>,
+    pub nearest: Option<NearestPoint>,
 }
 
 /// Point nearest to the middle of a zoomed picture that shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Nearest {
+pub struct NearestPoint {
     /// Distance in the rule's units, to a thousandth.
     pub distance: f64,
     /// Largest magnification of a picture that shows the point at its edge.

@@ -9,7 +9,7 @@ use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
 
-use super::cells::Way;
+use super::cells::DrawingMethod;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::options::{Labels, Options, PngEncoding};
@@ -124,9 +124,9 @@ pub fn pixels(
     growth: &Growth<'_>,
     options: &Options,
 ) -> Result<Pixels, RenderError> {
-    match Way::find(graph, growth, options)? {
-        Way::Elements(layout) => draw(&layout.scene(), options, growth.cancel),
-        Way::Cells(cells) => draw(&cells, options, growth.cancel),
+    match DrawingMethod::find(graph, growth, options)? {
+        DrawingMethod::Elements(layout) => draw(&layout.scene(), options, growth.cancel),
+        DrawingMethod::Cells(cells) => draw(&cells, options, growth.cancel),
     }
 }
 

@@ -39,12 +39,12 @@ use std::ops::Range;
 
 pub(super) use tiny_skia::Pixmap;
 
-use crate::parallel::{Line, Team};
+use crate::parallel::{Pipeline, Team};
 use crate::style::Colour;
 
 use self::chunk::{Chunk, Command};
 use self::coverage::{SpritePaint, bounding, flattened, has_room};
-use self::part::{Layers, Part};
+use self::part::{Layers, PicturePart};
 use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
@@ -89,13 +89,13 @@ pub(super) struct Spare(Layers);
 /// Picture in memory.
 pub(super) struct Png<'t, 'w> {
     /// Part of the picture that is drawn on.
-    part: Part,
+    part: PicturePart,
     /// Parts from which it was entered.
-    outer: Vec<Part>,
+    outer: Vec<PicturePart>,
     /// Shapes that are not submitted yet.
     chunk: Chunk,
     /// Pipeline that covers chunks.
-    line: Line<'t, 'w, Chunk>,
+    line: Pipeline<'t, 'w, Chunk>,
     threads: usize,
     strokers: Strokers,
     /// Stroker of the path, if its strokes are drawn as coverage.
@@ -148,7 +148,7 @@ impl<'t, 'w> Png<'t, 'w> {
         background: Option<Colour>,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
-        let mut part = Part::of_rows([0, 0], size, rows).ok_or(TooManyPixels { size })?;
+        let mut part = PicturePart::of_rows([0, 0], size, rows).ok_or(TooManyPixels { size })?;
         if let Some(background) = background {
             let [red, green, blue, opacity] = background.rgba();
             part.pixmap
@@ -247,7 +247,7 @@ impl Surface for Png<'_, '_> {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
         // There may be a path for every stroke, each of another width.
         if let (Some(stroke), None) = (paint.stroke, paint.fill)
-            && self.part.goes_on_in(stroke.colour)
+            && self.part.continues_in(stroke.colour)
             && let Some(stroker) = self.strokers.stroker(stroke.pen)
         {
             self.chunk.stroker(stroker.clone());

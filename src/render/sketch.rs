@@ -8,7 +8,7 @@ mod runs;
 mod speck;
 mod visit;
 
-pub(super) use mark::{Line, Mark, Sketch};
+pub(super) use mark::{LineMark, Mark, Sketch};
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::style::{ColorBy, Colour, Width};
 use super::contribution::ContributionMask;
 use super::display::Command;
 use super::paint::{FINE, Position, position};
-use super::paint_key::{Kind, PaintKey, width_class};
+use super::paint_key::{PaintKey, PathKind, width_class};
 use super::png::Means;
 use super::scene::{Pass, Scene};
 
@@ -161,10 +161,10 @@ impl<'a> Sketcher<'a> {
             speck::width(base_element, &map)
         });
         let (kind, width) = match narrow.flatten() {
-            Some(width) => (Kind::Speck, width),
-            None => (Kind::Polygon, width),
+            Some(width) => (PathKind::Speck, width),
+            None => (PathKind::Polygon, width),
         };
-        let look = PaintKey {
+        let key = PaintKey {
             kind,
             width,
             colour: self.colour(element, self.scene.style.polygons()),
@@ -174,7 +174,7 @@ impl<'a> Sketcher<'a> {
         if let Some(corners) = self.corners(element) {
             let map = self.scene.canvas.map(&map);
             let place = |corner: &DVec2| position(map.transform_point2(*corner) * FINE);
-            let points = self.vertices(look, corners.len());
+            let points = self.vertices(key, corners.len());
             if mirrored {
                 points.extend(corners.iter().rev().map(place));
             } else {
@@ -188,10 +188,10 @@ impl<'a> Sketcher<'a> {
             let canvas = self.scene.canvas;
             let place = |vertex| position(canvas.pixel(map.transform_point2(vertex)) * FINE);
             let vertices = [start].into_iter().chain(vertices).map(place);
-            self.vertices(look, pieces.len()).extend(vertices);
+            self.vertices(key, pieces.len()).extend(vertices);
             return;
         }
-        self.mark(Mark::Polygon(look));
+        self.mark(Mark::Polygon(key));
         self.start_at(map.transform_point2(start));
         for piece in pieces {
             self.piece(&piece.transformed(&map));
@@ -202,9 +202,9 @@ impl<'a> Sketcher<'a> {
 
     /// Adds a polygon of `sides` vertices, which the caller adds.
     #[inline]
-    fn vertices(&mut self, look: PaintKey, sides: usize) -> &mut Vec<Position> {
+    fn vertices(&mut self, key: PaintKey, sides: usize) -> &mut Vec<Position> {
         self.open = None;
-        self.sketch.polygon(look, sides)
+        self.sketch.polygon(key, sides)
     }
 
     /// Returns the corners of the simplified outline of an element, in its unit frame, if it is simplified.
@@ -237,7 +237,7 @@ impl<'a> Sketcher<'a> {
     fn line(&mut self, element: &Element, base_element: &BaseElement) {
         let reversed = element.frame.direction().is_reversed();
         let map = *element.frame.map();
-        let look = PaintKey {
+        let key = PaintKey {
             kind: self.kind(),
             width: self.width_class(element),
             colour: self.colour(element, self.scene.style.lines()),
@@ -247,7 +247,7 @@ impl<'a> Sketcher<'a> {
         let start = self.position(map.transform_point2(start));
         let open = self.open.map(|open| &mut self.sketch.commands[open]);
         match open {
-            Some(Command::Other(Mark::Line(line))) if element.joined && line.look == look => {
+            Some(Command::Other(Mark::Line(line))) if element.joined && line.key == key => {
                 let shares = line.meets_frame[1] && meets_start;
                 line.meets_frame[1] = meets_end;
                 if !shares {
@@ -255,8 +255,8 @@ impl<'a> Sketcher<'a> {
                 }
             }
             _ => {
-                self.mark(Mark::Line(Line {
-                    look,
+                self.mark(Mark::Line(LineMark {
+                    key,
                     joined: element.joined,
                     meets_frame: [meets_start, meets_end],
                 }));
@@ -265,7 +265,7 @@ impl<'a> Sketcher<'a> {
             }
         }
         // The area of a ring depends on its curves, which are therefore not simplified.
-        let corners = self.corners(element).filter(|_| look.kind == Kind::Line);
+        let corners = self.corners(element).filter(|_| key.kind == PathKind::Line);
         if let Some([first, between @ .., last]) = corners {
             let map = self.scene.canvas.map(&map);
             let mut go_to = |corner: &DVec2| {
@@ -319,11 +319,11 @@ impl<'a> Sketcher<'a> {
         is_tinted.then(|| element.appearance.on(own))
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> PathKind {
         if self.scene.fills_strokes {
-            Kind::Ring
+            PathKind::Ring
         } else {
-            Kind::Line
+            PathKind::Line
         }
     }
 

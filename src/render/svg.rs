@@ -5,7 +5,7 @@ mod path;
 
 use std::io::{self, Write};
 
-use crate::parallel::{Line, Team};
+use crate::parallel::{Pipeline, Team};
 use crate::style::{Cap, Colour, Join, Named};
 
 use super::drawing::Page;
@@ -18,7 +18,7 @@ pub(super) struct Svg<'t, 'w, W> {
     out: W,
     chunk: Chunk,
     /// Pipeline that formats chunks of the document.
-    line: Line<'t, 'w, Chunk>,
+    line: Pipeline<'t, 'w, Chunk>,
     /// Current point and start of the subpath.
     at: [Position; 2],
     /// Stroke attributes that paths inherit.

@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
 
-use super::cells::Way;
+use super::cells::DrawingMethod;
 use super::drawing::{Drawing, Page};
 use super::error::RenderError;
 use super::options::{Format, Options};
@@ -33,9 +33,9 @@ pub fn write(
     if options.instanced && options.format == Format::Svg {
         return instanced::write(graph, growth, options, out);
     }
-    let layout = match Way::find(graph, growth, options)? {
-        Way::Elements(layout) => layout,
-        Way::Cells(cells) => {
+    let layout = match DrawingMethod::find(graph, growth, options)? {
+        DrawingMethod::Elements(layout) => layout,
+        DrawingMethod::Cells(cells) => {
             write_in(&cells, options, growth.cancel, out)?;
             return Ok(cells.picture());
         }

@@ -14,7 +14,7 @@ use super::error::{NoZoom, RenderError};
 use super::layout::Layout;
 use super::options::{Detail, Options};
 use super::paint::{overhang, relative_overhang};
-use super::picture::{Nearest, Picture};
+use super::picture::{NearestPoint, Picture};
 
 /// Target of a zoomed picture.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub fn write_zoomed(
     graph: &Graph,
     growth: &Growth<'_>,
     options: &Options,
-    look: &ZoomTarget,
+    target: &ZoomTarget,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
     let style = &options.style;
@@ -57,8 +57,8 @@ pub fn write_zoomed(
         relative_stroke,
         areas: style.fill.is_some() && starts_rings(graph) && graph.keeps_lines(),
         shortest: options.detail.map_or(1.0, |detail| detail.pixels),
-        factor: look.factor.clone(),
-        at: look.at.clone(),
+        factor: target.factor.clone(),
+        at: target.at.clone(),
     };
     let steps = options.detail.filter(|detail| !detail.decides_steps);
     let to_limit = steps.is_none();
@@ -88,9 +88,10 @@ pub fn write_zoomed(
     };
     let growth = Growth { steps, ..*growth };
     let mut picture = super::write(&found.graph, &growth, &options, out)?;
-    if let (Some(empty), true, Address::Point(middle)) = (&mut picture.empty, to_limit, &look.at) {
+    if let (Some(empty), true, Address::Point(middle)) = (&mut picture.empty, to_limit, &target.at)
+    {
         let half = f64::from(canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
-        empty.nearest = zoom::distance(graph, *middle).map(|distance| Nearest {
+        empty.nearest = zoom::distance(graph, *middle).map(|distance| NearestPoint {
             distance,
             factor: half / (distance * canvas.scale()),
         });

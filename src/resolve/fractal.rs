@@ -79,12 +79,15 @@ impl<K> Resolver<K> {
 
     /// Returns the parameters that are set. Reports mistakes and returns `None`.
     fn settings(&mut self, document: &FractalDocument) -> Option<Vec<Setting>> {
-        let heading = document.file.metadata();
-        let names = heading.params.iter().map(|param| param.name.value.as_str());
+        let metadata = document.file.metadata();
+        let names = metadata
+            .params
+            .iter()
+            .map(|param| param.name.value.as_str());
         let settings = document.set.iter().map(|(name, number)| {
             let value = self.constant(number);
             if !names.clone().any(|known| known == name.value) {
-                let hint = heading.instead_of(&name.value);
+                let hint = metadata.instead_of(&name.value);
                 let message = format!("this fractal has no parameter '{}'", name.value);
                 self.error_with_hint(&name.place, message, hint);
                 return None;

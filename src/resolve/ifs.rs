@@ -45,10 +45,10 @@ struct Parts<M: AffineMap> {
 
 impl Resolver<OfIfs> {
     /// Resolves the system. Reports mistakes and returns `None`.
-    pub(super) fn system(&mut self, document: &IfsDocument, heading: Metadata) -> Option<System> {
+    pub(super) fn system(&mut self, document: &IfsDocument, metadata: Metadata) -> Option<System> {
         let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
         let parts = self.parts(document, maps, Self::set);
-        self.assembled(document, heading, parts)
+        self.assembled(document, metadata, parts)
     }
 
     /// Resolves the sets of a system, each by `set`.
@@ -77,7 +77,7 @@ impl Resolver<OfIfs> {
     fn assembled<M: AffineMap>(
         &mut self,
         document: &IfsDocument,
-        heading: Metadata,
+        metadata: Metadata,
         parts: Parts<M>,
     ) -> Option<System<M>> {
         let Parts {
@@ -125,13 +125,13 @@ impl Resolver<OfIfs> {
             let hint = format!(
                 "of all sets and maps inside all maps there are no more than {MAX_INSTANCES}"
             );
-            self.error_with_hint(&document.heading.place.first_line(), message, hint);
+            self.error_with_hint(&document.metadata.place.first_line(), message, hint);
             return None;
         }
         let contraction = ifs.contraction();
         self.check_contraction(document, &ifs, &contraction)?;
         Some(System {
-            heading,
+            metadata,
             ifs,
             written: maps.written,
             chained,
@@ -249,7 +249,7 @@ impl Resolver<OfIfs> {
             IfsError::InitialNotFinite => document.initial.as_ref().map(|set| set.place.clone()),
             IfsError::NoMaps => None,
         };
-        let place = place.unwrap_or_else(|| document.heading.place.first_line());
+        let place = place.unwrap_or_else(|| document.metadata.place.first_line());
         self.error(&place, error.to_string());
     }
 
@@ -264,7 +264,7 @@ impl Resolver<OfIfs> {
         let map = first.and_then(|map| listed(document, map));
         let place = match &document.maps {
             Some(MapsDocument::Vertices { shrink, .. }) => &shrink.place,
-            _ => map.map_or(&document.heading.place, |map| &map.place),
+            _ => map.map_or(&document.metadata.place, |map| &map.place),
         };
         let place = place.first_line();
         match contraction.verdict {

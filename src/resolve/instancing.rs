@@ -107,7 +107,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
     pub(super) fn structure(
         &mut self,
         document: &InstancingDocument,
-        heading: Metadata,
+        metadata: Metadata,
     ) -> Option<Instancing<M>> {
         let names = document.objects.iter().map(|object| &object.name.value);
         self.kind.written = names.cloned().collect();
@@ -152,7 +152,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 let hint = format!(
                     "let fewer levels, or smaller objects, be instanced; {last} comes last"
                 );
-                self.error_with_hint(&document.heading.place, message, hint);
+                self.error_with_hint(&document.metadata.place, message, hint);
             }
             if self.diagnostics.has_errors() {
                 return None;
@@ -160,7 +160,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         }
         self.check_all_are_reached(document);
         let mut structure = Instancing {
-            heading,
+            metadata,
             objects,
             scene,
             initial: match initial {
@@ -171,8 +171,8 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let tints = structure
             .instances()
             .any(|instance| instance.tint.is_some());
-        if tints && !document.heading.sets_colours {
-            structure.heading.style.color_by = ColorBy::Tint;
+        if tints && !document.metadata.sets_colours {
+            structure.metadata.style.color_by = ColorBy::Tint;
         }
         self.check_loops(document, &structure)?;
         Some(structure)

@@ -39,7 +39,7 @@ impl Resolver<OfLSystem> {
     pub(super) fn lsystem(
         &mut self,
         document: &LSystemDocument,
-        heading: Metadata,
+        metadata: Metadata,
     ) -> Option<LSystem> {
         self.kind.constants = Arc::new(self.constants.clone());
         self.kind.angle = self.number_or(document.angle.as_ref(), 90.0);
@@ -81,15 +81,15 @@ impl Resolver<OfLSystem> {
             }
         }
         let mut system = LSystem {
-            heading,
+            metadata,
             start,
             length,
             symbols: std::mem::take(&mut self.kind.symbols),
             axiom: axiom?,
             productions,
         };
-        if system.has_colours() && !document.heading.sets_colours {
-            system.heading.style.color_by = ColorBy::Tint;
+        if system.has_colours() && !document.metadata.sets_colours {
+            system.metadata.style.color_by = ColorBy::Tint;
         }
         self.check_weights(document, &system);
         self.warn_of_unused(document, &system);

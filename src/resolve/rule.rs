@@ -52,7 +52,7 @@ impl<F: ResolvedFrame> Default for OfRule<F> {
 }
 
 impl<F: ResolvedFrame> Resolver<OfRule<F>> {
-    pub(super) fn rule(&mut self, document: &RuleDocument, mut heading: Metadata) -> Rule<F> {
+    pub(super) fn rule(&mut self, document: &RuleDocument, mut metadata: Metadata) -> Rule<F> {
         match &document.base_element {
             Some(document) => {
                 self.base_element(document);
@@ -87,11 +87,11 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                 .for_each(|doubt| self.diagnostics.push(doubt));
         }
         let base_elements = std::mem::take(&mut self.kind.base_elements);
-        if base_elements.iter().any(F::has_colours) && !document.heading.sets_colours {
-            heading.style.color_by = ColorBy::Tint;
+        if base_elements.iter().any(F::has_colours) && !document.metadata.sets_colours {
+            metadata.style.color_by = ColorBy::Tint;
         }
         Rule {
-            heading,
+            metadata,
             points: values::<F>(&written_points),
             written_points,
             initiator,

@@ -13,7 +13,7 @@ const MAX_COMPARED: usize = 100;
 /// Returns warnings of the parameters in a file that none of its expressions uses. Parameters of its
 /// parents and components are excluded, because other files may use them.
 pub(super) fn parameters(
-    heading: &MetadataDocument,
+    metadata: &MetadataDocument,
     used: &HashSet<String>,
 ) -> impl Iterator<Item = Diagnostic> {
     let is_used = |parameter: &&ParameterDocument| match &parameter.whole {
@@ -22,8 +22,8 @@ pub(super) fn parameters(
             .iter()
             .any(|part| used.contains(&format!("{}{part}", whole.value))),
     };
-    let (used, unused): (Vec<_>, Vec<_>) = heading.params.iter().partition(is_used);
-    let source = heading.place.source();
+    let (used, unused): (Vec<_>, Vec<_>) = metadata.params.iter().partition(is_used);
+    let source = metadata.place.source();
     // A complex parameter is reported once, by its real part.
     let is_second =
         |it: &&ParameterDocument| it.whole.is_some() && it.name.value.ends_with(PARTS[1]);

@@ -29,7 +29,7 @@ use crate::style::{Style, View};
 /// Production rule, of the plane or of space: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule<F: RuleFrame = Frame2> {
-    pub(crate) heading: Metadata,
+    pub(crate) metadata: Metadata,
     pub(crate) points: Vec<F::Point>,
     /// Points of the initiator as written.
     pub(crate) written_points: Vec<F::Coordinates>,
@@ -43,19 +43,19 @@ impl<F: RuleFrame> Rule<F> {
     /// Returns the metadata of the file.
     #[must_use]
     pub fn metadata(&self) -> &Metadata {
-        &self.heading
+        &self.metadata
     }
 
     /// Returns title, source and related metadata.
     #[must_use]
     pub fn description(&self) -> &Description {
-        &self.heading.description
+        &self.metadata.description
     }
 
     /// Returns the parameters with their values.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
-        &self.heading.parameters
+        &self.metadata.parameters
     }
 
     /// Returns the elements of the initiator; their points are those of [`Rule::initiator_points`].
@@ -92,31 +92,31 @@ impl<F: RuleFrame> Rule<F> {
     /// Returns the number of steps that the file proposes.
     #[must_use]
     pub fn steps(&self) -> Option<u32> {
-        self.heading.steps
+        self.metadata.steps
     }
 
     /// Returns the published similarity dimension.
     #[must_use]
     pub fn dimension(&self) -> Option<f64> {
-        self.heading.dimension
+        self.metadata.dimension
     }
 
     /// Returns the published Hausdorff dimension, where it differs from the similarity dimension.
     #[must_use]
     pub fn hausdorff_dimension(&self) -> Option<f64> {
-        self.heading.hausdorff_dimension
+        self.metadata.hausdorff_dimension
     }
 
     /// Returns the style.
     #[must_use]
     pub fn style(&self) -> &Style {
-        &self.heading.style
+        &self.metadata.style
     }
 
     /// Returns the view: in the plane, the part that is drawn.
     #[must_use]
     pub fn view(&self) -> &View {
-        &self.heading.view
+        &self.metadata.view
     }
 
     /// Returns whether the rule depends on random draws: by a random function, or by selection at random

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::expression::Precise;
 use crate::geometry::DMat2;
 use crate::graph::{Graph, Instance, Replacement, Successor};
-use crate::grow::{Evaluator, ReplacementContext, Standing};
+use crate::grow::{Evaluator, ReplacementContext, TraversalState};
 use crate::rule::Placement;
 use crate::saturating::{real, whole};
 
@@ -50,7 +50,7 @@ pub(super) fn centre(
     let (_, root) = found(&initiator, position, 0)?;
     // Step of the fractal's birth.
     let mut born = 0;
-    let mut standing = Standing::whole(growth.seed).root(graph, &root);
+    let mut state = TraversalState::whole(growth.seed).root(graph, &root);
     let mut object = root.object;
     let mut maps = vec![constants.root(&root)];
     let mut product = Product::new(root.frame.map().matrix2);
@@ -83,18 +83,18 @@ pub(super) fn centre(
             _ => {}
         }
         let mut made = Successor::default();
-        let successor = evaluator.successor(graph, &standing, object, moment, &mut made)?;
+        let successor = evaluator.successor(graph, &state, object, moment, &mut made)?;
         let instances: Vec<_> = successor.placed_instances().collect();
         let (placement, child) = found(&instances, position, depth + 1)?;
         let parent = Parent {
-            standing: &standing,
+            state: &state,
             object,
             moment,
             bits: whole((product.log2 - enough).ceil()) + SPARE,
         };
         maps.extend(constants.children(parent, &[&child]));
         product.multiply(child.frame.map().matrix2);
-        standing = standing.child(graph, &child);
+        state = state.child(graph, &child);
         object = child.object;
         if placement.seeds() {
             born = level + 1;

@@ -48,7 +48,7 @@ pub(super) fn clipped(
         path.add(points);
     }
     if outline.is_closed() {
-        let shows = path.comes_near || path.goes_around();
+        let shows = path.comes_near || path.encloses();
         let outline = BaseElement::new(path.start, path.pieces, true);
         outline.filter(|_| shows).map(|outline| Clipped {
             frame: Frame2::UNIT,
@@ -157,7 +157,7 @@ impl Path {
     }
 
     /// Returns whether the path, closed by a line, winds around (0, 0); it must not come near.
-    pub(super) fn goes_around(&self) -> bool {
+    pub(super) fn encloses(&self) -> bool {
         let ends = self.pieces.iter().map(Piece::end);
         let from = std::iter::once(self.start).chain(ends.clone());
         let turns = from.zip(ends.chain([self.start]));

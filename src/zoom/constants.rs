@@ -8,7 +8,7 @@ use dashu_int::IBig;
 use crate::compile::Chords;
 use crate::expression::{Affine, Arithmetic, Precise, Precision, Program};
 use crate::graph::{Graph, Instance};
-use crate::grow::{ReplacementContext, Standing};
+use crate::grow::{ReplacementContext, TraversalState};
 use crate::ifs::System;
 use crate::instancing::Instancing;
 use crate::model::Model;
@@ -23,7 +23,7 @@ const MAX_KNOWN: usize = 1 << 12;
 /// Element that is replaced.
 #[derive(Clone, Copy)]
 pub(super) struct Parent<'a> {
-    pub(super) standing: &'a Standing,
+    pub(super) state: &'a TraversalState,
     pub(super) object: usize,
     pub(super) moment: ReplacementContext,
     /// Number of significant bits in the maps of its children.
@@ -217,8 +217,8 @@ impl OfRule<'_> {
             return Vec::new();
         };
         let generator = &self.rule.generators()[number];
-        let moment = parent.moment.seen(parent.standing);
-        let slots = generator.slots(&moment, parent.standing.path);
+        let moment = parent.moment.seen(parent.state);
+        let slots = generator.slots(&moment, parent.state.path);
         let slots: Vec<_> = slots.into_iter().map(Precise::of).collect();
         let mut points = BTreeMap::new();
         for instance in wanted {

@@ -2,13 +2,13 @@
 
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
 use crate::graph::{Chain, Graph, Instance, Seed, Successor};
-use crate::grow::{Evaluator, ReplacementContext, Standing};
+use crate::grow::{Evaluator, ReplacementContext, TraversalState};
 use crate::parallel::is_cancelled;
 
 use super::clip::{self, Path};
 use super::constants::{Constants, Parent};
 use super::fixed::{Fixed, Vector};
-use super::items::{Drawn, Found, Item, Line, Node};
+use super::items::{FoundRoot, FractalItem, FractalPart, Node, RootDrawing};
 use super::{GRAIN, SPARE, Zoom, ZoomError, ZoomOptions, ZoomWindow, merge, roots};
 
 /// Largest extent of a root, in pixels.
@@ -24,7 +24,7 @@ const MAX_WORK: u64 = 400_000_000_000;
 const DOUBT: f64 = 1e-9;
 
 /// Relation of a node to the window.
-enum Look {
+enum Relation {
     Outside,
     Small(DAffine2),
     Large,
@@ -39,7 +39,7 @@ pub(super) struct Descent<'a, 'c> {
     /// Half the extent of the window with its margin, in pixels.
     half: DVec2,
     /// Fractals, each after the one that seeded it.
-    lines: Vec<Line>,
+    lines: Vec<FractalPart>,
     evaluator: Evaluator,
     work: u64,
 }
@@ -70,7 +70,7 @@ impl<'a, 'c> Descent<'a, 'c> {
     pub(super) fn run(mut self, centre: &Vector) -> Result<Zoom, ZoomError> {
         let bits = self.constants.bits();
         let scale = self.window.factor.times(self.window.scale, GRAIN);
-        let whole = Standing::whole(self.growth.seed);
+        let whole = TraversalState::whole(self.growth.seed);
         let scaled = |[x, y]: &Vector| [x, y].map(|it| (it * &scale) >> bits);
         let initiator = self.graph.initiator(0);
         let mut items = Vec::new();
@@ -81,8 +81,8 @@ impl<'a, 'c> Descent<'a, 'c> {
                 axes: [scaled(&map.axes[0]), scaled(&map.axes[1])],
                 origin: scaled(&[x - &centre[0], y - &centre[1]]),
             };
-            items.push(Item::Node(Box::new(Node {
-                standing: whole.root(self.graph, instance),
+            items.push(FractalItem::Node(Box::new(Node {
+                state: whole.root(self.graph, instance),
                 object: instance.object,
                 level: 0,
                 born: 0,
@@ -90,7 +90,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 joined: instance.joined,
             })));
         }
-        self.lines.push(Line {
+        self.lines.push(FractalPart {
             born: 0,
             is_ring: initiator.is_ring(),
             items,
@@ -98,7 +98,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         // Every round is a step: nodes that are no roots were created in the previous round.
         for round in 0.. {
             check(self.growth, round)?;
-            let is_done = |item: &Item| !matches!(item, Item::Node(_));
+            let is_done = |item: &FractalItem| !matches!(item, FractalItem::Node(_));
             let mut items = self.lines.iter().flat_map(|line| &line.items);
             if items.all(is_done) {
                 break;
@@ -123,7 +123,7 @@ impl<'a, 'c> Descent<'a, 'c> {
     /// Replaces all nodes of a fractal that are no roots, once.
     fn go_down(&mut self, number: usize) -> Result<(), ZoomError> {
         let old = std::mem::take(&mut self.lines[number].items);
-        let mut line = Line {
+        let mut line = FractalPart {
             items: Vec::new(),
             ..self.lines[number]
         };
@@ -133,39 +133,39 @@ impl<'a, 'c> Descent<'a, 'c> {
         let mut pen = line.is_ring;
         for item in old {
             let node = match item {
-                Item::Root(mut found) => {
+                FractalItem::Root(mut found) => {
                     found.joined &= pen;
                     pen = true;
                     line.add(*found);
                     continue;
                 }
-                Item::Seed(number) => {
+                FractalItem::Seed(number) => {
                     if !self.lines[number].items.is_empty() {
                         line.items.push(item);
                     }
                     continue;
                 }
-                Item::Node(node) => node,
+                FractalItem::Node(node) => node,
             };
             pen &= node.joined;
             match self.look(&node) {
-                Look::Outside if areas => {
+                Relation::Outside if areas => {
                     line.add(self.around(&node, pen));
                     pen = true;
                 }
-                Look::Outside => pen = false,
-                Look::Small(map) => {
-                    let frame = Frame2::new(map, node.standing.frame.direction());
-                    line.add(Found::of(&node, frame, pen, Drawn::Object));
+                Relation::Outside => pen = false,
+                Relation::Small(map) => {
+                    let frame = Frame2::new(map, node.state.frame.direction());
+                    line.add(FoundRoot::of(&node, frame, pen, RootDrawing::Object));
                     pen = true;
                 }
-                Look::Large if self.stays(&node) => {
+                Relation::Large if self.stays(&node) => {
                     if let Some(found) = self.clipped(&node, areas, pen) {
                         line.add(found);
                     }
                     pen = areas;
                 }
-                Look::Large => pen = self.replace(&node, areas, pen, &mut line)?,
+                Relation::Large => pen = self.replace(&node, areas, pen, &mut line)?,
             }
         }
         if !pen {
@@ -184,7 +184,7 @@ impl<'a, 'c> Descent<'a, 'c> {
     }
 
     /// Returns the visible part of an element that is not replaced.
-    fn clipped(&self, node: &Node, areas: bool, pen: bool) -> Option<Found> {
+    fn clipped(&self, node: &Node, areas: bool, pen: bool) -> Option<FoundRoot> {
         let object = &self.graph.objects()[node.object];
         let outline = &self.graph.base_elements()[object.base_element];
         let (bits, radius) = (self.constants.bits(), self.half.length());
@@ -192,11 +192,11 @@ impl<'a, 'c> Descent<'a, 'c> {
             .visible
             .then(|| clip::clipped(outline, &node.map, bits, radius));
         match clipped.flatten() {
-            Some(clip::Clipped { frame, outline }) => Some(Found::of(
+            Some(clip::Clipped { frame, outline }) => Some(FoundRoot::of(
                 node,
                 frame,
                 areas && pen,
-                Drawn::Clipped(outline),
+                RootDrawing::Clipped(outline),
             )),
             None if areas => Some(self.around(node, pen)),
             None => None,
@@ -204,30 +204,30 @@ impl<'a, 'c> Descent<'a, 'c> {
     }
 
     /// Returns a path from the start of an element that is not seen to its end.
-    fn around(&self, node: &Node, pen: bool) -> Found {
+    fn around(&self, node: &Node, pen: bool) -> FoundRoot {
         let Fixed { axes, origin } = &node.map;
         let end = [&origin[0] + &axes[0][0], &origin[1] + &axes[0][1]];
         let mut ends = [origin.clone(), end];
-        if node.standing.frame.direction().is_reversed() {
+        if node.state.frame.direction().is_reversed() {
             ends.reverse();
         }
         let mut path = Path::new(&ends[0], self.half.length());
         path.add(ends.to_vec());
-        Found::of(node, Frame2::UNIT, pen, Drawn::Around(path))
+        FoundRoot::of(node, Frame2::UNIT, pen, RootDrawing::Around(path))
     }
 
-    fn look(&self, node: &Node) -> Look {
+    fn look(&self, node: &Node) -> Relation {
         let (map, exponent) = node.map.near();
         if self.is_outside(&map, exponent, node.object, doubt(&map)) {
-            return Look::Outside;
+            return Relation::Outside;
         }
         let pixel = pixel(exponent);
         let [x, y] = [map.matrix2.x_axis, map.matrix2.y_axis].map(|axis| axis.length() * pixel);
         let length = x.max(y);
         if length < self.window.shortest || length * self.reaches[node.object] <= self.largest() {
-            return Look::Small(scaled(&map, pixel));
+            return Relation::Small(scaled(&map, pixel));
         }
-        Look::Large
+        Relation::Large
     }
 
     /// Returns the largest extent of roots, in pixels. It is small if paths lead around the window,
@@ -258,7 +258,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         node: &Node,
         areas: bool,
         pen: bool,
-        line: &mut Line,
+        line: &mut FractalPart,
     ) -> Result<bool, ZoomError> {
         let moment = ReplacementContext {
             born: node.born,
@@ -272,7 +272,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let mut made = Successor::default();
         let evaluator = &mut self.evaluator;
         let Successor { body, seeds } =
-            evaluator.successor(graph, &node.standing, node.object, moment, &mut made)?;
+            evaluator.successor(graph, &node.state, node.object, moment, &mut made)?;
         let (map, exponent) = node.map.near();
         // The subtraction of doubles here may cancel most digits.
         let doubt = doubt(&map);
@@ -292,7 +292,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             })
             .collect();
         let parent = Parent {
-            standing: &node.standing,
+            state: &node.state,
             object: node.object,
             moment,
             bits: node.map.bits() + SPARE,
@@ -306,7 +306,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             let child = |instance: &Instance| {
                 let next = made.next_if(|(next, _)| std::ptr::eq(*next, instance));
                 next.map(|(_, map)| Node {
-                    standing: node.standing.child(self.graph, instance),
+                    state: node.state.child(self.graph, instance),
                     object: instance.object,
                     level: node.level + 1,
                     born,
@@ -316,7 +316,7 @@ impl<'a, 'c> Descent<'a, 'c> {
             };
             chain.instances.iter().map(child).collect()
         };
-        let is_reversed = node.standing.frame.direction().is_reversed();
+        let is_reversed = node.state.frame.direction().is_reversed();
         let [mut first, mut end] = body.meets_frame;
         if is_reversed {
             (first, end) = (end, first);
@@ -325,7 +325,7 @@ impl<'a, 'c> Descent<'a, 'c> {
         let pen = line.string(body, children(body, node.born), is_reversed, pen && first);
         for Seed { chain, .. } in seeds {
             let born = node.level + 1;
-            let mut seed = Line {
+            let mut seed = FractalPart {
                 born,
                 is_ring: chain.is_ring(),
                 items: Vec::new(),
@@ -335,7 +335,7 @@ impl<'a, 'c> Descent<'a, 'c> {
                 seed.open();
             }
             if !seed.items.is_empty() {
-                line.items.push(Item::Seed(self.lines.len()));
+                line.items.push(FractalItem::Seed(self.lines.len()));
                 self.lines.push(seed);
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::geometry::Frame2;
 use crate::graph::{Chain, Root};
-use crate::grow::Standing;
+use crate::grow::TraversalState;
 use crate::rule::BaseElement;
 
 use super::clip::Path;
@@ -11,7 +11,7 @@ use super::fixed::Fixed;
 /// Instance that may show in the window.
 #[derive(Clone)]
 pub(super) struct Node {
-    pub(super) standing: Standing,
+    pub(super) state: TraversalState,
     pub(super) object: usize,
     pub(super) level: u32,
     /// Step of its fractal's birth.
@@ -23,15 +23,15 @@ pub(super) struct Node {
 }
 
 /// Item of a fractal.
-pub(super) enum Item {
+pub(super) enum FractalItem {
     /// Instance that is still to be replaced or to become a root.
     Node(Box<Node>),
-    Root(Box<Found>),
+    Root(Box<FoundRoot>),
     /// Place at which an element seeded a fractal, with the number of the fractal.
     Seed(usize),
 }
 
-impl Item {
+impl FractalItem {
     /// Returns whether it joins the item before; `None` for a seed.
     pub(super) fn joined(&mut self) -> Option<&mut bool> {
         match self {
@@ -43,16 +43,16 @@ impl Item {
 }
 
 /// Part of a fractal that may show in the window.
-pub(super) struct Line {
+pub(super) struct FractalPart {
     /// Step of its birth.
     pub(super) born: u32,
     /// Whether it is still a closed chain.
     pub(super) is_ring: bool,
     /// Items in the order of traversal.
-    pub(super) items: Vec<Item>,
+    pub(super) items: Vec<FractalItem>,
 }
 
-impl Line {
+impl FractalPart {
     /// Adds the instances of a chain that may show, in the order of traversal; returns whether the next
     /// item can join the end of the last one.
     pub(super) fn string(
@@ -72,7 +72,7 @@ impl Line {
             match children[listed].take() {
                 Some(mut child) => {
                     child.joined = pen;
-                    self.items.push(Item::Node(Box::new(child)));
+                    self.items.push(FractalItem::Node(Box::new(child)));
                     pen = true;
                 }
                 None => pen = false,
@@ -84,31 +84,31 @@ impl Line {
     /// Opens the chain: its first item joins no other.
     pub(super) fn open(&mut self) {
         self.is_ring = false;
-        if let Some(first) = self.items.iter_mut().find_map(Item::joined) {
+        if let Some(first) = self.items.iter_mut().find_map(FractalItem::joined) {
             *first = false;
         }
     }
 
     /// Adds a root; consecutive paths around the window are joined to one.
-    pub(super) fn add(&mut self, found: Found) {
+    pub(super) fn add(&mut self, found: FoundRoot) {
         let mut before = self.items.iter_mut().rev();
-        let last = before.find(|item| !matches!(item, Item::Seed(_)));
-        if let (Some(Item::Root(last)), Drawn::Around(next), true) =
+        let last = before.find(|item| !matches!(item, FractalItem::Seed(_)));
+        if let (Some(FractalItem::Root(last)), RootDrawing::Around(next), true) =
             (last, &found.drawn, found.joined)
-            && let Drawn::Around(path) = &mut last.drawn
+            && let RootDrawing::Around(path) = &mut last.drawn
         {
             path.append(next);
             return;
         }
-        self.items.push(Item::Root(Box::new(found)));
+        self.items.push(FractalItem::Root(Box::new(found)));
     }
 
     /// Returns whether the fractal is only a closed path that does not lead around the window.
     pub(super) fn is_elsewhere(&self) -> bool {
         match &self.items[..] {
-            [Item::Root(only)] => match &only.drawn {
-                Drawn::Around(path) => self.is_ring && !path.goes_around(),
-                Drawn::Object | Drawn::Clipped(_) => false,
+            [FractalItem::Root(only)] => match &only.drawn {
+                RootDrawing::Around(path) => self.is_ring && !path.encloses(),
+                RootDrawing::Object | RootDrawing::Clipped(_) => false,
             },
             _ => false,
         }
@@ -116,16 +116,16 @@ impl Line {
 }
 
 /// Root: an instance from which the graph of the window starts.
-pub(super) struct Found {
+pub(super) struct FoundRoot {
     pub(super) object: usize,
     pub(super) frame: Frame2,
     pub(super) root: Root,
     pub(super) joined: bool,
-    pub(super) drawn: Drawn,
+    pub(super) drawn: RootDrawing,
 }
 
 /// Drawing of a root.
-pub(super) enum Drawn {
+pub(super) enum RootDrawing {
     /// Subtree of its object.
     Object,
     /// Clipped outline, in its frame.
@@ -134,14 +134,14 @@ pub(super) enum Drawn {
     Around(Path),
 }
 
-impl Found {
-    pub(super) fn of(node: &Node, frame: Frame2, joined: bool, drawn: Drawn) -> Self {
-        let Standing {
+impl FoundRoot {
+    pub(super) fn of(node: &Node, frame: Frame2, joined: bool, drawn: RootDrawing) -> Self {
+        let TraversalState {
             path,
             length,
             appearance,
             ..
-        } = node.standing;
+        } = node.state;
         Self {
             object: node.object,
             frame,

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use dashu_int::IBig;
 
 use super::fixed::Fixed;
-use super::items::{Item, Line};
+use super::items::{FractalItem, FractalPart};
 
 /// Number of instances up to which none are merged.
 const FEW: usize = 256;
@@ -17,7 +17,7 @@ const SAME: usize = 36;
 /// Of several instances of one object at one place, drops all but the first, if there are many instances
 /// in total. The first is that of the oldest fractal, which hides those of younger ones where ages
 /// determine colours.
-pub(super) fn merge(lines: &mut [Line]) {
+pub(super) fn merge(lines: &mut [FractalPart]) {
     let count: usize = lines.iter().map(|line| line.items.len()).sum();
     if count <= FEW {
         return;
@@ -27,12 +27,12 @@ pub(super) fn merge(lines: &mut [Line]) {
         let mut is_gap = false;
         line.items.retain_mut(|item| {
             let stays = match item {
-                Item::Node(node) => {
-                    let direction = node.standing.frame.direction();
+                FractalItem::Node(node) => {
+                    let direction = node.state.frame.direction();
                     known.insert((node.object, node.level, direction, key(&node.map)))
                 }
-                Item::Root(_) => true,
-                Item::Seed(_) => return true,
+                FractalItem::Root(_) => true,
+                FractalItem::Seed(_) => return true,
             };
             // An item does not join one that was dropped.
             let was_gap = std::mem::replace(&mut is_gap, !stays);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::graph::{Chain, Graph, Instance, Replacement, Roots, SeededFractal};
 use crate::rule::BaseElement;
 
-use super::items::{Drawn, Found, Item, Line};
+use super::items::{FoundRoot, FractalItem, FractalPart, RootDrawing};
 use super::{Zoom, ZoomError, ZoomWindow};
 
 /// Graph under construction.
@@ -23,7 +23,7 @@ struct Rooted {
 pub(super) fn zoom(
     graph: &Graph,
     window: &ZoomWindow,
-    mut lines: Vec<Line>,
+    mut lines: Vec<FractalPart>,
 ) -> Result<Zoom, ZoomError> {
     let mut rooted = Rooted {
         base_elements: graph.base_elements().to_vec(),
@@ -35,9 +35,9 @@ pub(super) fn zoom(
     let mut shows = vec![false; lines.len()];
     for (number, line) in lines.iter().enumerate().rev() {
         shows[number] = line.items.iter().any(|item| match item {
-            Item::Node(_) => false,
-            Item::Root(_) => true,
-            Item::Seed(seed) => shows[*seed],
+            FractalItem::Node(_) => false,
+            FractalItem::Root(_) => true,
+            FractalItem::Seed(seed) => shows[*seed],
         });
     }
     let mut chains = Vec::new();
@@ -45,15 +45,15 @@ pub(super) fn zoom(
     // it.
     let mut open = VecDeque::from([(0, 0, 0)]);
     while let Some((number, by, before)) = open.pop_front() {
-        let Line { born, items, .. } = &mut lines[number];
+        let FractalPart { born, items, .. } = &mut lines[number];
         let mut chain = Chain::default();
         let mut seeds = Vec::new();
         for item in std::mem::take(items) {
             match item {
-                Item::Node(_) => {}
-                Item::Root(found) => rooted.add(*found, window, &mut chain)?,
-                Item::Seed(seed) if shows[seed] => seeds.push((seed, rooted.position())),
-                Item::Seed(_) => {}
+                FractalItem::Node(_) => {}
+                FractalItem::Root(found) => rooted.add(*found, window, &mut chain)?,
+                FractalItem::Seed(seed) if shows[seed] => seeds.push((seed, rooted.position())),
+                FractalItem::Seed(_) => {}
             }
         }
         let born = *born;
@@ -92,14 +92,14 @@ impl Rooted {
     /// Adds a root to a chain.
     fn add(
         &mut self,
-        found: Found,
+        found: FoundRoot,
         window: &ZoomWindow,
         chain: &mut Chain,
     ) -> Result<(), ZoomError> {
         let parts = match found.drawn {
-            Drawn::Object => vec![(found.frame, None)],
-            Drawn::Clipped(outline) => vec![(found.frame, Some(outline))],
-            Drawn::Around(path) => {
+            RootDrawing::Object => vec![(found.frame, None)],
+            RootDrawing::Clipped(outline) => vec![(found.frame, Some(outline))],
+            RootDrawing::Around(path) => {
                 let ways = path.ways().into_iter();
                 ways.map(|way| (way.frame, Some(way.outline))).collect()
             }

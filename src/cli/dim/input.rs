@@ -77,16 +77,16 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
         Ok(bytes)
     };
     let head = read(&mut input, 1 << 12)?;
-    let kind = Kind::of(path, &head);
+    let kind = InputKind::of(path, &head);
     let mut whole = Cursor::new(head).chain(input);
     match kind {
-        Kind::Picture => {
+        InputKind::Picture => {
             let bytes = read(&mut whole, MAX_BYTES)?;
             let picture = Raster::read(&bytes, arguments.channel);
             drop(bytes);
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
         }
-        Kind::Table => {
+        InputKind::Table => {
             let columns = arguments.columns.as_ref().map(|columns| &columns.0[..]);
             let points = read_points(&mut whole, columns);
             let points = points.map_err(|error| match error {
@@ -98,12 +98,12 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
                 Table::Space(points) => of_points::<DAffine3>(arguments, &name, points),
             }
         }
-        Kind::Ply => {
+        InputKind::Ply => {
             let points = read_ply(io::BufReader::with_capacity(1 << 16, &mut whole));
             let points = points.map_err(|error: PlyError| anyhow!("{name}: {error}"))?;
             of_points::<DAffine3>(arguments, &name, points)
         }
-        Kind::Rule => {
+        InputKind::Rule => {
             let most = u64::try_from(Source::MAX_BYTES).unwrap_or(u64::MAX) + 1;
             let bytes = read(&mut whole, most)?;
             let source = if is_standard {
@@ -119,14 +119,14 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
 
 /// Kind of an input file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum InputKind {
     Rule,
     Picture,
     Table,
     Ply,
 }
 
-impl Kind {
+impl InputKind {
     /// Recognises a file by its first bytes, or else by its name: the first line of a table has a comma and
     /// is no YAML.
     fn of(path: &Path, head: &[u8]) -> Self {
@@ -230,7 +230,7 @@ fn of_slice(
         let (orders, grids) = (&arguments.orders, Grid::spread(arguments.grids));
         let counted = measured.counting.estimate;
         let spectrum = Generalised::of_pixels(&squares, counted, orders, &grids, threads);
-        measured.tell(spectrum.into_iter().map(|it| it.enlarged(side)).collect());
+        measured.report(spectrum.into_iter().map(|it| it.enlarged(side)).collect());
         measured.measure = Some("squares");
         let lacunarity = Masses::of_pixels(&squares, [0; 2]).lacunarity().into_iter();
         measured.lacunarity = lacunarity.map(|it| it.enlarged(side)).collect();
@@ -258,7 +258,7 @@ where
         }
         return measured;
     }
-    measured.tell_measure(arguments, weighted, graph);
+    measured.report_measure(arguments, weighted, graph);
     let mut masses = M::FINENESS.iter();
     let masses = masses.find_map(|&boxes| Masses::of_limit(set, &Grid::ALONG, boxes));
     measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
@@ -345,7 +345,7 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Meas
     let orders = &arguments.orders;
     let counted = measured.counting.estimate;
     let spectrum = Generalised::of_pixels(&pixels, counted, orders, &grids, threads);
-    measured.tell(spectrum);
+    measured.report(spectrum);
     Ok(measured)
 }
 
@@ -401,7 +401,7 @@ impl Measured {
     }
 
     /// Sets the spectrum. For order 0, the result of box counting is used.
-    fn tell(&mut self, spectrum: Vec<Generalised>) {
+    fn report(&mut self, spectrum: Vec<Generalised>) {
         let formatted = |it: Generalised| match it.order {
             0.0 => Generalised::of_boxes(&self.counting),
             _ => it,
@@ -412,7 +412,7 @@ impl Measured {
 
     /// Sets the spectrum of the measure on the limit set of a rule: the measure given by the weights of a
     /// system, or else the natural one.
-    fn tell_measure<M: Space + AffineMap>(
+    fn report_measure<M: Space + AffineMap>(
         &mut self,
         arguments: &Arguments,
         ifs: Option<&Ifs<M>>,
@@ -459,7 +459,7 @@ impl Measured {
     ) {
         let sample = points.sample(base, &Grid::spread(arguments.grids), arguments.threads());
         self.counting = BoxCounting::of_sample(&sample, finest);
-        self.tell(Generalised::of_sample(&sample, &arguments.orders, finest));
+        self.report(Generalised::of_sample(&sample, &arguments.orders, finest));
         self.lacunarity = Masses::of_points(points).lacunarity();
     }
 }

@@ -181,8 +181,8 @@ impl ChaosArguments {
 
 /// Returns the property that colours points: as requested, or as in the file where points have it. A file
 /// that colours by step is coloured by hits, because points have no step.
-fn color_by(picture: &PictureArguments, heading: &Metadata) -> Result<ColorBy, Failure> {
-    let color_by = picture.style(heading).color_by;
+fn color_by(picture: &PictureArguments, metadata: &Metadata) -> Result<ColorBy, Failure> {
+    let color_by = picture.style(metadata).color_by;
     match (color_by, picture.asked_color_by()) {
         (ColorBy::None | ColorBy::Hits | ColorBy::FirstMap | ColorBy::LastMap, _) => Ok(color_by),
         (_, None) => Ok(ColorBy::Hits),

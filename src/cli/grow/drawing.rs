@@ -15,7 +15,7 @@ use super::super::labels::labels;
 use super::super::length::Paper;
 use super::super::rule::Loaded;
 use super::super::{Failure, growth, length, light, output, readable, text};
-use super::plan::Shown;
+use super::plan::ShownPart;
 use super::{Arguments, plot, svg, zoom};
 
 /// Seconds that one core of 2026 takes to draw a pixel in a band, within a factor of about 3.
@@ -26,7 +26,7 @@ pub(super) struct Drawing<'a> {
     arguments: &'a Arguments,
     loaded: Loaded,
     format: Format,
-    shown: Shown,
+    shown: ShownPart,
     goal: Goal,
     path: &'a Path,
 }
@@ -37,24 +37,24 @@ impl<'a> Drawing<'a> {
         arguments: &'a Arguments,
         loaded: Loaded,
         format: Format,
-        shown: Shown,
+        shown: ShownPart,
         path: &'a Path,
     ) -> Result<Self, Failure> {
         let loaded = loaded.grown(&arguments.growth);
         let (steps, detail) = (arguments.steps, arguments.detail);
         let (loaded, goal) = match shown {
-            Shown::Zoom(_) => {
+            ShownPart::Zoom(_) => {
                 check_model(&loaded.model).map_err(|error| output::explain(error.into(), path))?;
                 // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates
                 // of the file.
                 let loaded = loaded.within(Homothety::IDENTITY);
                 (loaded, Goal::zoomed(steps, detail))
             }
-            Shown::Nested => {
+            ShownPart::Nested => {
                 let goal = Goal::whole(steps, &loaded)?;
                 (loaded, goal)
             }
-            Shown::Window => {
+            ShownPart::Window => {
                 let goal = Goal::asked(steps, detail, &loaded)?;
                 (loaded, goal)
             }
@@ -85,7 +85,7 @@ impl<'a> Drawing<'a> {
         if let Goal::Steps(steps, None) = *goal
             && !is_light
             && options.view.window.is_none()
-            && matches!(self.shown, Shown::Window)
+            && matches!(self.shown, ShownPart::Window)
         {
             (arguments.growth).check_picture(steps, &graph, loaded, &options)?;
         }
@@ -137,7 +137,7 @@ impl<'a> Drawing<'a> {
                 let mut growth = growth.drawn_as(&options, steps, progress);
                 growth.max_elements = most.unwrap_or(growth.max_elements);
                 match &self.shown {
-                    Shown::Zoom(target) => {
+                    ShownPart::Zoom(target) => {
                         let model = &self.loaded.model;
                         render::write_zoomed(model, graph, &growth, &options, target, &mut out)
                     }
@@ -156,7 +156,7 @@ impl<'a> Drawing<'a> {
     ) -> Result<(Picture, Goal), Failure> {
         let explain = |error| (self.arguments.growth).explain(error, &self.loaded, self.path);
         let options = self.options(self.goal, graph.place());
-        let is_zoomed = matches!(self.shown, Shown::Zoom(_));
+        let is_zoomed = matches!(self.shown, ShownPart::Zoom(_));
         let is_part = is_zoomed || options.view.window.is_some();
         let color_by = options.style.color_by;
         let by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);
@@ -202,7 +202,7 @@ impl<'a> Drawing<'a> {
     /// drawn for which the command line does not ask for a `color_by`.
     fn lacks_numbers(&self, style: &Style) -> bool {
         matches!(style.color_by, ColorBy::Index | ColorBy::Fractal)
-            && matches!(self.shown, Shown::Zoom(_))
+            && matches!(self.shown, ShownPart::Zoom(_))
             && self.arguments.picture.asked_color_by().is_none()
     }
 
@@ -295,7 +295,7 @@ impl<'a> Drawing<'a> {
             unit,
             plot: plot.is_asked(),
             pens: plot.pens(picture),
-            instanced: matches!(self.shown, Shown::Nested),
+            instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),
             detail: goal.detail_in(unit),
             labels: labels(&self.loaded, &goal.described(), "grow", options),

@@ -17,7 +17,7 @@ pub(super) enum Plan {
     /// Picture of elements.
     Picture {
         format: render::Format,
-        shown: Shown,
+        shown: ShownPart,
         /// Whether the size is limited to one that browsers show at once: an SVG for which no depth is given.
         is_light: bool,
     },
@@ -30,7 +30,7 @@ pub(super) enum Plan {
 }
 
 /// Part of a set that a picture of elements shows.
-pub(super) enum Shown {
+pub(super) enum ShownPart {
     /// Elements in the window, or all of them.
     Window,
     /// All elements of a step, as nested instances.
@@ -215,7 +215,7 @@ impl Plan {
             "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
         )?;
         let gives_depth =
-            arguments.steps.is_some() || has_detail || arguments.growth.says_most_elements();
+            arguments.steps.is_some() || has_detail || arguments.growth.gives_max_elements();
         Ok(match format {
             Format::Table(format) => Self::Table(format),
             Format::Scene(format) => Self::Scene(format),
@@ -223,9 +223,9 @@ impl Plan {
                 format,
                 is_light: format == render::Format::Svg && !gives_depth && !is_nested,
                 shown: match target {
-                    Some(target) => Shown::Zoom(target),
-                    None if is_nested => Shown::Nested,
-                    None => Shown::Window,
+                    Some(target) => ShownPart::Zoom(target),
+                    None if is_nested => ShownPart::Nested,
+                    None => ShownPart::Window,
                 },
             },
         })

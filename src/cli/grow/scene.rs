@@ -51,12 +51,12 @@ pub(super) fn write(
     } = arguments;
     let name = &loaded.name;
     let extension = Format::Scene(format).name();
-    let heading = loaded.model.metadata();
-    let Some(steps) = arguments.steps.or(heading.steps) else {
+    let metadata = loaded.model.metadata();
+    let Some(steps) = arguments.steps.or(metadata.steps) else {
         let message = format!("a .{extension} holds the elements of a step: give --steps");
         return Err(Failure::Usage(message));
     };
-    let style = picture.style(heading);
+    let style = picture.style(metadata);
     let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
     let graph = drawn.graph;
     let levels = drawn.steps.unwrap_or(steps);
@@ -64,7 +64,7 @@ pub(super) fn write(
     let all = own.into_iter().chain(picture.options());
     let options = render::Options {
         style,
-        view: picture.view(heading),
+        view: picture.view(metadata),
         size: arguments.size.size,
         unit: arguments.size.unit,
         threads: growth.threads(),

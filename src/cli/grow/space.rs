@@ -25,8 +25,8 @@ pub(super) fn draw(
     let extension = check(arguments, loaded, plan)?;
     let default = arguments.rule.file("", extension);
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let heading = loaded.model.metadata();
-    let style = arguments.picture.style(heading);
+    let metadata = loaded.model.metadata();
+    let style = arguments.picture.style(metadata);
     if let Plan::Table(format) = *plan {
         let graph = loaded.in_space(arguments.steps)?;
         let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
@@ -42,11 +42,11 @@ pub(super) fn draw(
     };
     let steps = arguments
         .steps
-        .or(heading.steps.filter(|_| arguments.detail.is_none()));
+        .or(metadata.steps.filter(|_| arguments.detail.is_none()));
     let options = render::Options {
         format: render::Format::Png,
         style,
-        view: arguments.picture.view(heading),
+        view: arguments.picture.view(metadata),
         size: arguments.size.size,
         detail: arguments.detail.map(|pixels| Detail {
             pixels,
@@ -57,7 +57,7 @@ pub(super) fn draw(
             loaded,
             &{ game.as_ref() }.map_or_else(|| described(arguments, steps), SpaceGame::described),
             "grow",
-            told(arguments, game.as_ref()),
+            options(arguments, game.as_ref()),
         ),
         ..render::Options::default()
     };
@@ -154,7 +154,7 @@ fn described(arguments: &Arguments, steps: Option<u32>) -> String {
 }
 
 /// Returns the options of the picture, with their values.
-fn told(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static str, String)> {
+fn options(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static str, String)> {
     let mut options: Vec<(&'static str, String)> = Vec::new();
     match game {
         Some(game) => options.extend(game.options()),

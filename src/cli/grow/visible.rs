@@ -47,8 +47,8 @@ pub(super) fn draw(
             return Err(Failure::Usage(message));
         }
     }
-    let heading = loaded.model.metadata();
-    let style = picture.style_in(heading, size.unit);
+    let metadata = loaded.model.metadata();
+    let style = picture.style_in(metadata, size.unit);
     let graph = loaded.in_space(arguments.steps)?;
     let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
     let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
@@ -68,7 +68,7 @@ pub(super) fn draw(
     let options = render::Options {
         format,
         style,
-        view: picture.view_in(heading, size.unit),
+        view: picture.view_in(metadata, size.unit),
         size: size.size,
         unit: size.unit,
         plot: plot.is_asked(),

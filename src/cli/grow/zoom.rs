@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::render::{Empty, Nearest, ZoomTarget};
+use crate::render::{Empty, NearestPoint, ZoomTarget};
 use crate::zoom::{Address, Factor};
 
 use super::super::{Failure, readable};
@@ -69,7 +69,7 @@ pub(super) fn nothing(name: &str, empty: &Empty) -> String {
         }
     };
     let mut text = format!("note: no part of {name} lies within the window");
-    if let Some(Nearest { distance, factor }) = empty.nearest {
+    if let Some(NearestPoint { distance, factor }) = empty.nearest {
         let _ = write!(
             text,
             "; the nearest part is about {} from the centre",

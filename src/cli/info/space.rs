@@ -24,15 +24,15 @@ pub(super) fn info<'a>(loaded: &'a Loaded, graph: &Graph<Frame3>, steps: u32) ->
         let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         Some(all?.into_iter().map(finite).collect())
     };
-    let heading = loaded.model.metadata();
+    let metadata = loaded.model.metadata();
     let similarity = similarity_dimension(graph);
     let exact = dimensions_of_graph_within(graph, Effort::Quick).dimensions;
     Info {
         name: &loaded.name,
         kind: loaded.model.kind().name(),
         space: 3,
-        title: heading.description.title.as_deref(),
-        params: { heading.parameters.iter() }
+        title: metadata.description.title.as_deref(),
+        params: { metadata.parameters.iter() }
             .map(|parameter| (parameter.name.clone(), number(parameter.value)))
             .collect(),
         random: graph.draws(),

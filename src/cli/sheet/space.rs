@@ -15,7 +15,7 @@ use crate::style::Named;
 use super::super::labels::labels;
 use super::super::rule::Member;
 use super::super::{Failure, format, output, readable, steps};
-use super::{Arguments, Drawn, caption};
+use super::{Arguments, DrawnSheet, caption};
 
 impl Arguments {
     /// Draws every step of every member of a family from every direction.
@@ -71,7 +71,7 @@ impl Arguments {
             write_in_space(&cells, self.columns, &options, None, &mut out)
                 .map_err(|error| output::explain(error, path))
         })?;
-        let drawn = Drawn {
+        let drawn = DrawnSheet {
             written,
             cells: cells.len(),
             step: all.iter().flatten().copied().max().unwrap_or_default(),
@@ -85,7 +85,7 @@ impl Arguments {
 
     fn options_in_space(&self, family: &[Member], all: &[Option<u32>]) -> render::Options {
         let (swept, first) = &family[0];
-        let heading = first.model.metadata();
+        let metadata = first.model.metadata();
         let swept = swept.iter().enumerate().map(|(number, setting)| {
             let values = family.iter().map(|(all, _)| all[number].value.to_string());
             let values: Vec<_> = values.collect();
@@ -102,8 +102,8 @@ impl Arguments {
         options.extend(self.space.options());
         render::Options {
             format: Format::Png,
-            style: self.picture.style(heading),
-            view: self.picture.view(heading),
+            style: self.picture.style(metadata),
+            view: self.picture.view(metadata),
             size: self.size,
             threads: self.growth.threads(),
             labels: labels(first, "A sheet", "sheet", options),

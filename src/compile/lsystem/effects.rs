@@ -9,19 +9,19 @@ use crate::lsystem::{Action, Compass, LSystem};
 use super::NotCompiled;
 use super::far::Far;
 use super::kinds::{Kinds, MAX_CLOSED, MAX_KINDS};
-use super::long::Ways;
+use super::long::Displacements;
 use super::reader::Reader;
-use super::state::{Look, Pose, State};
+use super::state::{Pose, StrokeAttributes, TurtleState};
 
 /// Effect of a module that is derived for some steps, relative to the state of the turtle before it.
 #[derive(Clone, Debug)]
 pub(super) struct Effect {
     /// State of the turtle after it.
-    pub(super) state: State,
+    pub(super) state: TurtleState,
     /// Whether the pen is up after it, or was lifted at all if nothing is drawn.
     pub(super) lifts: bool,
     /// Extent and appearance of its drawing, if it draws.
-    pub(super) drawn: Option<Drawn>,
+    pub(super) drawn: Option<ModuleDrawing>,
     /// Whether the effect is independent of draws. Otherwise it bounds the effects of all draws.
     pub(super) is_exact: bool,
     /// Whether it is certain to draw something, if it can.
@@ -32,7 +32,7 @@ pub(super) struct Effect {
 
 /// Extent and appearance of a module's drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct ModuleDrawing {
     /// Bound on the distance of the drawing from the start.
     pub(super) reach: Far,
     /// Nominal length: the distance by which it moves the turtle, but at least a fixed share of `reach`.
@@ -40,15 +40,15 @@ pub(super) struct Drawn {
     /// Position of the part that may reach farthest.
     pub(super) tip: Far,
     /// Attributes of the first line.
-    pub(super) first: Look,
+    pub(super) first: StrokeAttributes,
     /// Attributes of the last line.
-    pub(super) last: Look,
+    pub(super) last: StrokeAttributes,
 }
 
 /// Least nominal length, as a share of the reach.
 const SHARE: f64 = 0.25;
 
-impl Drawn {
+impl ModuleDrawing {
     /// Returns the nominal length if the turtle is moved to a pose.
     pub(super) fn size_of(&self, pose: &Pose) -> Far {
         self.reach.times(SHARE).longer(pose.away())
@@ -95,7 +95,7 @@ impl Effects {
         };
         let mut bits = None;
         loop {
-            let mut ways = Ways::new(effects.compass, bits);
+            let mut ways = Displacements::new(effects.compass, bits);
             effects.levels.clear();
             for left in 1..=steps {
                 let known: Result<Vec<_>, _> = (0..effects.kinds.all.len())
@@ -120,7 +120,7 @@ impl Effects {
             return Ok(None);
         }
         let effects = of.alternatives.iter().map(|alternative| {
-            let mut reader = Reader::new(self, State::SAME, false);
+            let mut reader = Reader::new(self, TurtleState::SAME, false);
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             reader.effect()
         });
@@ -143,11 +143,11 @@ impl Effects {
             return Ok(Cow::Borrowed(known));
         }
         let of = &self.kinds.all[kind];
-        let mut reader = Reader::new(self, State::SAME, true);
+        let mut reader = Reader::new(self, TurtleState::SAME, true);
         reader.read(&of.alternatives[of.drawn(path)].word, left - 1, path)?;
         let mut effect = reader.effect()?;
         // The nominal length must be independent of the path.
-        effect.drawn = effect.drawn.map(|drawn| Drawn {
+        effect.drawn = effect.drawn.map(|drawn| ModuleDrawing {
             reach: known.drawn.map_or(drawn.reach, |drawn| drawn.reach),
             size: known.drawn.map_or(drawn.size, |drawn| drawn.size),
             ..drawn
@@ -169,7 +169,7 @@ impl Effects {
     }
 
     /// Returns the drawing of a kind with `left` steps left.
-    pub(super) fn drawn_by(&self, kind: usize, left: u32) -> Result<Drawn, NotCompiled> {
+    pub(super) fn drawn_by(&self, kind: usize, left: u32) -> Result<ModuleDrawing, NotCompiled> {
         self.of(kind, left)?.drawn.ok_or(NotCompiled)
     }
 
@@ -192,7 +192,7 @@ impl Effect {
         for other in others {
             let (a, b) = (&mut any.state, &other.state);
             // The objects of later modules must not depend on draws.
-            if a.look != b.look || a.pose.scale != b.pose.scale {
+            if a.attributes != b.attributes || a.pose.scale != b.pose.scale {
                 return Err(NotCompiled);
             }
             let way = a.pose.away().longer(b.pose.away());
@@ -202,7 +202,7 @@ impl Effect {
             any.is_sure &= other.is_sure && any.drawn.is_some() == other.drawn.is_some();
             any.work = any.work.max(other.work);
             any.drawn = match (any.drawn, other.drawn) {
-                (Some(a), Some(b)) => Some(Drawn {
+                (Some(a), Some(b)) => Some(ModuleDrawing {
                     reach: a.reach.longer(b.reach),
                     size: a.size.longer(b.size),
                     ..a

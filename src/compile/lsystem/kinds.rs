@@ -18,7 +18,7 @@ const MAX_MODULES: usize = 1 << 18;
 
 /// Module with its arguments.
 #[derive(Debug)]
-pub(super) struct Kind {
+pub(super) struct ModuleKind {
     pub(super) symbol: usize,
     pub(super) arguments: Vec<f64>,
     /// Words of which one replaces it; empty if it is not replaced.
@@ -39,14 +39,14 @@ pub(super) struct Alternative {
 /// arguments of their predecessors.
 #[derive(Debug)]
 pub(super) struct Kinds {
-    pub(super) all: Vec<Kind>,
+    pub(super) all: Vec<ModuleKind>,
     pub(super) axiom: Vec<usize>,
 }
 
-struct Finder<'s> {
+struct KindFinder<'s> {
     system: &'s LSystem,
     most: usize,
-    all: Vec<Kind>,
+    all: Vec<ModuleKind>,
     numbers: BTreeMap<(usize, Vec<u64>), usize>,
     modules: usize,
 }
@@ -56,7 +56,7 @@ impl Kinds {
         if !system.is_context_free() || system.depends_on_the_way() {
             return Err(NotCompiled);
         }
-        let mut finder = Finder {
+        let mut finder = KindFinder {
             system,
             most,
             all: Vec::new(),
@@ -81,7 +81,7 @@ impl Kinds {
     }
 }
 
-impl Finder<'_> {
+impl KindFinder<'_> {
     fn kind(&mut self, symbol: usize, arguments: &[f64], born: u32) -> Result<usize, NotCompiled> {
         if !arguments.iter().all(|value| value.is_finite()) {
             return Err(NotCompiled);
@@ -91,7 +91,7 @@ impl Finder<'_> {
         let number = *self.numbers.entry((symbol, bits)).or_insert(made);
         self.modules += 1;
         if number == made {
-            self.all.push(Kind {
+            self.all.push(ModuleKind {
                 symbol,
                 arguments: arguments.to_vec(),
                 alternatives: Vec::new(),
@@ -108,7 +108,7 @@ impl Finder<'_> {
     /// weight, those of all applicable productions with weights.
     fn alternatives(&mut self, number: usize) -> Result<Vec<Alternative>, NotCompiled> {
         let system = self.system;
-        let Kind { symbol, born, .. } = self.all[number];
+        let ModuleKind { symbol, born, .. } = self.all[number];
         let arguments = self.all[number].arguments.clone();
         let all = system.symbols()[symbol].productions.iter();
         let mut fitting = all.filter(|&&number| {
@@ -154,7 +154,7 @@ impl Finder<'_> {
     }
 }
 
-impl Kind {
+impl ModuleKind {
     /// Returns whether the kind is replaced.
     pub(super) fn is_fertile(&self) -> bool {
         !self.alternatives.is_empty()

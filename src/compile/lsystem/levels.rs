@@ -8,11 +8,11 @@ use crate::geometry::{DVec2, Frame2};
 use crate::rule::{BaseElement, Piece};
 
 use super::NotCompiled;
-use super::effects::{Drawn, Effects};
+use super::effects::{Effects, ModuleDrawing};
 use super::far::Far;
 use super::paint::Paint;
-use super::reader::{Of, Part, Reader};
-use super::state::{Look, State};
+use super::reader::{DrawnPart, Of, Reader};
+use super::state::{StrokeAttributes, TurtleState};
 use super::words::{Words, Written};
 use crate::graph::{Alternative, Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::rule::Extent;
@@ -29,7 +29,7 @@ const FARTHEST: f64 = 1e150;
 
 /// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Key {
+struct ObjectKey {
     of: Master,
     paint: Paint,
 }
@@ -50,9 +50,9 @@ struct Leveller<'e> {
     base_elements: Vec<BaseElement>,
     outlines: BTreeMap<Vec<[u64; 2]>, usize>,
     /// Numbers of the objects that are replaced, and of all others.
-    numbers: [BTreeMap<Key, usize>; 2],
+    numbers: [BTreeMap<ObjectKey, usize>; 2],
     /// Identities of both, in the order of their numbers.
-    keys: [Vec<Key>; 2],
+    keys: [Vec<ObjectKey>; 2],
     /// Replacements of kinds, by the number of steps left and by colour.
     productions: BTreeMap<(usize, u32, i64), Made>,
     written: Vec<Written>,
@@ -118,9 +118,9 @@ impl Leveller<'_> {
     /// Returns the chain of the axiom with `left` steps left.
     fn initiator(&mut self, left: u32) -> Result<Chain, NotCompiled> {
         let effects = self.effects;
-        let mut start = State {
-            look: Look::START,
-            ..State::SAME
+        let mut start = TurtleState {
+            attributes: StrokeAttributes::START,
+            ..TurtleState::SAME
         };
         let compass = effects.compass;
         start.pose.heading = compass.of_degrees(effects.system.start());
@@ -134,7 +134,11 @@ impl Leveller<'_> {
             return Err(NotCompiled);
         }
         let unit = match effect.drawn {
-            Some(Drawn { reach, .. }) if reach.longer(Far::of_length(FARTHEST)) == reach => reach,
+            Some(ModuleDrawing { reach, .. })
+                if reach.longer(Far::of_length(FARTHEST)) == reach =>
+            {
+                reach
+            }
             _ => Far::of_length(1.0),
         };
         let instances = self.instances(&reader.parts, left, unit, 0)?;
@@ -148,7 +152,7 @@ impl Leveller<'_> {
         let is_exact = effects.of(kind, left)?.is_exact;
         let mut words = Vec::new();
         for alternative in &effects.kinds.all[kind].alternatives {
-            let mut reader = Reader::new(effects, State::SAME, false);
+            let mut reader = Reader::new(effects, TurtleState::SAME, false);
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             let instances = self.instances(&reader.parts, left - 1, unit, colour)?;
             if is_exact {
@@ -160,7 +164,7 @@ impl Leveller<'_> {
                 return Ok(Made::Fixed(body.into()));
             }
             let placed = reader.parts.iter().zip(&instances);
-            let extent = |(part, instance): (&Part, &Instance)| Extent {
+            let extent = |(part, instance): (&DrawnPart, &Instance)| Extent {
                 away: part.pose.away().over(unit).x,
                 length: instance.length,
             };
@@ -181,7 +185,7 @@ impl Leveller<'_> {
 
     fn instances(
         &mut self,
-        parts: &[Part],
+        parts: &[DrawnPart],
         left: u32,
         unit: Far,
         colour: i64,
@@ -194,7 +198,7 @@ impl Leveller<'_> {
 
     fn instance(
         &mut self,
-        part: &Part,
+        part: &DrawnPart,
         left: u32,
         unit: Far,
         colour: i64,
@@ -208,8 +212,8 @@ impl Leveller<'_> {
             }
         };
         let frame: Frame2 = part.pose.frame(self.effects.compass, steps, unit);
-        let paint = Paint::of(&self.effects.system, part.look, colour);
-        let object = self.object(Key { of, paint })?;
+        let paint = Paint::of(&self.effects.system, part.attributes, colour);
+        let object = self.object(ObjectKey { of, paint })?;
         Ok(Instance {
             joined: part.joined,
             ..Instance::new(object, frame, part.position)
@@ -217,7 +221,7 @@ impl Leveller<'_> {
     }
 
     /// Returns the number of an object, which is created if it is new.
-    fn object(&mut self, key: Key) -> Result<usize, NotCompiled> {
+    fn object(&mut self, key: ObjectKey) -> Result<usize, NotCompiled> {
         let (shelf, first) = match key.of {
             Master::Subtree(..) => (0, 0),
             Master::Step(_) | Master::Polygon(_) => (1, LEAVES),
@@ -276,7 +280,7 @@ impl Leveller<'_> {
         };
         let replacements: BTreeMap<_, _> =
             made.map(|(key, made)| (key, replacement(made))).collect();
-        let keys: Vec<Key> = self.keys.concat();
+        let keys: Vec<ObjectKey> = self.keys.concat();
         let system = &*self.effects.system;
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());

@@ -15,7 +15,7 @@ use crate::lsystem::{Action, Compass};
 
 use super::effects::{Effect, Effects};
 use super::far::Far;
-use super::state::{Pose, State};
+use super::state::{Pose, TurtleState};
 
 /// Limit of the number of bits that a double may lose.
 const MAX_LOST: i32 = 20;
@@ -28,7 +28,7 @@ pub(super) type Vector = [IBig; 2];
 
 /// Displacement of a kind after some steps.
 #[derive(Clone)]
-struct Way {
+struct Displacement {
     /// Sum, in multiples of 2^-bits.
     place: Vector,
     /// Sum of the lengths of the displacements that are added.
@@ -40,37 +40,37 @@ struct Way {
 /// Turtle with its displacement.
 struct Turtle {
     pose: Pose,
-    way: Way,
-    saved: Vec<(Pose, Way)>,
+    displacement: Displacement,
+    saved: Vec<(Pose, Displacement)>,
 }
 
 impl Turtle {
     fn new(pose: Pose) -> Self {
-        let way = Way {
+        let displacement = Displacement {
             place: [IBig::ZERO, IBig::ZERO],
             sum: Far::ZERO,
             rounded: Far::ZERO,
         };
         Self {
             pose,
-            way,
+            displacement,
             saved: Vec::new(),
         }
     }
 }
 
 /// Displacements of all kinds for the number of steps that has been processed.
-pub(super) struct Ways {
+pub(super) struct Displacements {
     compass: Compass,
     /// Precision of the sums; `None` if doubles suffice.
     precision: Option<Precision>,
     directions: BTreeMap<u64, Vector>,
-    known: Vec<Option<Way>>,
+    known: Vec<Option<Displacement>>,
     /// Number of bits lost, of doubles and of big integers.
     lost: [i32; 2],
 }
 
-impl Ways {
+impl Displacements {
     /// Creates the displacements for no steps; `bits` is the precision of the sums, if they are not
     /// doubles.
     pub(super) fn new(compass: Compass, bits: Option<usize>) -> Self {
@@ -102,35 +102,35 @@ impl Ways {
         for (kind, effect) in level.iter_mut().enumerate() {
             let exact = effect.as_mut().filter(|effect| effect.is_exact);
             next.push(exact.and_then(|effect| {
-                let way = self.follow(effects, kind, left)?;
-                self.mend(effect, &way);
-                Some(way)
+                let displacement = self.follow(effects, kind, left)?;
+                self.correct(effect, &displacement);
+                Some(displacement)
             }));
         }
         self.known = next;
     }
 
-    fn mend(&mut self, effect: &mut Effect, way: &Way) {
+    fn correct(&mut self, effect: &mut Effect, displacement: &Displacement) {
         if let Some(precision) = &self.precision {
-            effect.state.pose.place = Far::of_long(&way.place, precision.bits());
+            effect.state.pose.place = Far::of_long(&displacement.place, precision.bits());
         }
         let Some(drawn) = &mut effect.drawn else {
             return;
         };
         drawn.size = drawn.size_of(&effect.state.pose);
-        let longest = way.sum.plus(way.rounded);
-        for (lost, sum) in self.lost.iter_mut().zip([way.sum, longest]) {
+        let longest = displacement.sum.plus(displacement.rounded);
+        for (lost, sum) in self.lost.iter_mut().zip([displacement.sum, longest]) {
             *lost = (*lost).max(sum.bits_beyond(drawn.reach));
         }
     }
 
     /// Returns the displacement of the successor of a kind; `None` unless the kind has exactly one
     /// successor.
-    fn follow(&mut self, effects: &Effects, kind: usize, left: u32) -> Option<Way> {
+    fn follow(&mut self, effects: &Effects, kind: usize, left: u32) -> Option<Displacement> {
         let [only] = effects.kinds.all[kind].alternatives.as_slice() else {
             return None;
         };
-        let mut turtle = Turtle::new(State::SAME.pose);
+        let mut turtle = Turtle::new(TurtleState::SAME.pose);
         for &kind in &only.word {
             let of = &effects.kinds.all[kind];
             if left > 1 && of.is_fertile() {
@@ -144,7 +144,7 @@ impl Ways {
                 self.act(&mut turtle, action, &of.arguments)?;
             }
         }
-        Some(turtle.way)
+        Some(turtle.displacement)
     }
 
     /// Returns the ends of the lines that a word draws from a pose without being replaced, and its
@@ -160,14 +160,14 @@ impl Ways {
         for &kind in word {
             let of = &effects.kinds.all[kind];
             for action in &effects.system.symbols()[of.symbol].meaning {
-                let from = turtle.way.place.clone();
+                let from = turtle.displacement.place.clone();
                 self.act(&mut turtle, action, &of.arguments)?;
-                if matches!(action, Action::Draw(_)) && turtle.way.place != from {
-                    lines.push([from, turtle.way.place.clone()]);
+                if matches!(action, Action::Draw(_)) && turtle.displacement.place != from {
+                    lines.push([from, turtle.displacement.place.clone()]);
                 }
             }
         }
-        Some((lines, turtle.way.place))
+        Some((lines, turtle.displacement.place))
     }
 
     /// Applies an action, as far as it affects the position of the turtle.
@@ -181,8 +181,10 @@ impl Ways {
                 let turn = self.compass.of_degrees(angle.eval(arguments));
                 turtle.pose.turn(self.compass, turn);
             }
-            Action::Push => turtle.saved.push((turtle.pose, turtle.way.clone())),
-            Action::Pop => (turtle.pose, turtle.way) = turtle.saved.pop()?,
+            Action::Push => turtle
+                .saved
+                .push((turtle.pose, turtle.displacement.clone())),
+            Action::Pop => (turtle.pose, turtle.displacement) = turtle.saved.pop()?,
             Action::Reflect => turtle.pose.mirrored ^= true,
             Action::Scale(factor) => turtle.pose.scale *= factor.eval(arguments),
             _ => {}
@@ -191,10 +193,10 @@ impl Ways {
     }
 
     /// Returns the displacement of some steps ahead.
-    fn step(&self, steps: f64) -> Way {
+    fn step(&self, steps: f64) -> Displacement {
         let bits = self.precision.as_ref().map_or(0, Precision::bits);
         let length = Far::of_length(steps);
-        Way {
+        Displacement {
             place: [times(&(IBig::ONE << bits), steps), IBig::ZERO],
             sum: length,
             rounded: Far::of_length(1.0),
@@ -202,11 +204,17 @@ impl Ways {
     }
 
     /// Adds a displacement, relative to the current pose.
-    fn go(&mut self, Turtle { pose, way, .. }: &mut Turtle, next: &Way) {
+    fn go(
+        &mut self,
+        Turtle {
+            pose, displacement, ..
+        }: &mut Turtle,
+        next: &Displacement,
+    ) {
         let scaled = |far: Far| far.times(pose.scale).length();
-        way.sum = way.sum.plus(scaled(next.sum));
+        displacement.sum = displacement.sum.plus(scaled(next.sum));
         let rounded = scaled(next.rounded).plus(Far::of_length(1.0));
-        way.rounded = way.rounded.plus(rounded);
+        displacement.rounded = displacement.rounded.plus(rounded);
         let Some(precision) = &mut self.precision else {
             return;
         };
@@ -218,7 +226,7 @@ impl Ways {
         let [x, y] = &next.place;
         let y = if pose.mirrored { -y } else { y.clone() };
         let turned = [x * cosine - &y * sine, x * sine + y * cosine];
-        for (sum, along) in way.place.iter_mut().zip(turned) {
+        for (sum, along) in displacement.place.iter_mut().zip(turned) {
             *sum += times(&(along >> bits), pose.scale);
         }
     }

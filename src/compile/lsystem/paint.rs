@@ -4,7 +4,7 @@ use crate::graph::Object;
 use crate::instancing::Thickness;
 use crate::lsystem::LSystem;
 
-use super::state::Look;
+use super::state::StrokeAttributes;
 
 /// Colour of an object, and its change of stroke widths or a width that is set.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,9 +15,9 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    /// Returns the paint of an object with the stroke attributes `look` relative to an earlier colour.
-    pub(super) fn of(system: &LSystem, look: Look, earlier: i64) -> Self {
-        let (width, sets) = match look.width {
+    /// Returns the paint of an object with stroke attributes relative to an earlier colour.
+    pub(super) fn of(system: &LSystem, attributes: StrokeAttributes, earlier: i64) -> Self {
+        let (width, sets) = match attributes.width {
             Thickness::Times(width) => (width, false),
             Thickness::Set(width) => (width, true),
         };
@@ -25,7 +25,7 @@ impl Paint {
         if system.has_colours() {
             let colours = system.metadata().style.palette.entries();
             let colours = i64::try_from(colours).unwrap_or(i64::MAX);
-            colour = look.colour.from(earlier).rem_euclid(colours);
+            colour = attributes.colour.from(earlier).rem_euclid(colours);
         }
         Self {
             colour,

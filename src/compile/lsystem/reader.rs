@@ -8,19 +8,19 @@ use crate::instancing::Thickness;
 use crate::lsystem::{Action, LSystem};
 
 use super::NotCompiled;
-use super::effects::{Drawn, Effect, Effects};
+use super::effects::{Effect, Effects, ModuleDrawing};
 use super::far::Far;
-use super::state::{Look, Pose, Shade, State};
+use super::state::{Pose, Shade, StrokeAttributes, TurtleState};
 
 /// Part of the drawing of a word.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct DrawnPart {
     /// Position of the module that draws it.
     pub(super) position: u32,
     pub(super) of: Of,
     /// Pose of the turtle where it starts.
     pub(super) pose: Pose,
-    pub(super) look: Look,
+    pub(super) attributes: StrokeAttributes,
     /// Whether it continues the stroke of the part before, as far as the word determines this.
     pub(super) joined: bool,
 }
@@ -36,10 +36,10 @@ pub(super) enum Of {
     /// Polygon, by its vertices in steps.
     Polygon(Vec<DVec2>),
     /// Subtree of a kind.
-    Subtree(usize, Drawn),
+    Subtree(usize, ModuleDrawing),
 }
 
-impl Part {
+impl DrawnPart {
     /// Returns a bound on the distance of its points from its start.
     fn reach(&self) -> Far {
         let steps = match &self.of {
@@ -56,8 +56,8 @@ impl Part {
 }
 
 /// Open polygon.
-struct Open {
-    state: State,
+struct OpenPolygon {
+    state: TurtleState,
     vertices: Vec<Far>,
 }
 
@@ -73,17 +73,17 @@ pub(super) struct Reader<'e> {
     /// Whether the drawing is that of one path; otherwise it bounds those of all paths.
     draws: bool,
     /// State of the turtle relative to the beginning of the word.
-    pub(super) state: State,
-    saved: Vec<State>,
-    open: Vec<Open>,
+    pub(super) state: TurtleState,
+    saved: Vec<TurtleState>,
+    open: Vec<OpenPolygon>,
     vertices: usize,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<DrawnPart>,
     /// Whether the pen has stayed down since the last part or, before the first, since the beginning.
     down: bool,
     /// Attributes of the first line.
-    first: Option<Look>,
+    first: Option<StrokeAttributes>,
     /// Attributes of the last line; before the first, those at the beginning.
-    last: Look,
+    last: StrokeAttributes,
     /// Whether the first part may continue the stroke before the word.
     starts: bool,
     /// Whether the word is certain to draw something.
@@ -97,7 +97,7 @@ pub(super) struct Reader<'e> {
 }
 
 impl<'e> Reader<'e> {
-    pub(super) fn new(effects: &'e Effects, state: State, draws: bool) -> Self {
+    pub(super) fn new(effects: &'e Effects, state: TurtleState, draws: bool) -> Self {
         Self {
             effects,
             draws,
@@ -112,7 +112,7 @@ impl<'e> Reader<'e> {
             parts: Vec::new(),
             down: true,
             first: None,
-            last: state.look,
+            last: state.attributes,
             starts: true,
         }
     }
@@ -190,7 +190,7 @@ impl<'e> Reader<'e> {
         self.is_sure |= effect.is_sure && effect.drawn.is_some();
         if let Some(drawn) = &effect.drawn {
             self.part(Of::Subtree(kind, *drawn), state, drawn.first, position);
-            self.last = state.look.then(drawn.last);
+            self.last = state.attributes.then(drawn.last);
         } else if effect.lifts {
             self.down = false;
         }
@@ -198,22 +198,22 @@ impl<'e> Reader<'e> {
     }
 
     /// Adds a part from a state; `first` holds the attributes of its first line.
-    fn part(&mut self, of: Of, state: State, first: Look, position: u32) {
-        let look = state.look.then(first);
-        let alike = self.parts.is_empty() || self.last == look;
+    fn part(&mut self, of: Of, state: TurtleState, first: StrokeAttributes, position: u32) {
+        let attributes = state.attributes.then(first);
+        let alike = self.parts.is_empty() || self.last == attributes;
         if self.parts.is_empty() {
             self.starts = self.down;
-            self.first = Some(look);
+            self.first = Some(attributes);
         }
-        self.parts.push(Part {
+        self.parts.push(DrawnPart {
             position,
             of,
             pose: state.pose,
-            look: state.look,
+            attributes: state.attributes,
             joined: self.down && alike && !self.parts.is_empty(),
         });
         self.down = true;
-        self.last = look;
+        self.last = attributes;
     }
 
     fn vertex(&mut self) -> Result<(), NotCompiled> {
@@ -235,9 +235,9 @@ impl<'e> Reader<'e> {
         position: u32,
     ) -> Result<(), NotCompiled> {
         let compass = self.effects.compass;
-        let State { pose, look } = &mut self.state;
-        let changed = |width, colour| Look { width, colour };
-        let Look { width, colour } = Look::SAME;
+        let TurtleState { pose, attributes } = &mut self.state;
+        let changed = |width, colour| StrokeAttributes { width, colour };
+        let StrokeAttributes { width, colour } = StrokeAttributes::SAME;
         match action {
             Action::Draw(steps) => {
                 let steps = steps.eval(arguments);
@@ -249,7 +249,12 @@ impl<'e> Reader<'e> {
                 state.pose.scale *= steps;
                 if state.pose.scale != 0.0 {
                     self.is_sure = true;
-                    self.part(Of::Step { fertile }, state, Look::SAME, position);
+                    self.part(
+                        Of::Step { fertile },
+                        state,
+                        StrokeAttributes::SAME,
+                        position,
+                    );
                 }
             }
             Action::Move(steps) => {
@@ -273,21 +278,21 @@ impl<'e> Reader<'e> {
             Action::Scale(factor) => pose.scale *= factor.eval(arguments),
             Action::Width(factor) => {
                 let factor = factor.eval(arguments).max(0.0);
-                *look = look.then(changed(Thickness::Times(factor), colour));
+                *attributes = attributes.then(changed(Thickness::Times(factor), colour));
             }
             Action::SetWidth(set) => {
                 let set = set.eval(arguments).max(0.0);
-                *look = look.then(changed(Thickness::Set(set), colour));
+                *attributes = attributes.then(changed(Thickness::Set(set), colour));
             }
             Action::SetColour(set) => {
                 let set = LSystem::colour(set.eval(arguments));
-                *look = look.then(changed(width, Shade::Set(set)));
+                *attributes = attributes.then(changed(width, Shade::Set(set)));
             }
             Action::ShiftColour(by) => {
                 let by = LSystem::colour(by.eval(arguments));
-                *look = look.then(changed(width, Shade::Shifted(by)));
+                *attributes = attributes.then(changed(width, Shade::Shifted(by)));
             }
-            Action::Open => self.open.push(Open {
+            Action::Open => self.open.push(OpenPolygon {
                 state: self.state,
                 vertices: Vec::new(),
             }),
@@ -300,8 +305,8 @@ impl<'e> Reader<'e> {
         Ok(())
     }
 
-    fn close(&mut self, open: &Open, position: u32) {
-        let Open { state, vertices } = open;
+    fn close(&mut self, open: &OpenPolygon, position: u32) {
+        let OpenPolygon { state, vertices } = open;
         if vertices.len() < 3 || state.pose.scale == 0.0 {
             return;
         }
@@ -310,7 +315,12 @@ impl<'e> Reader<'e> {
             .iter()
             .map(|place| state.pose.seen(compass, *place));
         self.is_sure = true;
-        self.part(Of::Polygon(seen.collect()), *state, Look::SAME, position);
+        self.part(
+            Of::Polygon(seen.collect()),
+            *state,
+            StrokeAttributes::SAME,
+            position,
+        );
         self.down = false;
     }
 
@@ -322,14 +332,14 @@ impl<'e> Reader<'e> {
         });
         let farthest = reached.reduce(|a, b| if a.0.longer(b.0) == a.0 { a } else { b });
         let drawn = farthest.zip(self.first).map(|((reach, part), first)| {
-            let drawn = Drawn {
+            let drawn = ModuleDrawing {
                 reach,
                 size: reach,
                 tip: part.pose.place,
                 first,
                 last: self.last,
             };
-            Drawn {
+            ModuleDrawing {
                 size: drawn.size_of(&self.state.pose),
                 ..drawn
             }

@@ -13,10 +13,10 @@ use crate::rule::BaseElement;
 use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
-use super::long::{Vector, Ways};
+use super::long::{Displacements, Vector};
 use super::paint::Paint;
-use super::reader::{Of, Part, Reader};
-use super::state::{Look, Pose, State};
+use super::reader::{DrawnPart, Of, Reader};
+use super::state::{Pose, StrokeAttributes, TurtleState};
 
 /// Limit of the number of steps within which the state of all kinds must recur.
 const MAX_STEPS: u32 = 32;
@@ -35,7 +35,7 @@ struct Shape {
 struct Link {
     kind: usize,
     /// Stroke attributes relative to those of the whole.
-    look: Look,
+    attributes: StrokeAttributes,
     ends: [DVec2; 2],
     mirrored: bool,
     joined: bool,
@@ -48,7 +48,7 @@ impl Shape {
         let alike = |(a, b): (&Link, &Link)| {
             let near = a.ends.iter().zip(b.ends);
             let is_alike = (a.kind, a.mirrored, a.joined) == (b.kind, b.mirrored, b.joined);
-            is_alike && a.look == b.look && { near }
+            is_alike && a.attributes == b.attributes && { near }
                 .all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
         };
         self.meets == other.meets
@@ -70,7 +70,7 @@ impl Shape {
                 length: from.distance(to),
                 joined: link.joined,
                 position: link.position,
-                object: *objects.get(&edges.key(link.kind, link.look, colour))?,
+                object: *objects.get(&edges.key(link.kind, link.attributes, colour))?,
             })
         };
         let instances: Option<Vec<_>> = self.links.iter().map(instance).collect();
@@ -83,13 +83,13 @@ impl Shape {
 
 /// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Key {
+struct ObjectKey {
     kind: usize,
     paint: Paint,
 }
 
 /// Numbers of objects.
-type Objects = BTreeMap<Key, usize>;
+type Objects = BTreeMap<ObjectKey, usize>;
 
 /// Limit of the number of objects.
 const MAX_OBJECTS: usize = 1 << 12;
@@ -98,7 +98,7 @@ const MAX_OBJECTS: usize = 1 << 12;
 /// longest.
 #[derive(Debug)]
 struct Stage {
-    kinds: Vec<(DVec2, State)>,
+    kinds: Vec<(DVec2, TurtleState)>,
     /// Longest displacement, if there are modules of constant length.
     size: Option<Far>,
 }
@@ -118,7 +118,7 @@ impl Stage {
             .all(|((a, state), (b, others))| {
                 let (pose, other) = (&state.pose, &others.pose);
                 a.distance(*b) <= ROUNDING
-                    && state.look == others.look
+                    && state.attributes == others.attributes
                     && (pose.heading, pose.mirrored) == (other.heading, other.mirrored)
                     && (pose.scale / other.scale - 1.0).abs() <= ROUNDING
             })
@@ -169,13 +169,14 @@ impl Chords {
         let edges = Edges { effects };
         edges.draws().ok()?;
         let effects = &edges.effects;
-        let mut ways = Ways::new(effects.compass, Some(bits));
+        let mut ways = Displacements::new(effects.compass, Some(bits));
         let (initiator, _) = ways.lines(effects, &effects.kinds.axiom, edges.start().pose)?;
         let mut objects = Vec::new();
         for key in edges.objects().ok()?.into_keys() {
             let kind = &effects.kinds.all[key.kind];
             let word = kind.alternatives.first().map(|only| &only.word[..]);
-            let (lines, chord) = ways.lines(effects, word.unwrap_or_default(), State::SAME.pose)?;
+            let (lines, chord) =
+                ways.lines(effects, word.unwrap_or_default(), TurtleState::SAME.pose)?;
             let seen = |line: [Vector; 2]| line.map(|end| quotient(&end, &chord, bits));
             objects.push(lines.into_iter().map(seen).collect());
         }
@@ -242,7 +243,7 @@ impl Edges {
                 draws.push(false);
                 continue;
             }
-            let mut reader = Reader::new(&self.effects, State::SAME, false);
+            let mut reader = Reader::new(&self.effects, TurtleState::SAME, false);
             reader.read(&[kind], 0, Path::of_seed(0))?;
             let place = reader.state.pose.place;
             draws.push(match reader.parts.as_slice() {
@@ -284,7 +285,7 @@ impl Edges {
         left: u32,
         whole: Option<(usize, u32)>,
     ) -> Result<Shape, NotCompiled> {
-        let mut reader = Reader::new(&self.effects, State::SAME, false);
+        let mut reader = Reader::new(&self.effects, TurtleState::SAME, false);
         reader.read(word, left, Path::of_seed(0))?;
         let mut ends = Vec::new();
         for part in &reader.parts {
@@ -306,7 +307,7 @@ impl Edges {
         let parts = reader.parts.iter().zip(ends).zip(0..);
         let links = parts.map(|((part, ends), position)| Link {
             kind: word[part.position as usize],
-            look: part.look,
+            attributes: part.attributes,
             ends: ends.map(seen),
             mirrored: part.pose.mirrored,
             joined: part.joined,
@@ -323,7 +324,7 @@ impl Edges {
         let mut states = Vec::new();
         let all = self.effects.kinds.all.iter().enumerate();
         for (kind, _) in all.filter(|(_, kind)| kind.is_fertile()) {
-            let mut reader = Reader::new(&self.effects, State::SAME, false);
+            let mut reader = Reader::new(&self.effects, TurtleState::SAME, false);
             reader.read(&[kind], left, Path::of_seed(0))?;
             states.push(reader.state);
         }
@@ -348,11 +349,11 @@ impl Edges {
     }
 
     /// Returns the initial state of the turtle.
-    fn start(&self) -> State {
+    fn start(&self) -> TurtleState {
         let Effects {
             system, compass, ..
         } = &self.effects;
-        let mut state = State::SAME;
+        let mut state = TurtleState::SAME;
         state.pose.heading = compass.of_degrees(system.start());
         state.pose.scale = system.length();
         state
@@ -382,21 +383,22 @@ impl Edges {
 
     /// Returns the identity of an object of a kind, whose attributes are relative to a whole with a
     /// colour.
-    fn key(&self, kind: usize, look: Look, colour: i64) -> Key {
-        Key {
+    fn key(&self, kind: usize, attributes: StrokeAttributes, colour: i64) -> ObjectKey {
+        ObjectKey {
             kind,
-            paint: Paint::of(&self.effects.system, look, colour),
+            paint: Paint::of(&self.effects.system, attributes, colour),
         }
     }
 
     /// Returns the objects in order: those of the axiom, and their descendants.
     fn objects(&self) -> Result<Objects, NotCompiled> {
         let kinds = &self.effects.kinds;
-        let keys = |word: &[usize], colour: i64| -> Result<Vec<Key>, NotCompiled> {
-            let mut reader = Reader::new(&self.effects, State::SAME, false);
+        let keys = |word: &[usize], colour: i64| -> Result<Vec<ObjectKey>, NotCompiled> {
+            let mut reader = Reader::new(&self.effects, TurtleState::SAME, false);
             reader.read(word, 0, Path::of_seed(0))?;
             let parts = reader.parts.iter();
-            let key = |part: &Part| self.key(word[part.position as usize], part.look, colour);
+            let key =
+                |part: &DrawnPart| self.key(word[part.position as usize], part.attributes, colour);
             Ok(parts.map(key).collect())
         };
         let mut open = keys(&kinds.axiom, 0)?;
@@ -429,7 +431,7 @@ impl Edges {
             let to = self.end(&part.of, &part.pose, kind, 0)?;
             links.push(Link {
                 kind,
-                look: part.look,
+                attributes: part.attributes,
                 ends: [part.pose.place, to].map(|place| place.over(unit)),
                 mirrored: part.pose.mirrored,
                 joined: part.joined,

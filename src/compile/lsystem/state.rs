@@ -23,7 +23,7 @@ pub(super) struct Pose {
 
 /// Stroke attributes relative to earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Look {
+pub(super) struct StrokeAttributes {
     pub(super) width: Thickness,
     pub(super) colour: Shade,
 }
@@ -39,9 +39,9 @@ pub(super) enum Shade {
 
 /// Pose and stroke attributes of the turtle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct State {
+pub(super) struct TurtleState {
     pub(super) pose: Pose,
-    pub(super) look: Look,
+    pub(super) attributes: StrokeAttributes,
 }
 
 impl Pose {
@@ -133,7 +133,7 @@ impl Pose {
     }
 }
 
-impl Look {
+impl StrokeAttributes {
     /// Identity: attributes are unchanged.
     pub(super) const SAME: Self = Self {
         width: Thickness::Times(1.0),
@@ -172,18 +172,18 @@ impl Shade {
     }
 }
 
-impl State {
+impl TurtleState {
     /// Identity: pose and attributes are unchanged.
     pub(super) const SAME: Self = Self {
         pose: Pose::START,
-        look: Look::SAME,
+        attributes: StrokeAttributes::SAME,
     };
 
     /// Composes the state with another relative to it.
     pub(super) fn then(&self, compass: Compass, next: &Self) -> Self {
         Self {
             pose: self.pose.then(compass, &next.pose),
-            look: self.look.then(next.look),
+            attributes: self.attributes.then(next.attributes),
         }
     }
 }

@@ -246,9 +246,9 @@ fn library() {
         for steps in 0..=most {
             assert_same(name, &graph, &system, steps, 1);
         }
-        assert_told(&graph, most);
+        assert_reported(&graph, most);
         if let Ok(edges) = Graph::of_edges(&system) {
-            assert_told(&edges, most);
+            assert_reported(&edges, most);
         }
     }
     // Systems with contexts are not compiled.
@@ -257,7 +257,7 @@ fn library() {
 }
 
 /// Asserts that forecast and bounds match the elements of a walk.
-fn assert_told(graph: &Graph, steps: u32) {
+fn assert_reported(graph: &Graph, steps: u32) {
     let found = drawn(graph, steps, 1);
     if let Some(mut forecast) = graph.forecast() {
         for _ in 0..steps {

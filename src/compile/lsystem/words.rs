@@ -10,7 +10,7 @@ use crate::rule::{ElementContext, Extent, Part};
 use super::effects::Effects;
 use super::far::Far;
 use super::reader::{Of, Reader};
-use super::state::State;
+use super::state::TurtleState;
 
 /// Word that may replace a kind with `left` steps left.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Words {
         let of = &effects.kinds.all[kind];
         let drawn = of.drawn(path);
         let written = &self.written[words[drawn].generator];
-        let mut reader = Reader::new(effects, State::SAME, true);
+        let mut reader = Reader::new(effects, TurtleState::SAME, true);
         let word = &of.alternatives[drawn].word;
         if reader.read(word, left - 1, path).is_err() {
             return;

@@ -13,7 +13,7 @@ use crate::geometry::DVec2;
 use crate::rule::{BaseElement, Piece};
 
 use super::super::number;
-use super::super::structure::{Placed, Structure};
+use super::super::structure::{PlacedObject, Structure};
 use super::super::{Keeps, Refusal};
 use super::{degrees, letter, letter_of};
 
@@ -21,12 +21,12 @@ use super::{degrees, letter, letter_of};
 #[derive(PartialEq)]
 struct Symbol {
     object: Option<usize>,
-    look: Look,
+    drawing: SymbolDrawing,
 }
 
 /// Drawing of a symbol.
 #[derive(Clone, Copy, PartialEq)]
-enum Look {
+enum SymbolDrawing {
     Nothing,
     Line,
     /// The shape with this index.
@@ -52,10 +52,10 @@ pub(super) fn write(structure: &Structure, keeps: Keeps) -> Result<Entries, Refu
         if let Some(object) = symbol.object {
             productions = productions.add(letter, Value::Text(strings[object].clone()));
         }
-        let meaning = match symbol.look {
-            Look::Line => Value::Text("draw".into()),
-            Look::Shape(shape) => meaning(&structure.shapes[shape])?,
-            Look::Nothing => Value::Text("move".into()),
+        let meaning = match symbol.drawing {
+            SymbolDrawing::Line => Value::Text("draw".into()),
+            SymbolDrawing::Shape(shape) => meaning(&structure.shapes[shape])?,
+            SymbolDrawing::Nothing => Value::Text("move".into()),
         };
         if (letter, &meaning) != ('F', &Value::Text("draw".into())) {
             meanings = meanings.add(letter, meaning);
@@ -109,7 +109,7 @@ impl Writer<'_> {
     }
 
     /// Returns the commands that move the turtle to an instance.
-    fn way(&mut self, placed: &Placed) -> String {
+    fn way(&mut self, placed: &PlacedObject) -> String {
         let mut way = String::new();
         let mut heading = DVec2::X;
         let mut turn = |way: &mut String, wanted: DVec2| {
@@ -140,18 +140,18 @@ impl Writer<'_> {
         way
     }
 
-    fn letter(&mut self, placed: &Placed) -> Result<char, Refusal> {
+    fn letter(&mut self, placed: &PlacedObject) -> Result<char, Refusal> {
         let is_line = self.structure.shapes[placed.shape].is_line();
-        let look = match placed.object {
-            Some(_) if self.keeps == Keeps::Limit => Look::Line,
-            _ if !placed.visible => Look::Nothing,
-            _ if is_line => Look::Line,
+        let drawing = match placed.object {
+            Some(_) if self.keeps == Keeps::Limit => SymbolDrawing::Line,
+            _ if !placed.visible => SymbolDrawing::Nothing,
+            _ if is_line => SymbolDrawing::Line,
             _ if self.keeps == Keeps::Limit => return Err(Refusal::NoLines),
-            _ => Look::Shape(placed.shape),
+            _ => SymbolDrawing::Shape(placed.shape),
         };
         let symbol = Symbol {
             object: placed.object,
-            look,
+            drawing,
         };
         letter_of(&mut self.symbols, symbol)
     }

@@ -8,7 +8,7 @@ use crate::document::node::Value;
 use crate::geometry::DVec2;
 
 use super::super::number;
-use super::super::structure::{Placed, Structure};
+use super::super::structure::{PlacedObject, Structure};
 use super::{degrees, letter, letter_of};
 
 /// Relative tolerance of comparisons.
@@ -26,7 +26,7 @@ struct Symbol {
 }
 
 /// A line of a chain in order of traversal: its vector and its symbol.
-struct Line {
+struct ChainLine {
     along: DVec2,
     symbol: Symbol,
 }
@@ -42,7 +42,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
     let all_lines = structure
         .instances()
         .all(|placed| placed.visible && structure.shapes[placed.shape].is_line());
-    let equal = |lines: &[Line], length: f64| {
+    let equal = |lines: &[ChainLine], length: f64| {
         { lines.iter() }.all(|line| (line.along.length() - length).abs() <= ROUNDING * length)
     };
     let length = chains.first()?.first()?.along.length();
@@ -56,7 +56,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
     if !starts_at_origin(&structure.scene, &scene) {
         return None;
     }
-    let turns = |lines: &[Line], start: DVec2| -> Vec<f64> {
+    let turns = |lines: &[ChainLine], start: DVec2| -> Vec<f64> {
         let turned = lines.iter().map(|line| start.angle_to(line.along));
         turned.map(|angle| angle / std::f64::consts::TAU).collect()
     };
@@ -117,7 +117,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
 }
 
 /// Returns instances as a chain that starts and ends at `ends`, if given; `None` if they form no chain.
-fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
+fn chain(placed: &[PlacedObject], ends: Option<[DVec2; 2]>) -> Option<Vec<ChainLine>> {
     let near = |a: DVec2, b: DVec2, size: f64| (a - b).length() <= ROUNDING * size;
     let ways = [false, true].map(|backwards| {
         let mut at: Option<DVec2> = ends.map(|[start, _]| start);
@@ -138,7 +138,7 @@ fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
             };
             let (from, to) = if backwards { (to, from) } else { (from, to) };
             at = Some(to);
-            lines.push(Line {
+            lines.push(ChainLine {
                 along: to - from,
                 symbol: Symbol {
                     object: placed.object?,
@@ -154,7 +154,7 @@ fn chain(placed: &[Placed], ends: Option<[DVec2; 2]>) -> Option<Vec<Line>> {
 }
 
 /// Returns whether the first line of a chain starts at the origin.
-fn starts_at_origin(placed: &[Placed], chain: &[Line]) -> bool {
+fn starts_at_origin(placed: &[PlacedObject], chain: &[ChainLine]) -> bool {
     let (Some(placed), Some(line)) = (placed.first(), chain.first()) else {
         return false;
     };
@@ -184,7 +184,7 @@ struct Writer {
 
 impl Writer {
     /// Returns the string of a chain for a symbol that traverses it.
-    fn string(&mut self, lines: &[Line], turns: &[f64], of: Symbol) -> Option<String> {
+    fn string(&mut self, lines: &[ChainLine], turns: &[f64], of: Symbol) -> Option<String> {
         let mut string = String::new();
         let mut heading = 0;
         let numbers: Vec<usize> = if of.backwards {

@@ -7,7 +7,7 @@ use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::PieceDocument;
-use crate::document::shape::{Form, Shape, Way, keys, way};
+use crate::document::shape::{Form, KeySet, Shape, alternative, keys};
 use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::style::Colour;
 
@@ -18,7 +18,7 @@ mapping! {
     /// A base element as written.
     struct BaseElementDocument: BASE_ELEMENT = "a base element",
         "a name from the library (base_element: triangle), or \
-         {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}", &WAYS;
+         {points: [[0, 0], [1/2, 1], [1, 0]], closed: true}", &ALTERNATIVES;
     space: InSpace = Form::Whole(2, Some(3)), "3 for a base element in space, 2 or nothing for one in the plane.";
     points as pieces: Option<Vec<PieceDocument>> =
         Form::List(&Form::Either(&[Form::Place, Form::Mapping(&PIECE)]), 2, None),
@@ -43,12 +43,12 @@ mapping! {
 }
 
 /// Keys that define the shape of a base element; those after the first are known in space only and combine.
-const WAYS: [Way; 5] = [
-    way(&["points"], &["surfaces", "lines", "solid", "solids"]),
-    way(&["surfaces"], &["points", "closed"]),
-    way(&["lines"], &["points", "closed"]),
-    way(&["solid"], &["points", "closed"]),
-    way(&["solids"], &["points", "closed"]),
+const ALTERNATIVES: [KeySet; 5] = [
+    alternative(&["points"], &["surfaces", "lines", "solid", "solids"]),
+    alternative(&["surfaces"], &["points", "closed"]),
+    alternative(&["lines"], &["points", "closed"]),
+    alternative(&["solid"], &["points", "closed"]),
+    alternative(&["solids"], &["points", "closed"]),
 ];
 
 /// Names of solids about an element.
@@ -195,14 +195,14 @@ const PIECE: Shape = Shape {
         control: Form::List(&Form::Point, 1, Some(2)),
             "The control points of the curve: one of a quadratic curve, two of a cubic one.";
     ]],
-    ways: &[ARC, CURVE],
+    alternatives: &[ARC, CURVE],
     hint: "a piece is a point, {arc: [x, y], through: [x, y]} or \
            {curve: [x, y], control: [[x, y]]}",
 };
 
-const ARC: Way = way(&["arc", "through"], &["curve", "control"]);
+const ARC: KeySet = alternative(&["arc", "through"], &["curve", "control"]);
 
-const CURVE: Way = way(&["curve", "control"], &["arc", "through"]);
+const CURVE: KeySet = alternative(&["curve", "control"], &["arc", "through"]);
 
 impl FromNode for Vec<PieceDocument> {
     fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
@@ -255,8 +255,8 @@ fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
 }
 
 /// Reports the keys that the chosen alternative excludes.
-fn exclude(reader: &mut Reader, fields: &Fields<'_>, way: &Way, what: &str) {
-    for other in way.excludes {
+fn exclude(reader: &mut Reader, fields: &Fields<'_>, keys: &KeySet, what: &str) {
+    for other in keys.excludes {
         if fields.take(other).is_some() {
             let message = format!("`{other}` does not belong to {what}");
             reader.error_with_hint(fields.place_of(other), message, PIECE.hint);

@@ -7,7 +7,7 @@ use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::Entry;
-use crate::document::shape::{Form, Way, way};
+use crate::document::shape::{Form, KeySet, alternative};
 use crate::document::{BaseElementDocument, Written, WrittenNumber, WrittenPoint};
 
 use super::base_element::BASE_ELEMENT_OF;
@@ -16,7 +16,7 @@ use super::space::{InSpace, only_in_space};
 mapping! {
     /// An element of a list, as written.
     struct Listed: ELEMENT = "an element",
-        "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]", &WAYS;
+        "an element is written {to: [1, 0]}, {from: [0, 0], to: [1, 0]} or as a point, [1, 0]", &ALTERNATIVES;
     from: Option<WrittenPoint> = Form::Place,
         "Where the element runs from; where the one before it ends, if left out.";
     to: Option<WrittenPoint> = Form::Place, "Where the element runs to.";
@@ -54,10 +54,10 @@ impl Listed {
     }
 }
 
-const WAYS: [Way; 3] = [
-    way(&["to"], &["face", "roll"]),
-    way(&["to"], &["face", "normal"]),
-    way(&["face"], &["from", "to", "normal", "roll"]),
+const ALTERNATIVES: [KeySet; 3] = [
+    alternative(&["to"], &["face", "roll"]),
+    alternative(&["to"], &["face", "normal"]),
+    alternative(&["face"], &["from", "to", "normal", "roll"]),
 ];
 
 /// A list of elements.

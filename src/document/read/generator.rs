@@ -5,7 +5,7 @@ use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::{GeneratorDocument, PartDocument, WhichPoints};
-use crate::document::shape::{Form, Shape, keys, way};
+use crate::document::shape::{Form, Shape, alternative, keys};
 use crate::document::{TurnDocument, Written, WrittenNumber, WrittenPoint};
 use crate::rule::Placement;
 
@@ -30,9 +30,9 @@ pub(in crate::document) const GENERATOR: Shape = Shape {
             "Moves points of the generator: one move, or a list of moves that act one after the other.";
         connected: Form::Flag(true), "Whether elements join each other at all; beside `elements` only.";
     ]],
-    ways: &[
-        way(&["elements"], &["parts"]),
-        way(&["parts"], &["elements", "connected"]),
+    alternatives: &[
+        alternative(&["elements"], &["parts"]),
+        alternative(&["parts"], &["elements", "connected"]),
     ],
     hint: "a name from the library (generator: koch), a list of points, or {elements: [...]} or \
            {parts: [...]}",
@@ -53,7 +53,7 @@ const PART: Shape = Shape {
         needed elements: ELEMENTS, about_elements!()
             => "a part needs `elements`", "elements: [[0, 0], [1, 0]]";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "- {seeds: true, elements: [...]}",
 };
 

@@ -10,7 +10,7 @@ use crate::document::ifs::{
 };
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, Way, keys, way};
+use crate::document::shape::{Form, KeySet, Member, Shape, alternative, keys};
 use crate::kind::Kind;
 
 use super::metadata::{DESCRIPTION, LIKING};
@@ -24,10 +24,10 @@ use super::{KindTable, OfKind};
 const IFS: Shape = Shape {
     what: "an iterated function system",
     keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
-    ways: &[
-        way(&["maps"], &["vertices", "interpolate"]),
-        way(&["vertices"], &["maps", "interpolate"]),
-        way(&["interpolate"], &["maps", "vertices"]),
+    alternatives: &[
+        alternative(&["maps"], &["vertices", "interpolate"]),
+        alternative(&["vertices"], &["maps", "interpolate"]),
+        alternative(&["interpolate"], &["maps", "vertices"]),
     ],
     hint: "a system is a mapping of keys: `kfrac cat gasket` shows a short one",
 };
@@ -65,7 +65,7 @@ const MAP: Shape = Shape {
                  maps or for none.";
         ],
     ],
-    ways: &WAYS_TO_PLACE,
+    alternatives: &PLACEMENTS,
     hint: MAP_HINT,
 };
 
@@ -73,7 +73,7 @@ const MAP: Shape = Shape {
 pub(super) const PLACE: Shape = Shape {
     what: "a map of a set",
     keys: &[&PLACING],
-    ways: &WAYS_TO_PLACE,
+    alternatives: &PLACEMENTS,
     hint: MAP_HINT,
 };
 
@@ -106,10 +106,10 @@ const PLACING: [Member; 8] = keys![
     fixed: COMPLEX, "In place of `shift`: the point that stays where it is.";
 ];
 
-const WAYS_TO_PLACE: [Way; 3] = [
-    way(&["matrix"], &["scale", "rotate", "times", "conjugate"]),
-    way(&["scale"], &["matrix", "times", "conjugate"]),
-    way(&["times"], &["matrix", "scale", "rotate"]),
+const PLACEMENTS: [KeySet; 3] = [
+    alternative(&["matrix"], &["scale", "rotate", "times", "conjugate"]),
+    alternative(&["scale"], &["matrix", "times", "conjugate"]),
+    alternative(&["times"], &["matrix", "scale", "rotate"]),
 ];
 
 const INTERPOLATION: Shape = Shape {
@@ -126,9 +126,9 @@ const INTERPOLATION: Shape = Shape {
         dimension: Form::Number,
             "In place of `scale`: the dimension of the curve, from 1 to less than 2.";
     ]],
-    ways: &[
-        way(&["scale"], &["dimension"]),
-        way(&["dimension"], &["scale"]),
+    alternatives: &[
+        alternative(&["scale"], &["dimension"]),
+        alternative(&["dimension"], &["scale"]),
     ],
     hint: "interpolate: {points: [[0, 0], [1, 1], [2, 0]], scale: 0.3}",
 };
@@ -140,7 +140,7 @@ impl OfKind for IfsDocument {
         stand_in: "{maps: [{scale: 0.5}]}",
     };
 
-    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+    fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
         let is_in_space = space::read_space(reader, fields);
         reader.is_in_space = is_in_space;
         if is_in_space && fields.take("interpolate").is_some() {
@@ -161,7 +161,7 @@ impl OfKind for IfsDocument {
         });
         let edges = fields.take("edges");
         let document = Self {
-            heading,
+            metadata,
             is_in_space,
             condensation: condensation.collect(),
             maps: read_maps(reader, fields),
@@ -174,23 +174,23 @@ impl OfKind for IfsDocument {
     }
 }
 
-/// Reads the maps of the one way in which they are given.
+/// Reads the maps, which one of several keys gives.
 fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
-    let ways = ["maps", "vertices", "interpolate"];
-    let mut there = ways.iter().filter(|way| fields.take(way).is_some());
-    let Some(way) = there.next() else {
+    let alternatives = ["maps", "vertices", "interpolate"];
+    let mut there = alternatives.iter().filter(|key| fields.take(key).is_some());
+    let Some(key) = there.next() else {
         let message = "the system has no maps";
         let hint = "write `maps`, `vertices` or `interpolate`";
         reader.error_with_hint(&fields.place.first_line(), message, hint);
         return None;
     };
     for other in there {
-        let message = format!("`{other}` stands in place of `{way}`");
+        let message = format!("`{other}` stands in place of `{key}`");
         let hint = "write one of them";
         reader.error_with_hint(fields.place_of(other), message, hint);
     }
-    let node = fields.take(way)?;
-    match *way {
+    let node = fields.take(key)?;
+    match *key {
         "maps" => read_listed(reader, node),
         "vertices" => read_vertices(reader, node),
         _ => read_interpolation(reader, node).map(MapsDocument::Interpolated),
@@ -280,9 +280,9 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     let rotate = fields.optional(reader, "rotate");
     let times = reader.optional_complex(fields.take("times"));
     let conjugate = fields.read(reader, "conjugate")?;
-    let ways = [matrix.is_some(), scale.is_some(), times.is_some()];
-    let way = ways.iter().position(|there| *there);
-    let Some(way) = way.and_then(|way| WAYS_TO_PLACE.get(way)) else {
+    let alternatives = [matrix.is_some(), scale.is_some(), times.is_some()];
+    let keys = alternatives.iter().position(|there| *there);
+    let Some(keys) = keys.and_then(|keys| PLACEMENTS.get(keys)) else {
         let message = match rotate {
             Some(_) => "this map turns, but has no scale",
             None => "this map is empty",
@@ -290,9 +290,9 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
         return None;
     };
-    for other in way.excludes {
+    for other in keys.excludes {
         if fields.take(other).is_some() {
-            let message = format!("`{other}` does not go with `{}`", way.needs[0]);
+            let message = format!("`{other}` does not go with `{}`", keys.needs[0]);
             reader.error_with_hint(fields.place_of(other), message, MAP_HINT);
         }
     }

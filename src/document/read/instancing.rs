@@ -27,7 +27,7 @@ use super::{KindTable, OfKind};
 const INSTANCING: Shape = Shape {
     what: "an instancing structure",
     keys: &[&DESCRIPTION, &INSTANCING_ALONE, &LIKING],
-    ways: &[],
+    alternatives: &[],
     hint: "a structure is a mapping of keys: `kfrac cat gasket-recursive` shows a short one",
 };
 
@@ -68,7 +68,7 @@ const UNION: Shape = Shape {
         ],
         &TRANSFORMS,
     ],
-    ways: &[],
+    alternatives: &[],
     hint: "{union: [up, left, right], scale: 1/2, translate: [0, 1/2]}",
 };
 
@@ -85,7 +85,7 @@ const INSTANCE: Shape = Shape {
         &OF_FRACTAL,
         &TRANSFORMS,
     ],
-    ways: &[],
+    alternatives: &[],
     hint: "the name of an object, {object: up, scale: 1/2}, or {segment: [[0, 0], [0, 1]]}",
 };
 
@@ -105,7 +105,7 @@ impl OfKind for InstancingDocument {
         stand_in: "{objects: {object: [{segment: [[0, 0], [1, 0]]}]}, scene: [{segment: [[0, 0], [1, 0]]}]}",
     };
 
-    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+    fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
         let is_in_space = read_space(reader, fields);
         reader.is_in_space = is_in_space;
         let objects = { fields.take("objects") }
@@ -115,7 +115,7 @@ impl OfKind for InstancingDocument {
         let objects = objects.collect();
         let scene = fields.take("scene");
         let document = Self {
-            heading,
+            metadata,
             is_in_space,
             objects,
             scene: scene.and_then(|node| read_union(reader, node)),

@@ -13,14 +13,14 @@ use crate::kind::Kind;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::turtle::{MEANING, read_symbol};
-use super::word::{Text, Words};
+use super::word::{Text, WordReader};
 use super::{KindTable, OfKind};
 
 /// Keys of an L-system.
 const LSYSTEM: Shape = Shape {
     what: "an L-system",
     keys: &[&DESCRIPTION, &LSYSTEM_ALONE, &LIKING],
-    ways: &[],
+    alternatives: &[],
     hint: "an L-system is a mapping of keys: `kfrac cat koch-lsystem` shows a short one",
 };
 
@@ -64,7 +64,7 @@ const ALTERNATIVE: Shape = Shape {
             => "this alternative has no word";
         =WEIGHT;
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "F: [\"F[+F]F\", {to: \"F[-F]F\", weight: 2}]",
 };
 
@@ -75,7 +75,7 @@ const PRODUCTION: Shape = Shape {
             => "this entry has no production";
         weight: Form::Positive, "How often it is taken, relative to others with weights that fit.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "- \"F -> F[+F]F\", or - {production: \"F -> F[+F]F\", weight: 1/3}",
 };
 
@@ -90,10 +90,10 @@ impl OfKind for LSystemDocument {
         stand_in: "{axiom: F, productions: {}}",
     };
 
-    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+    fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
         let [angle, start, length, thinning] =
             ["angle", "heading", "length", "thinning"].map(|key| fields.optional(reader, key));
-        let mut words = Words::new(reader);
+        let mut words = WordReader::new(reader);
         let axiom = fields.take("axiom").and_then(|node| words.of(node));
         let productions = fields.take("productions");
         let productions =
@@ -109,7 +109,7 @@ impl OfKind for LSystemDocument {
         let ignored = fields.take("ignore").and_then(|node| words.of(node));
         let ignored = ignored.into_iter().flat_map(|word| word.modules);
         Self {
-            heading,
+            metadata,
             angle,
             start,
             length,
@@ -122,7 +122,7 @@ impl OfKind for LSystemDocument {
     }
 }
 
-fn read_productions(words: &mut Words<'_>, node: &Node) -> Vec<ProductionDocument> {
+fn read_productions(words: &mut WordReader<'_>, node: &Node) -> Vec<ProductionDocument> {
     let mut productions = Vec::new();
     match &node.value {
         Value::Mapping(entries) => {
@@ -146,7 +146,7 @@ fn read_productions(words: &mut Words<'_>, node: &Node) -> Vec<ProductionDocumen
 }
 
 /// Reads an entry of a list of productions, in the notation with an arrow.
-fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocument> {
+fn read_production(words: &mut WordReader<'_>, node: &Node) -> Option<ProductionDocument> {
     let (text, weight) = match &node.value {
         Value::Mapping(entries) => {
             if let [(key, value)] = entries.as_slice()
@@ -189,7 +189,7 @@ fn read_production(words: &mut Words<'_>, node: &Node) -> Option<ProductionDocum
 
 /// Reads an entry of a mapping of predecessors to successors.
 fn read_entry(
-    words: &mut Words<'_>,
+    words: &mut WordReader<'_>,
     key: &Key,
     node: &Node,
     productions: &mut Vec<ProductionDocument>,
@@ -240,7 +240,7 @@ fn read_entry(
 
 /// Reads a successor, possibly with a weight.
 fn read_alternative(
-    words: &mut Words<'_>,
+    words: &mut WordReader<'_>,
     node: &Node,
 ) -> Option<(WordDocument, Option<WrittenNumber>)> {
     let Value::Mapping(entries) = &node.value else {
@@ -266,7 +266,7 @@ fn read_alternative(
     Some((words.of(fields.take("to")?)?, weight))
 }
 
-impl Words<'_> {
+impl WordReader<'_> {
     /// Reads a node as a word. Reports a node that is not a word and returns `None`.
     fn of(&mut self, node: &Node) -> Option<WordDocument> {
         if let Some(text) = Text::of(node) {

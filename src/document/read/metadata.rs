@@ -36,7 +36,7 @@ pub(super) const LIKING: [Member; 5] = keys![
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.
-pub(in crate::document) fn read_heading(
+pub(in crate::document) fn read_metadata(
     reader: &mut Reader,
     fields: &Fields<'_>,
 ) -> MetadataDocument {
@@ -67,7 +67,7 @@ pub(in crate::document) fn check_description(node: &Node, diagnostics: &mut Diag
     const DESCRIBED: Shape = Shape {
         what: "a description",
         keys: &[&DESCRIPTION],
-        ways: &[],
+        alternatives: &[],
         hint: "title: Koch curve",
     };
     let mut reader = Reader::after(diagnostics);

@@ -20,7 +20,7 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
         max: NUMBER, "The largest value that it may be set to.";
         about: Form::Text, "What it means.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "angle: {value: 45, min: 5, max: 85, about: \"what it means\"}",
 };
 

@@ -4,7 +4,7 @@ use crate::catalogue::Shelf;
 use crate::document::MetadataDocument;
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::RuleDocument;
-use crate::document::shape::{Form, Member, Shape, keys, way};
+use crate::document::shape::{Form, Member, Shape, alternative, keys};
 use crate::kind::Kind;
 
 use super::base_element::BASE_ELEMENT_OF;
@@ -20,9 +20,9 @@ use super::{KindTable, OfKind};
 pub(in crate::document) const RULE: Shape = Shape {
     what: "a rule",
     keys: &[&DESCRIPTION, &RULE_ALONE, &LIKING],
-    ways: &[
-        way(&["generator"], &["generators"]),
-        way(&["generators"], &["generator"]),
+    alternatives: &[
+        alternative(&["generator"], &["generators"]),
+        alternative(&["generators"], &["generator"]),
     ],
     hint: "a rule is a mapping of keys: `kfrac cat koch` shows a short one",
 };
@@ -59,7 +59,7 @@ impl OfKind for RuleDocument {
         stand_in: "{initiator: {elements: [[0, 0], [0.5, 0]]}, generator: {elements: [[0, 0], [0.5, 0]]}}",
     };
 
-    fn read(reader: &mut Reader, fields: &Fields<'_>, heading: MetadataDocument) -> Self {
+    fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
         let is_in_space = read_space(reader, fields);
         reader.is_in_space = is_in_space;
         let initiator = match fields.take("initiator") {
@@ -67,7 +67,7 @@ impl OfKind for RuleDocument {
             None => InitiatorDocument::listed(Vec::new(), fields.place),
         };
         let rule = Self {
-            heading,
+            metadata,
             is_in_space,
             initiator,
             generators: read_generators(reader, fields),

@@ -4,7 +4,7 @@ use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
 use crate::document::rule::SelectDocument;
-use crate::document::shape::{Form, Shape, keys, way};
+use crate::document::shape::{Form, Shape, alternative, keys};
 use crate::document::{Written, WrittenNumber};
 
 use super::parameters::written;
@@ -18,9 +18,9 @@ const SELECTION: Shape = Shape {
         at_random: Form::Names(&Form::Positive, 1),
             "Generators with their weights: each element draws one of them.";
     ]],
-    ways: &[
-        way(&["by_index"], &["at_random"]),
-        way(&["at_random"], &["by_index"]),
+    alternatives: &[
+        alternative(&["by_index"], &["at_random"]),
+        alternative(&["at_random"], &["by_index"]),
     ],
     hint: "a list of {when: CONDITION, use: NAME} that ends with {use: NAME}, or \
            {by_index: [NAME, NAME]}, or {at_random: {NAME: WEIGHT}}",

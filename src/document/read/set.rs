@@ -4,7 +4,7 @@ use crate::document::ifs::{FormDocument, FractalDocument, ShapeDocument};
 use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, Way, keys, way};
+use crate::document::shape::{Form, KeySet, Member, Shape, alternative, keys};
 use crate::document::{KindDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::PARTS;
 use crate::kind::Kind;
@@ -19,7 +19,7 @@ use super::space::SOLIDS;
 pub(super) const SET: Shape = Shape {
     what: "a set",
     keys: &[&FORMS, &OF_FRACTAL],
-    ways: &WAYS,
+    alternatives: &ALTERNATIVES,
     hint: HINT,
 };
 
@@ -35,7 +35,7 @@ pub(super) const CONDENSATION: Shape = Shape {
                  of the maps; the mean of these if left out.";
         ],
     ],
-    ways: &WAYS,
+    alternatives: &ALTERNATIVES,
     hint: HINT,
 };
 
@@ -105,21 +105,21 @@ const fn others<const N: usize>(one: usize) -> [&'static str; N] {
     names
 }
 
-const WAYS: [Way; COUNT] = [
-    way(&[NAMES[0]], &others::<OTHERS>(0)),
-    way(&[NAMES[1]], &others::<OTHERS>(1)),
-    way(&[NAMES[2]], &others::<OTHERS>(2)),
-    way(&[NAMES[3]], &others::<OTHERS>(3)),
-    way(&[NAMES[4]], &others::<OTHERS>(4)),
-    way(&[NAMES[5]], &others::<OTHERS>(5)),
-    way(&[NAMES[6]], &others::<OTHERS>(6)),
-    way(&[NAMES[7]], &others::<OTHERS>(7)),
-    way(&[NAMES[8]], &others::<OTHERS>(8)),
-    way(&[NAMES[9]], &others::<OTHERS>(9)),
-    way(&[NAMES[10]], &others::<OTHERS>(10)),
-    way(&[NAMES[11]], &others::<OTHERS>(11)),
-    way(&[NAMES[12]], &others::<OTHERS>(12)),
-    way(&[NAMES[13]], &others::<{ COUNT - 1 }>(13)),
+const ALTERNATIVES: [KeySet; COUNT] = [
+    alternative(&[NAMES[0]], &others::<OTHERS>(0)),
+    alternative(&[NAMES[1]], &others::<OTHERS>(1)),
+    alternative(&[NAMES[2]], &others::<OTHERS>(2)),
+    alternative(&[NAMES[3]], &others::<OTHERS>(3)),
+    alternative(&[NAMES[4]], &others::<OTHERS>(4)),
+    alternative(&[NAMES[5]], &others::<OTHERS>(5)),
+    alternative(&[NAMES[6]], &others::<OTHERS>(6)),
+    alternative(&[NAMES[7]], &others::<OTHERS>(7)),
+    alternative(&[NAMES[8]], &others::<OTHERS>(8)),
+    alternative(&[NAMES[9]], &others::<OTHERS>(9)),
+    alternative(&[NAMES[10]], &others::<OTHERS>(10)),
+    alternative(&[NAMES[11]], &others::<OTHERS>(11)),
+    alternative(&[NAMES[12]], &others::<OTHERS>(12)),
+    alternative(&[NAMES[13]], &others::<{ COUNT - 1 }>(13)),
 ];
 
 /// Number of keys that exclude each other, but for `fractal` and those that accompany it.

@@ -53,7 +53,7 @@ pub(super) const MESH: Shape = Shape {
             "The faces: lists of the numbers of their points, from 0, in order."
             => "a mesh needs `faces`";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "mesh: shape.obj, or mesh: {points: [[x, y, z], ...], faces: [[0, 1, 2], ...]}",
 };
 

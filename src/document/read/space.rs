@@ -4,7 +4,7 @@ use crate::document::ifs::{LinearDocument, TurnDocument};
 use crate::document::mapping::FromNode;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, key, keys, way};
+use crate::document::shape::{Form, Member, Shape, alternative, key, keys};
 use crate::document::{Written, WrittenNumber, WrittenPoint};
 use crate::expression::Expression;
 
@@ -96,11 +96,11 @@ pub(super) const TURN: Shape = Shape {
         axis: Form::Place, "In place of these: the axis of a turn by `angle`.";
         angle: Form::Number, "The angle about `axis`, in degrees, by the right-hand rule.";
     ]],
-    ways: &[
-        way(&["x"], &["y", "z", "axis", "angle"]),
-        way(&["y"], &["x", "z", "axis", "angle"]),
-        way(&["z"], &["x", "y", "axis", "angle"]),
-        way(&["axis", "angle"], &["x", "y", "z"]),
+    alternatives: &[
+        alternative(&["x"], &["y", "z", "axis", "angle"]),
+        alternative(&["y"], &["x", "z", "axis", "angle"]),
+        alternative(&["z"], &["x", "y", "axis", "angle"]),
+        alternative(&["axis", "angle"], &["x", "y", "z"]),
     ],
     hint: "rotate: {y: 30}, rotate: {axis: [1, 1, 0], angle: 30}, or a list of them in order",
 };

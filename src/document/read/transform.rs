@@ -52,7 +52,7 @@ const TRANSFORM: Shape = Shape {
         =TRANSLATE;
         =MATRIX;
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "{rotate: 30}, {scale: 1/2} or {translate: [1, 0]}",
 };
 

@@ -5,7 +5,7 @@ use crate::document::lsystem::{ActionDocument, SymbolDocument};
 use crate::document::node::{Key, Node, Value};
 use crate::document::shape::{Form, Shape, keys};
 
-use super::word::{Text, Words};
+use super::word::{Text, WordReader};
 
 /// Actions without a number.
 const WORDS: [&str; 11] = [
@@ -32,12 +32,16 @@ const ACTION: Shape = Shape {
         colour: Form::Number, "Sets the colour: its number in the palette, from 0.";
         shift_colour: Form::Number, "Adds to the number of the colour.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "draw, move, {draw: 1/2}, {turn: 36}, {scale: 1/2}, push, pop or another action",
 };
 
 /// Reads the interpretation of a symbol.
-pub(super) fn read_symbol(words: &mut Words<'_>, key: &Key, node: &Node) -> Option<SymbolDocument> {
+pub(super) fn read_symbol(
+    words: &mut WordReader<'_>,
+    key: &Key,
+    node: &Node,
+) -> Option<SymbolDocument> {
     let mut actions = Vec::new();
     match &node.value {
         Value::Sequence(entries) => {
@@ -60,7 +64,7 @@ pub(super) fn read_symbol(words: &mut Words<'_>, key: &Key, node: &Node) -> Opti
     })
 }
 
-fn read_action(words: &mut Words<'_>, node: &Node, actions: &mut Vec<ActionDocument>) {
+fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<ActionDocument>) {
     let reader = &mut *words.reader;
     let Value::Text(name) = &node.value else {
         let Some(fields) = reader.fields(node, &ACTION) else {

@@ -3,7 +3,7 @@
 use crate::document::ifs::{MapsDocument, ScatterDocument, VerticesDocument};
 use crate::document::node::{Node, Value};
 use crate::document::reader::Reader;
-use crate::document::shape::{Form, Shape, keys, way};
+use crate::document::shape::{Form, Shape, alternative, keys};
 
 use super::ifs::read_points;
 use super::space::{self, SOLIDS};
@@ -19,10 +19,10 @@ pub(super) const VERTICES: Shape = Shape {
             "What is left of the way to a vertex: 1/2 goes half the way, 1/3 two thirds of it."
             => "vertices need `shrink`: what is left of the way to one";
     ]],
-    ways: &[
-        way(&["points"], &["solid", "scatter"]),
-        way(&["solid"], &["points", "scatter"]),
-        way(&["scatter"], &["points", "solid"]),
+    alternatives: &[
+        alternative(&["points"], &["solid", "scatter"]),
+        alternative(&["solid"], &["points", "scatter"]),
+        alternative(&["scatter"], &["points", "solid"]),
     ],
     hint: "vertices: {points: [[0, 0], [1, 0], [1/2, 1]], shrink: 1/2}",
 };
@@ -38,16 +38,16 @@ const SCATTER: Shape = Shape {
             => "a scatter needs `count`: the number of points";
         seed: Form::Whole(0, None), "What the places depend on; 0 if left out.";
     ]],
-    ways: &[],
+    alternatives: &[],
     hint: "scatter: {ellipsoid: [3, 1, 2], count: 24}",
 };
 
 pub(super) fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {
     let fields = reader.fields(node, &VERTICES)?;
-    let ways = ["points", "solid", "scatter"];
-    let mut there = ways.iter().filter(|way| fields.take(way).is_some());
-    let way = there.next();
-    let mut points = match (way, way.and_then(|way| fields.take(way))) {
+    let alternatives = ["points", "solid", "scatter"];
+    let mut there = alternatives.iter().filter(|key| fields.take(key).is_some());
+    let key = there.next();
+    let mut points = match (key, key.and_then(|key| fields.take(key))) {
         (Some(&"points"), _) => {
             read_points(reader, &fields, VERTICES.hint).map(VerticesDocument::Listed)
         }
@@ -67,7 +67,7 @@ pub(super) fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocu
         }
     };
     for other in there {
-        let message = format!("`{other}` stands in place of `{}`", way.unwrap_or(other));
+        let message = format!("`{other}` stands in place of `{}`", key.unwrap_or(other));
         reader.error_with_hint(fields.place_of(other), message, "write one of them");
         points = None;
     }

@@ -33,7 +33,7 @@ pub(super) struct Head {
 }
 
 /// A reader of the words of a file, which counts their modules.
-pub(super) struct Words<'r> {
+pub(super) struct WordReader<'r> {
     pub(super) reader: &'r mut Reader,
     modules: usize,
 }
@@ -101,7 +101,7 @@ impl<'n> Text<'n> {
     }
 }
 
-impl<'r> Words<'r> {
+impl<'r> WordReader<'r> {
     pub(super) fn new(reader: &'r mut Reader) -> Self {
         Self { reader, modules: 0 }
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use granit_parser::{Event, Parser, ScalarStyle, Span, StructureStyle, options};
 
 use super::limits::{Budget, MAX_DEPTH, Size, check_depth};
-use super::repair::{self, Item};
+use super::repair::{self, RepairItem};
 use super::{scalar, trouble};
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::node::{Key, Node, Value};
@@ -60,7 +60,7 @@ struct Collection {
     anchor: usize,
     /// Bytes from the start of the collection to the end of its last item.
     range: Range<usize>,
-    items: Vec<Item>,
+    items: Vec<RepairItem>,
     /// The key whose value follows; `Unusable` if the key was a mistake.
     key: Pending,
 }
@@ -313,13 +313,13 @@ impl Reader<'_> {
                 key,
                 plain: plain_key,
             } => {
-                collection.items.push(Item {
+                collection.items.push(RepairItem {
                     key: Some((key, plain_key)),
                     value,
                     plain,
                 });
             }
-            Pending::None => collection.items.push(Item {
+            Pending::None => collection.items.push(RepairItem {
                 key: None,
                 value,
                 plain,

@@ -8,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::node::{Key, Node, Value};
 
 /// An item of a list or an entry of a mapping.
-pub(super) struct Item {
+pub(super) struct RepairItem {
     /// The key of an entry, and whether it is written without quotes.
     pub(super) key: Option<(Key, bool)>,
     pub(super) value: Node,
@@ -16,7 +16,7 @@ pub(super) struct Item {
     pub(super) plain: bool,
 }
 
-impl Item {
+impl RepairItem {
     /// Returns the text of this item if it can be the continuation of a value that was cut at a comma:
     /// a plain item of a list, or a plain key without a value.
     fn rest(&self) -> Option<&Place> {
@@ -33,7 +33,11 @@ const MAX_PIECES: usize = 16;
 
 /// Joins the pieces of unquoted expressions in flow style such as `uniform(-20, 20)`, where YAML ends
 /// the value at the comma, and reports each.
-pub(super) fn join_at_commas(items: &mut Vec<Item>, source: &Arc<Source>, found: &mut Diagnostics) {
+pub(super) fn join_at_commas(
+    items: &mut Vec<RepairItem>,
+    source: &Arc<Source>,
+    found: &mut Diagnostics,
+) {
     let mut joined = Vec::with_capacity(items.len());
     let mut rest = std::mem::take(items).into_iter();
     while let Some(mut item) = rest.next() {
@@ -60,7 +64,7 @@ pub(super) fn join_at_commas(items: &mut Vec<Item>, source: &Arc<Source>, found:
 
 /// Returns the number of following items that continue the value of this item up to balanced brackets,
 /// and the byte offset of their end.
-fn cut_at_commas(item: &Item, following: &[Item]) -> Option<(usize, usize)> {
+fn cut_at_commas(item: &RepairItem, following: &[RepairItem]) -> Option<(usize, usize)> {
     let Value::Text(text) = &item.value.value else {
         return None;
     };
@@ -136,10 +140,10 @@ pub(super) fn color_is_comment(color: &Place) -> Diagnostic {
 /// Returns the entries of a mapping with unique keys, and with the mappings of merge keys (`<<`)
 /// inserted in their places. The mapping's own keys take precedence over merged ones, and earlier
 /// merged ones over later ones.
-pub(super) fn entries(items: Vec<Item>, found: &mut Diagnostics) -> Vec<(Key, Node)> {
+pub(super) fn entries(items: Vec<RepairItem>, found: &mut Diagnostics) -> Vec<(Key, Node)> {
     let mut lines: HashMap<String, usize> = HashMap::with_capacity(items.len());
     let mut own = Vec::with_capacity(items.len());
-    for Item { key, value, .. } in items {
+    for RepairItem { key, value, .. } in items {
         let Some((key, plain)) = key else { continue };
         if let Some(line) = lines.get(&key.name) {
             let message = format!("the key '{}' is already in line {line}", short(&key.name));

@@ -47,7 +47,7 @@ impl Maps {
         });
         let ifs = ifs.unwrap();
         System {
-            heading: Metadata::default(),
+            metadata: Metadata::default(),
             contraction: ifs.contraction_within(10_000),
             ifs,
             written: Vec::new(),

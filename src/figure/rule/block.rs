@@ -55,7 +55,7 @@ impl Outline {
 
 /// A drawable item of a block.
 #[derive(Clone, Debug)]
-pub(super) enum Item {
+pub(super) enum BlockItem {
     /// A path, its paint, and the text that it stands for.
     Path(Vec<Outline>, Paint, Option<&'static str>),
     /// A line of text: its font size, the start of its baseline and its colour.
@@ -66,7 +66,7 @@ pub(super) enum Item {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) size: DVec2,
-    pub(super) items: Vec<Item>,
+    pub(super) items: Vec<BlockItem>,
 }
 
 impl Block {
@@ -80,7 +80,9 @@ impl Block {
             let left = if centred { (width - own) / 2.0 } else { 0.0 };
             let baseline = block.size.y + (1.05 * size).round();
             let at = DVec2::new(left, baseline);
-            block.items.push(Item::Text(line, size, at, super::LABEL));
+            block
+                .items
+                .push(BlockItem::Text(line, size, at, super::LABEL));
             block.size.y += leading;
         }
         block.size.x = width;
@@ -91,11 +93,13 @@ impl Block {
     pub(super) fn put(&mut self, other: Self, at: DVec2) {
         let map = DAffine2::from_translation(at);
         let moved = other.items.into_iter().map(|item| match item {
-            Item::Path(outlines, paint, label) => {
+            BlockItem::Path(outlines, paint, label) => {
                 let outlines = outlines.iter().map(|it| it.transformed(&map)).collect();
-                Item::Path(outlines, paint, label)
+                BlockItem::Path(outlines, paint, label)
             }
-            Item::Text(text, size, from, colour) => Item::Text(text, size, from + at, colour),
+            BlockItem::Text(text, size, from, colour) => {
+                BlockItem::Text(text, size, from + at, colour)
+            }
         });
         self.items.extend(moved);
         self.size = self.size.max(at + other.size);
@@ -172,7 +176,7 @@ impl Block {
         let map = DAffine2::from_scale_angle_translation(DVec2::splat(scale), 0.0, corner);
         for item in &self.items {
             match item {
-                Item::Path(outlines, paint, label) => {
+                BlockItem::Path(outlines, paint, label) => {
                     if let Some(label) = label {
                         surface.label(label);
                     }
@@ -183,7 +187,7 @@ impl Block {
                     }
                     tracer.end()?;
                 }
-                Item::Text(text, size, at, colour) => {
+                BlockItem::Text(text, size, at, colour) => {
                     let at = map.transform_point2(*at);
                     font.draw(surface, text, size * scale, at, Anchor::Start, *colour)?;
                 }

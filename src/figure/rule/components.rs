@@ -6,7 +6,7 @@ use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
 use crate::rule::{ElementContext, Rule, Selection};
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
+use super::block::{Block, BlockItem, Outline};
 use super::page::{WORDS, shortened};
 use super::panel::{Common, Extent, Panel};
 use super::{ink, lines, words};
@@ -137,16 +137,16 @@ pub(super) fn base_elements(common: &Common<'_>) -> Block {
         let ends = [DVec2::ZERO, DVec2::X].map(|end| map.transform_point2(end));
         let outline = lines::outline(base).transformed(&map);
         let rings = ends.map(|end| Outline::circle(end, 4.6));
-        let mut items = vec![Item::Path(
+        let mut items = vec![BlockItem::Path(
             vec![outline],
             ink::base_element(base.is_closed()),
             None,
         )];
         if !base.is_line() {
             let side = Outline::line(ends[0], ends[1]);
-            items.insert(0, Item::Path(vec![side], ink::side(), None));
+            items.insert(0, BlockItem::Path(vec![side], ink::side(), None));
         }
-        items.push(Item::Path(rings.into(), ink::side_end(), None));
+        items.push(BlockItem::Path(rings.into(), ink::side_end(), None));
         Block {
             size: bounds.size() * unit + 2.0 * pad,
             items,

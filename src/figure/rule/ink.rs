@@ -17,7 +17,7 @@ const SEEDS: [u8; 3] = [205, 118, 40];
 
 /// Kind of an element, which determines its colour and line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ElementRole {
     /// A fertile element.
     Fertile,
     /// An infertile element.
@@ -28,7 +28,7 @@ pub(super) enum Kind {
     InfertileSeed,
 }
 
-impl Kind {
+impl ElementRole {
     pub(super) const ALL: [Self; 4] = [
         Self::Fertile,
         Self::Infertile,
@@ -140,7 +140,7 @@ pub(super) fn instance(closed: bool, tint: Option<Colour>) -> Paint {
         let [red, green, blue, _] = colour.rgba();
         of([red, green, blue], 60)
     });
-    let own = Kind::Fertile.outline(closed);
+    let own = ElementRole::Fertile.outline(closed);
     Paint {
         fill: own.fill.and(tinted.or(own.fill)),
         ..own

@@ -5,8 +5,8 @@ use crate::geometry::{DVec2, Direction};
 use crate::rule::Rule;
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
-use super::ink::{self, Kind};
+use super::block::{Block, BlockItem, Outline};
+use super::ink::{self, ElementRole};
 use super::page::SMALL;
 use super::panel::MAX_MARKS;
 use super::{marks, words};
@@ -16,7 +16,7 @@ use super::{marks, words};
 pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) -> Block {
     let (from, to) = (DVec2::new(1.0, 8.0), DVec2::new(31.0, 8.0));
     let line = || vec![Outline::line(from, to)];
-    let mut entries: Vec<(Vec<Item>, &str)> = Vec::new();
+    let mut entries: Vec<(Vec<BlockItem>, &str)> = Vec::new();
     let is_shown = |shelf| alone.is_none_or(|alone| alone == shelf);
     let lists = || {
         let shown = is_shown(Shelf::Generators);
@@ -24,36 +24,36 @@ pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) ->
         let initiator = is_shown(Shelf::Initiators).then(|| rule.initiator());
         generators.flat_map(|it| it.parts()).chain(initiator)
     };
-    let has = |kind: Kind| {
+    let has = |kind: ElementRole| {
         lists().any(|part| {
             let mut elements = part.elements.iter();
-            elements.any(|it| Kind::of(it.fertile, part.placement.seeds()) == kind)
+            elements.any(|it| ElementRole::of(it.fertile, part.placement.seeds()) == kind)
         })
     };
     for (kind, meaning) in [
-        (Kind::Fertile, "fertile"),
-        (Kind::Infertile, "infertile"),
-        (Kind::Seed, "seeds a new fractal"),
-        (Kind::InfertileSeed, "seeds a new fractal, infertile"),
+        (ElementRole::Fertile, "fertile"),
+        (ElementRole::Infertile, "infertile"),
+        (ElementRole::Seed, "seeds a new fractal"),
+        (ElementRole::InfertileSeed, "seeds a new fractal, infertile"),
     ] {
         if has(kind) {
-            let mut items = vec![Item::Path(line(), kind.element(true), None)];
-            if matches!(kind, Kind::Fertile | Kind::Seed) {
+            let mut items = vec![BlockItem::Path(line(), kind.element(true), None)];
+            if matches!(kind, ElementRole::Fertile | ElementRole::Seed) {
                 let at = from.midpoint(to) - DVec2::new(0.0, 6.5);
                 let (strokes, paint) = marks::asterisk(at, 0.85, kind.colour());
-                items.push(Item::Path(strokes, paint, None));
+                items.push(BlockItem::Path(strokes, paint, None));
             }
             entries.push((items, meaning));
         }
     }
     let mut elements = lists().flat_map(|part| &part.elements);
     if elements.any(|element| !element.visible) {
-        let dotted = Item::Path(line(), Kind::Fertile.element(false), None);
+        let dotted = BlockItem::Path(line(), ElementRole::Fertile.element(false), None);
         entries.push((vec![dotted], "invisible"));
     }
-    let side = Item::Path(line(), ink::side(), None);
+    let side = BlockItem::Path(line(), ink::side(), None);
     let rings = [from, to].map(|end| Outline::circle(end, 3.0));
-    let ends = Item::Path(rings.into(), ink::side_end(), None);
+    let ends = BlockItem::Path(rings.into(), ink::side_end(), None);
     if is_shown(Shelf::Generators) {
         entries.push((vec![side, ends], "the side that is replaced"));
     } else if is_shown(Shelf::BaseElements) {

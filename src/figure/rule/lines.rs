@@ -3,73 +3,77 @@
 use crate::geometry::{DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
-use super::block::{Item, Outline};
-use super::ink::{self, Kind};
-use super::panel::{Drawn, Panel};
+use super::block::{BlockItem, Outline};
+use super::ink::{self, ElementRole};
+use super::panel::{Panel, PanelElement};
 
 impl Panel<'_> {
     /// Returns the lines of a panel, back to front.
-    pub(super) fn lines(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Item> {
+    pub(super) fn lines(&self, drawn: &[PanelElement<'_>], map: &DAffine2) -> Vec<BlockItem> {
         let place = |point: DVec2| map.transform_point2(point);
         let mut items = Vec::new();
-        let covers = |it: &Drawn<'_>| it.ends == [DVec2::ZERO, DVec2::X];
+        let covers = |it: &PanelElement<'_>| it.ends == [DVec2::ZERO, DVec2::X];
         if self.replaces && !drawn.iter().any(covers) {
             let side = Outline::line(place(DVec2::ZERO), place(DVec2::X));
-            items.push(Item::Path(vec![side], ink::side(), None));
+            items.push(BlockItem::Path(vec![side], ink::side(), None));
         }
         // The kinds and visibilities that occur, in order of first occurrence.
-        let mut looks: Vec<(Kind, bool)> = Vec::new();
+        let mut styles: Vec<(ElementRole, bool)> = Vec::new();
         for element in drawn {
-            let look = (element.kind, element.element.visible);
-            if !looks.contains(&look) {
-                looks.push(look);
+            let style = (element.kind, element.element.visible);
+            if !styles.contains(&style) {
+                styles.push(style);
             }
         }
-        let of = |(kind, visible): (Kind, bool)| {
-            let is = move |it: &&Drawn<'_>| it.kind == kind && it.element.visible == visible;
+        let of = |(kind, visible): (ElementRole, bool)| {
+            let is = move |it: &&PanelElement<'_>| it.kind == kind && it.element.visible == visible;
             drawn.iter().filter(is)
         };
-        for &look in &looks {
+        for &style in &styles {
             let draws = self
                 .draws
                 .iter()
-                .flat_map(|points| self.ends(points, look.0));
+                .flat_map(|points| self.ends(points, style.0));
             let draws: Vec<_> = draws
                 .map(|[from, to]| Outline::line(place(from), place(to)))
                 .collect();
             if !draws.is_empty() {
-                items.push(Item::Path(draws, look.0.draw(), None));
+                items.push(BlockItem::Path(draws, style.0.draw(), None));
             }
         }
-        for &look in &looks {
+        for &style in &styles {
             for closed in [true, false] {
-                let outlines = of(look).filter_map(|element| self.outline(element));
+                let outlines = of(style).filter_map(|element| self.outline(element));
                 let outlines = outlines.filter(|outline| outline.closed == closed);
                 let outlines: Vec<_> = outlines.map(|it| it.transformed(map)).collect();
                 if !outlines.is_empty() {
-                    items.push(Item::Path(outlines, look.0.outline(closed), None));
+                    items.push(BlockItem::Path(outlines, style.0.outline(closed), None));
                 }
             }
         }
-        for &look in &looks {
-            let ends = || of(look).map(|element| (element, element.ends.map(place)));
+        for &style in &styles {
+            let ends = || of(style).map(|element| (element, element.ends.map(place)));
             let lines = ends().map(|(_, [from, to])| Outline::line(from, to));
-            items.push(Item::Path(lines.collect(), look.0.element(look.1), None));
+            items.push(BlockItem::Path(
+                lines.collect(),
+                style.0.element(style.1),
+                None,
+            ));
             let arrows = ends().filter(|(element, _)| element.arrow);
             let arrows: Vec<_> = arrows.filter_map(|(_, ends)| arrowhead(ends)).collect();
             if !arrows.is_empty() {
-                items.push(Item::Path(arrows, look.0.element(true), None));
+                items.push(BlockItem::Path(arrows, style.0.element(true), None));
             }
             let mut points: Vec<_> = ends().flat_map(|(_, ends)| ends).collect();
             points.dedup();
             let dots = points.into_iter().map(|point| Outline::line(point, point));
             let dots = dots.collect();
-            let paint = ink::dots(look.0.colour(), 4.6);
-            items.push(Item::Path(dots, paint, None));
+            let paint = ink::dots(style.0.colour(), 4.6);
+            items.push(BlockItem::Path(dots, paint, None));
         }
         if self.replaces {
             let rings = [DVec2::ZERO, DVec2::X].map(|end| Outline::circle(place(end), 4.6));
-            items.push(Item::Path(rings.into(), ink::side_end(), None));
+            items.push(BlockItem::Path(rings.into(), ink::side_end(), None));
         }
         items
     }

@@ -6,7 +6,7 @@ use crate::render::Paint;
 use crate::style::Colour;
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
+use super::block::{Block, BlockItem, Outline};
 use super::ink;
 
 /// Font size of marks, in pixels.
@@ -153,7 +153,7 @@ impl Mark {
                 let at = DVec2::new(left, baseline);
                 block
                     .items
-                    .push(Item::Text(text.into(), TEXT * size, at, self.colour));
+                    .push(BlockItem::Text(text.into(), TEXT * size, at, self.colour));
             }
         };
         text(&self.number, left);
@@ -166,7 +166,7 @@ impl Mark {
             let raised = if self.number.is_empty() { 0.0 } else { 1.5 };
             let at = DVec2::new(left - ASTERISK * size, centre.y - raised * size);
             let (strokes, paint) = asterisk(at, size, self.colour);
-            block.items.push(Item::Path(strokes, paint, Some("*")));
+            block.items.push(BlockItem::Path(strokes, paint, Some("*")));
         }
         block
     }
@@ -183,7 +183,7 @@ pub(super) fn asterisk(at: DVec2, size: f64, colour: Colour) -> (Vec<Outline>, P
 }
 
 /// Marks after placement.
-pub(super) struct Placed {
+pub(super) struct PlacedMarks {
     pub(super) block: Block,
     /// Corners of the boxes that the marks cover.
     pub(super) corners: Vec<DVec2>,
@@ -197,9 +197,9 @@ pub(super) fn place(
     obstacles: &[Obstacle],
     size: f64,
     clear: bool,
-) -> Option<Placed> {
+) -> Option<PlacedMarks> {
     let mut taken: Vec<Bounding> = Vec::new();
-    let mut placed = Placed {
+    let mut placed = PlacedMarks {
         block: Block::default(),
         corners: Vec::new(),
     };

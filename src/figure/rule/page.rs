@@ -6,7 +6,7 @@ use crate::geometry::DVec2;
 use crate::rule::Rule;
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
+use super::block::{Block, BlockItem, Outline};
 use super::panel::{self, Common};
 use super::{components, ink, key};
 
@@ -114,7 +114,7 @@ fn across(width: f64) -> Block {
     let line = Outline::line(DVec2::new(0.0, 0.5), DVec2::new(width, 0.5));
     Block {
         size: DVec2::new(width, 1.0),
-        items: vec![Item::Path(vec![line], ink::hairline(), None)],
+        items: vec![BlockItem::Path(vec![line], ink::hairline(), None)],
     }
 }
 
@@ -128,7 +128,7 @@ fn beside(columns: Vec<(&str, Block)>, font: &Font) -> Block {
         if row.size.x > 0.0 {
             let x = row.size.x.round() + GUTTER + 0.5;
             let line = Outline::line(DVec2::new(x, 0.0), DVec2::new(x, top + height));
-            let line = Item::Path(vec![line], ink::hairline(), None);
+            let line = BlockItem::Path(vec![line], ink::hairline(), None);
             row.items.push(line);
             row.size.x = x + GUTTER;
         }

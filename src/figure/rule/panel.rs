@@ -5,7 +5,7 @@ use crate::rule::{BaseElement, ListedElement, Part};
 
 use super::super::text::Font;
 use super::block::{Block, Outline};
-use super::ink::Kind;
+use super::ink::ElementRole;
 use super::lines::{arrowhead, flattened, outline};
 use super::marks::{self, Anchor, Mark, Obstacle};
 
@@ -48,9 +48,9 @@ pub(super) struct Extent {
 }
 
 /// A drawable element.
-pub(super) struct Drawn<'a> {
+pub(super) struct PanelElement<'a> {
     pub(super) element: &'a ListedElement,
-    pub(super) kind: Kind,
+    pub(super) kind: ElementRole,
     pub(super) ends: [DVec2; 2],
     /// Whether the element has an arrowhead.
     pub(super) arrow: bool,
@@ -110,7 +110,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the elements whose ends can be drawn.
-    fn drawn(&self) -> Vec<Drawn<'a>> {
+    fn drawn(&self) -> Vec<PanelElement<'a>> {
         let mut drawn = Vec::new();
         for part in self.parts {
             let polygons = part
@@ -122,9 +122,9 @@ impl<'a> Panel<'a> {
             for (number, element) in part.elements.iter().enumerate() {
                 let ends = [self.points[element.from], self.points[element.to]];
                 if ends.into_iter().all(can_be_drawn) {
-                    drawn.push(Drawn {
+                    drawn.push(PanelElement {
                         element,
-                        kind: Kind::of(element.fertile, part.placement.seeds()),
+                        kind: ElementRole::of(element.fertile, part.placement.seeds()),
                         ends,
                         arrow: all || number == 0,
                     });
@@ -139,7 +139,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the outline of a visible element's base element, unless it is just the element's line.
-    pub(super) fn outline(&self, drawn: &Drawn<'_>) -> Option<Outline> {
+    pub(super) fn outline(&self, drawn: &PanelElement<'_>) -> Option<Outline> {
         let base = self.base(drawn.element);
         if base.is_line() || !drawn.element.visible || drawn.ends[0] == drawn.ends[1] {
             return None;
@@ -149,7 +149,7 @@ impl<'a> Panel<'a> {
         Some(outline(base).transformed(frame.map()))
     }
 
-    fn bounds(&self, drawn: &[Drawn<'_>]) -> Bounds {
+    fn bounds(&self, drawn: &[PanelElement<'_>]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         if self.replaces || drawn.is_empty() {
             bounds.add(DVec2::ZERO);
@@ -163,7 +163,7 @@ impl<'a> Panel<'a> {
                 self.base(element.element).add_to(&mut bounds, &frame, 0.0);
             }
         }
-        for kind in Kind::ALL {
+        for kind in ElementRole::ALL {
             for points in &self.draws {
                 let ends = self.ends(points, kind);
                 ends.iter().flatten().for_each(|&end| bounds.add(end));
@@ -173,12 +173,12 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the ends of all elements of a kind at other points, where they can be drawn.
-    pub(super) fn ends(&self, points: &[DVec2], kind: Kind) -> Vec<[DVec2; 2]> {
+    pub(super) fn ends(&self, points: &[DVec2], kind: ElementRole) -> Vec<[DVec2; 2]> {
         let mut ends = Vec::new();
         for part in self.parts {
             let seeds = part.placement.seeds();
             let elements = part.elements.iter();
-            let alike = elements.filter(|it| Kind::of(it.fertile, seeds) == kind);
+            let alike = elements.filter(|it| ElementRole::of(it.fertile, seeds) == kind);
             ends.extend(alike.map(|it| [points[it.from], points[it.to]]));
         }
         ends.retain(|ends| ends.iter().all(|&end| can_be_drawn(end)));
@@ -186,7 +186,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the pixels in a unit: more where elements are short, fewer where the panel would be too large.
-    fn unit(&self, drawn: &[Drawn<'_>], bounds: &Bounds, extent: Extent) -> f64 {
+    fn unit(&self, drawn: &[PanelElement<'_>], bounds: &Bounds, extent: Extent) -> f64 {
         let mut lengths: Vec<_> = drawn
             .iter()
             .map(|element| element.ends[0].distance(element.ends[1]))
@@ -199,13 +199,13 @@ impl<'a> Panel<'a> {
         extent.unit.max(room / short).min(most)
     }
 
-    fn marks(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Mark> {
+    fn marks(&self, drawn: &[PanelElement<'_>], map: &DAffine2) -> Vec<Mark> {
         if drawn.len() > MAX_MARKS {
             return Vec::new();
         }
         let place = |point: DVec2| map.transform_point2(point);
         let mut marks = Vec::new();
-        for Drawn {
+        for PanelElement {
             element,
             kind,
             ends,
@@ -243,7 +243,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the lines that marks avoid.
-    fn obstacles(&self, drawn: &[Drawn<'_>], map: &DAffine2) -> Vec<Obstacle> {
+    fn obstacles(&self, drawn: &[PanelElement<'_>], map: &DAffine2) -> Vec<Obstacle> {
         let place = |point: DVec2| map.transform_point2(point);
         let mut obstacles = Vec::new();
         for element in drawn {
@@ -258,7 +258,7 @@ impl<'a> Panel<'a> {
             }
         }
         let draws = self.draws.iter();
-        let draws = draws.flat_map(|points| Kind::ALL.map(|kind| self.ends(points, kind)));
+        let draws = draws.flat_map(|points| ElementRole::ALL.map(|kind| self.ends(points, kind)));
         obstacles.extend(draws.flatten().map(|ends| Obstacle {
             ends: ends.map(place),
             cost: 3.0,

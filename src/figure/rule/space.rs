@@ -16,8 +16,8 @@ use crate::render::Paint;
 use crate::rule::Piece;
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
-use super::ink::{self, Kind};
+use super::block::{Block, BlockItem, Outline};
+use super::ink::{self, ElementRole};
 use super::onto_panel;
 use super::page::{WORDS, lay_out, plural};
 use super::system::{MAX_NUMBERS, MOST, SMALL, edges, name};
@@ -39,7 +39,7 @@ pub(super) fn page(system: &System<DAffine3>, view: DMat3, title: &str) -> Block
         let title = plural(sets, "condensation set", "condensation sets");
         columns.push((title, drawn));
     }
-    let source = system.heading.description.source.as_deref();
+    let source = system.metadata.description.source.as_deref();
     lay_out(
         &font,
         columns,
@@ -121,21 +121,21 @@ impl<'a> Plan<'a> {
         block(size, items)
     }
 
-    fn whole(&self, map: &DAffine2) -> [Item; 2] {
+    fn whole(&self, map: &DAffine2) -> [BlockItem; 2] {
         let seen = self.shown.seen(&self.view);
         [false, true].map(|visible| seen.lines(map, visible, ink::side()))
     }
 
     fn images(&self, font: &Font) -> Block {
         let (map, size) = self.panel(1.0);
-        let mut items: Vec<Item> = self.whole(&map).into();
+        let mut items: Vec<BlockItem> = self.whole(&map).into();
         let maps = self.ifs.maps().iter();
         let mut images: Vec<(usize, Seen<'_>)> = maps
             .map(|it| self.shown.seen(&(self.view * it.affine)))
             .enumerate()
             .collect();
         images.sort_by(|(_, a), (_, b)| a.middle().z.total_cmp(&b.middle().z));
-        let paint = Kind::Fertile.outline(true);
+        let paint = ElementRole::Fertile.outline(true);
         for (_, image) in &images {
             items.push(image.fill(&map, paint));
             items.push(image.lines(&map, true, outline(paint)));
@@ -145,7 +145,7 @@ impl<'a> Plan<'a> {
                 let name = name(self.ifs, *number);
                 let middle = map.transform_point2(image.middle().truncate());
                 let at = middle + DVec2::new(-font.width(&name, WORDS) / 2.0, 0.36 * WORDS);
-                items.push(Item::Text(name, WORDS, at, super::LABEL));
+                items.push(BlockItem::Text(name, WORDS, at, super::LABEL));
             }
         }
         block(size, items)
@@ -196,8 +196,8 @@ pub(super) fn seen(solid: &Solid, map: &DAffine3) -> (Outline, Vec<Outline>, f64
 }
 
 /// Returns a block of the items that draw something.
-fn block(size: DVec2, mut items: Vec<Item>) -> Block {
-    items.retain(|item| !matches!(item, Item::Path(paths, ..) if paths.is_empty()));
+fn block(size: DVec2, mut items: Vec<BlockItem>) -> Block {
+    items.retain(|item| !matches!(item, BlockItem::Path(paths, ..) if paths.is_empty()));
     Block { size, items }
 }
 
@@ -293,7 +293,7 @@ impl Seen<'_> {
     }
 
     /// Returns the faces that are seen, filled.
-    fn fill(&self, map: &DAffine2, paint: Paint) -> Item {
+    fn fill(&self, map: &DAffine2, paint: Paint) -> BlockItem {
         let faces = self.wires.faces.iter().zip(&self.fronts);
         let seen = faces.filter(|(_, is_front)| **is_front).map(|(face, _)| {
             let start = face.first().map(|it| self.place(map, *it));
@@ -309,11 +309,11 @@ impl Seen<'_> {
             stroke: None,
             ..paint
         };
-        Item::Path(seen.collect(), paint, None)
+        BlockItem::Path(seen.collect(), paint, None)
     }
 
     /// Returns the edges that are seen, or those that the solid itself hides.
-    fn lines(&self, map: &DAffine2, visible: bool, paint: Paint) -> Item {
+    fn lines(&self, map: &DAffine2, visible: bool, paint: Paint) -> BlockItem {
         let is_seen = |faces: &[usize]| {
             faces.iter().any(|face| self.fronts[*face]) || !self.fronts.contains(&true)
         };
@@ -321,7 +321,7 @@ impl Seen<'_> {
         let edges = edges.filter(|(_, faces)| is_seen(faces) == visible);
         let lines = edges
             .map(|([from, to], _)| Outline::line(self.place(map, *from), self.place(map, *to)));
-        Item::Path(lines.collect(), paint, None)
+        BlockItem::Path(lines.collect(), paint, None)
     }
 
     fn place(&self, map: &DAffine2, corner: usize) -> DVec2 {

@@ -11,7 +11,7 @@ use crate::instancing::{Instancing, Master, ObjectInstance};
 use crate::render::Paint;
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
+use super::block::{Block, BlockItem, Outline};
 use super::ink;
 use super::lines::{flattened, outline};
 use super::onto_panel;
@@ -46,7 +46,7 @@ const FARTHEST: f64 = 1e100;
 pub(super) fn page<M: Shown>(structure: &Instancing<M>, view: M::View, title: &str) -> Block {
     let font = Font::new();
     let shown = shown(structure);
-    let plan = Plan {
+    let plan = StructureFigure {
         font: &font,
         structure,
         view,
@@ -147,7 +147,7 @@ impl Shown for DAffine3 {
     }
 }
 
-struct Plan<'a, M: Shown> {
+struct StructureFigure<'a, M: Shown> {
     font: &'a Font,
     structure: &'a Instancing<M>,
     view: M::View,
@@ -155,7 +155,7 @@ struct Plan<'a, M: Shown> {
 }
 
 /// A drawable instance, in the coordinates of the object that contains it.
-struct Drawn<'a, M: Shown> {
+struct DrawnInstance<'a, M: Shown> {
     outline: Outline,
     edges: Vec<Outline>,
     /// Place in the order from far to near.
@@ -163,7 +163,7 @@ struct Drawn<'a, M: Shown> {
     instance: &'a ObjectInstance<M>,
 }
 
-impl<'a, M: Shown> Plan<'a, M> {
+impl<'a, M: Shown> StructureFigure<'a, M> {
     /// Returns the panel of a list of instances, with sides of at most `side` pixels.
     fn panel(&self, instances: &'a [ObjectInstance<M>], side: f64) -> Block {
         let drawn = instances.iter().take(MAX_INSTANCES);
@@ -182,7 +182,7 @@ impl<'a, M: Shown> Plan<'a, M> {
             for drawn in &drawn {
                 let line = drawn.outline.transformed(&map);
                 let paint = drawn.paint();
-                block.items.push(Item::Path(vec![line], paint, None));
+                block.items.push(BlockItem::Path(vec![line], paint, None));
                 let edges: Vec<_> = { drawn.edges.iter() }
                     .map(|it| it.transformed(&map))
                     .collect();
@@ -191,7 +191,7 @@ impl<'a, M: Shown> Plan<'a, M> {
                         fill: None,
                         ..paint
                     };
-                    block.items.push(Item::Path(edges, paint, None));
+                    block.items.push(BlockItem::Path(edges, paint, None));
                 }
             }
             unnamed = self.put_names(&mut block, &drawn, &map);
@@ -210,7 +210,7 @@ impl<'a, M: Shown> Plan<'a, M> {
         )
     }
 
-    fn drawn(&self, instance: &'a ObjectInstance<M>) -> Option<Drawn<'a, M>> {
+    fn drawn(&self, instance: &'a ObjectInstance<M>) -> Option<DrawnInstance<'a, M>> {
         let map = self.structure.map_of(instance);
         let own = match &instance.master {
             Master::Object(number) => M::filling(Some(*self.boxes.get(number)?)),
@@ -221,7 +221,7 @@ impl<'a, M: Shown> Plan<'a, M> {
         let corners = [bounds.min(), bounds.max()].map(DVec2::abs);
         let can_be_drawn =
             bounds.is_finite() && corners.iter().all(|it| it.max_element() < FARTHEST);
-        can_be_drawn.then_some(Drawn {
+        can_be_drawn.then_some(DrawnInstance {
             outline,
             edges,
             near,
@@ -231,7 +231,12 @@ impl<'a, M: Shown> Plan<'a, M> {
 
     /// Labels instances with the names of their objects where a label covers nothing; returns the names
     /// without room.
-    fn put_names(&self, block: &mut Block, drawn: &[Drawn<'_, M>], map: &DAffine2) -> Vec<String> {
+    fn put_names(
+        &self,
+        block: &mut Block,
+        drawn: &[DrawnInstance<'_, M>],
+        map: &DAffine2,
+    ) -> Vec<String> {
         let objects = || drawn.iter().filter(|drawn| !drawn.is_shape());
         let lines: Vec<_> = drawn
             .iter()
@@ -265,7 +270,7 @@ impl<'a, M: Shown> Plan<'a, M> {
             match found {
                 Some(label) => {
                     let at = DVec2::new(label.min().x + 1.0, label.max().y - 0.25 * SMALL);
-                    let item = Item::Text(name, SMALL, at, super::LABEL);
+                    let item = BlockItem::Text(name, SMALL, at, super::LABEL);
                     block.items.push(item);
                     placed.push(label);
                 }
@@ -277,7 +282,7 @@ impl<'a, M: Shown> Plan<'a, M> {
     }
 }
 
-impl<M: Shown> Drawn<'_, M> {
+impl<M: Shown> DrawnInstance<'_, M> {
     fn is_shape(&self) -> bool {
         matches!(self.instance.master, Master::Shape(_))
     }

@@ -7,8 +7,8 @@ use crate::ifs::{AffineMap, Ifs, System};
 use crate::rule::{BaseElement, Piece};
 
 use super::super::text::Font;
-use super::block::{Block, Item, Outline};
-use super::ink::{self, Kind};
+use super::block::{Block, BlockItem, Outline};
+use super::ink::{self, ElementRole};
 use super::lines::outline;
 use super::onto_panel;
 use super::page::{WORDS, lay_out, plural};
@@ -26,7 +26,7 @@ pub(super) fn page(system: &System, title: &str) -> Block {
     let graph = Graph::of_system(system);
     let font = Font::new();
     let ifs = system.ifs();
-    let plan = Plan::new(ifs, &graph);
+    let plan = SystemFigure::new(ifs, &graph);
     let sets = ifs.condensation().len();
     let mut columns = vec![
         ("initial set", plan.initial()),
@@ -70,7 +70,7 @@ pub(super) fn name<M: AffineMap>(ifs: &Ifs<M>, map: usize) -> String {
 }
 
 /// Content of the figure, and its bounds.
-struct Plan<'a> {
+struct SystemFigure<'a> {
     ifs: &'a Ifs,
     /// Outlines of the initial set.
     initial: Vec<&'a BaseElement>,
@@ -82,7 +82,7 @@ struct Plan<'a> {
     bounds: Bounds,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> SystemFigure<'a> {
     fn new(ifs: &'a Ifs, graph: &'a Graph) -> Self {
         let (first, others) = (&graph.base_elements()[0], &graph.base_elements()[1..]);
         let sets = ifs.condensation().iter().map(|set| set.shape.count()).sum();
@@ -133,10 +133,10 @@ impl<'a> Plan<'a> {
         let mut items = Vec::new();
         if self.is_boxed() {
             let frame = outline(&self.shown).transformed(&map);
-            items.push(Item::Path(vec![frame], ink::side(), None));
+            items.push(BlockItem::Path(vec![frame], ink::side(), None));
         }
         for initial in &self.initial {
-            items.push(Item::Path(
+            items.push(BlockItem::Path(
                 vec![outline(initial).transformed(&map)],
                 ink::base_element(initial.is_closed()),
                 None,
@@ -148,21 +148,21 @@ impl<'a> Plan<'a> {
     fn images(&self, font: &Font) -> Block {
         let (map, size) = self.panel(1.0);
         let whole = outline(&self.shown).transformed(&map);
-        let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
+        let mut items = vec![BlockItem::Path(vec![whole], ink::side(), None)];
         let images = |shape: &BaseElement| -> Vec<Outline> {
             let maps = self.ifs.maps().iter();
             maps.map(|it| outline(shape).transformed(&(map * it.affine)))
                 .collect()
         };
-        items.push(Item::Path(
+        items.push(BlockItem::Path(
             images(&self.shown),
-            Kind::Fertile.outline(self.shown.is_closed()),
+            ElementRole::Fertile.outline(self.shown.is_closed()),
             None,
         ));
         if self.is_boxed() {
-            items.push(Item::Path(
+            items.push(BlockItem::Path(
                 self.initial.iter().flat_map(|one| images(one)).collect(),
-                Kind::Fertile.element(true),
+                ElementRole::Fertile.element(true),
                 None,
             ));
         }
@@ -174,7 +174,7 @@ impl<'a> Plan<'a> {
                     .add_to(&mut bounds, &(map * it.affine).into(), 0.0);
                 let middle = bounds.centre();
                 let at = middle + DVec2::new(-font.width(&name, WORDS) / 2.0, 0.36 * WORDS);
-                items.push(Item::Text(name, WORDS, at, super::LABEL));
+                items.push(BlockItem::Text(name, WORDS, at, super::LABEL));
             }
         }
         Block { size, items }
@@ -183,10 +183,10 @@ impl<'a> Plan<'a> {
     fn condensation(&self) -> Block {
         let (map, size) = self.panel(SMALL);
         let whole = outline(&self.shown).transformed(&map);
-        let mut items = vec![Item::Path(vec![whole], ink::side(), None)];
+        let mut items = vec![BlockItem::Path(vec![whole], ink::side(), None)];
         for set in self.sets {
             let drawn = outline(set).transformed(&map);
-            items.push(Item::Path(
+            items.push(BlockItem::Path(
                 vec![drawn],
                 ink::base_element(set.is_closed()),
                 None,

@@ -50,7 +50,7 @@ impl<F: Frame> Forecast<'_, F> {
         for (&object, tally) in &mut all.tallies {
             tally.sums.area = tally.sums.square * self.own_area(object);
         }
-        self.standing = all.tallies;
+        self.population = all.tallies;
         self.step += 1;
         true
     }

@@ -142,7 +142,7 @@ impl<F: Frame> Blocks<F> {
                 Next::Run(_) | Next::Subtree(_) => unreachable!("blocks are not made of blocks"),
                 Next::End => break,
             };
-            let frame = found.standing.frame;
+            let frame = found.state.frame;
             let drawn = graph.drawn(found.object);
             if drawn.is_some_and(Outline::is_line) && self.are_plain {
                 sticks.iter_mut().for_each(|sticks| {
@@ -163,8 +163,8 @@ impl<F: Frame> Blocks<F> {
             all += frame.length();
             leaves.push(Leaf {
                 frame: frame.with_direction(unit * frame.direction()),
-                length: found.standing.length,
-                appearance: found.standing.appearance,
+                length: found.state.length,
+                appearance: found.state.appearance,
                 object: found.object,
                 born: found.level,
                 joined: found.joined,

@@ -33,8 +33,8 @@ use crate::graph::Graph;
 use crate::parallel::{for_each, is_cancelled};
 
 use self::field::TooFar;
-use self::net::{Edge, Net, Node};
-use self::shown::Shown;
+use self::net::{Edge, LimitNode, Net};
+use self::shown::LayerCells;
 use self::waves::Waves;
 
 /// Maximum number of points whose images are computed together.
@@ -69,16 +69,16 @@ pub(crate) struct LimitCells<'g> {
 
 /// Parameters of a search for cells.
 #[derive(Clone, Copy)]
-pub(crate) struct Search<'a> {
+pub(crate) struct CellSearch<'a> {
     /// Number of cells per unit of length of the plane.
     pub(crate) scale: f64,
     /// Maximum number of images of points that are computed.
-    pub(crate) most_images: u64,
+    pub(crate) max_images: u64,
     pub(crate) threads: NonZero<usize>,
     pub(crate) cancel: Option<&'a AtomicBool>,
 }
 
-impl Search<'_> {
+impl CellSearch<'_> {
     /// Returns an error if the search was cancelled.
     fn check(&self) -> Result<(), Stopped> {
         match is_cancelled(self.cancel) {
@@ -89,7 +89,7 @@ impl Search<'_> {
 }
 
 /// Result of a search for cells.
-pub(crate) struct Found {
+pub(crate) struct FoundCells {
     /// Cells of every layer that hold points of it.
     pub(crate) fields: Vec<Field>,
     /// Number of images of points that were computed.
@@ -144,14 +144,14 @@ impl<'g> LimitCells<'g> {
     /// # Errors
     ///
     /// Returns the errors of [`LimitCells::find`].
-    pub(crate) fn bounds(&self, search: &Search<'_>, pixels: f64) -> Result<Bounds, Stopped> {
+    pub(crate) fn bounds(&self, search: &CellSearch<'_>, pixels: f64) -> Result<Bounds, Stopped> {
         let mut bounds = self.rough_bounds();
         for pixels in [pixels / 4.0, pixels] {
             let scale = pixels / bounds.size().max_element();
             if !scale.is_finite() {
                 break;
             }
-            let found = self.find(&Search { scale, ..*search })?;
+            let found = self.find(&CellSearch { scale, ..*search })?;
             for field in &found.fields {
                 bounds.add_all(&field.bounds());
             }
@@ -164,7 +164,7 @@ impl<'g> LimitCells<'g> {
     /// # Errors
     ///
     /// Returns an error if the search takes more work than is allowed, or if it is cancelled.
-    pub(crate) fn find(&self, search: &Search<'_>) -> Result<Found, Stopped> {
+    pub(crate) fn find(&self, search: &CellSearch<'_>) -> Result<FoundCells, Stopped> {
         let mut found = self.find_all(search, true)?;
         let layers = found.fields.len() - self.layers;
         found.fields = finished(found.fields.split_off(layers));
@@ -173,17 +173,21 @@ impl<'g> LimitCells<'g> {
 
     /// Finds the cells of all sets, followed by those of every layer. Without outlines, only elements that
     /// are replaced without end are considered.
-    fn find_all(&self, search: &Search<'_>, with_outlines: bool) -> Result<Found, Stopped> {
+    fn find_all(
+        &self,
+        search: &CellSearch<'_>,
+        with_outlines: bool,
+    ) -> Result<FoundCells, Stopped> {
         let scales = { self.net.nodes.iter() }.map(|node| search.scale * node.stretch);
-        let mut orbit = Orbit::new(self, search, scales, search.most_images, &[]);
+        let mut orbit = Orbit::new(self, search, scales, search.max_images, &[]);
         orbit.begin(with_outlines.then_some(self.graph))?;
         let mut steps = 0;
         while !orbit.waves.are_over() {
             orbit.go_on()?;
             steps += 1;
         }
-        Ok(Found {
-            images: search.most_images - orbit.left,
+        Ok(FoundCells {
+            images: search.max_images - orbit.left,
             steps,
             fields: orbit.into_fields()?,
         })
@@ -191,7 +195,7 @@ impl<'g> LimitCells<'g> {
 
     /// Adds cells of all sets that one point per cell has not reached: finer cells are searched around all
     /// cells but inner ones, if that takes no more work than it is worth.
-    fn refine(&self, search: &Search<'_>, known: &mut Found) -> Result<(), Stopped> {
+    fn refine(&self, search: &CellSearch<'_>, known: &mut FoundCells) -> Result<(), Stopped> {
         let nodes = &self.net.nodes;
         for fineness in FINER {
             let inner: Vec<Field> = known.fields.iter().map(Field::inner).collect();
@@ -204,7 +208,7 @@ impl<'g> LimitCells<'g> {
                 break;
             }
             let scales = fields.clone().map(|it| it.scale() * fineness);
-            let left = search.most_images.saturating_sub(known.images);
+            let left = search.max_images.saturating_sub(known.images);
             let mut orbit = Orbit::new(self, search, scales, left, &inner);
             for (number, (field, inner)) in fields.zip(&inner).enumerate() {
                 for point in field.points_without(inner) {
@@ -214,7 +218,7 @@ impl<'g> LimitCells<'g> {
             while !orbit.waves.are_over() {
                 orbit.go_on()?;
             }
-            known.images = search.most_images - orbit.left;
+            known.images = search.max_images - orbit.left;
             for (field, finer) in known.fields.iter_mut().zip(&orbit.into_fields()?) {
                 for point in finer.points_without(&Field::new(finer.scale())) {
                     field.add(point)?;
@@ -236,11 +240,11 @@ fn finished(mut layers: Vec<Field>) -> Vec<Field> {
 /// Points of all sets, one per cell.
 struct Orbit<'a> {
     net: &'a Net,
-    search: &'a Search<'a>,
+    search: &'a CellSearch<'a>,
     /// Cells of sets.
     fields: Vec<Field>,
     /// Cells of layers.
-    shown: Shown<()>,
+    shown: LayerCells<()>,
     /// New points.
     waves: Waves<DVec2>,
     /// Number of images that may still be computed.
@@ -253,7 +257,7 @@ impl<'a> Orbit<'a> {
     /// Creates empty sets and layers; `scales` are their numbers of cells per unit of length.
     fn new(
         set: &'a LimitCells<'_>,
-        search: &'a Search<'a>,
+        search: &'a CellSearch<'a>,
         scales: impl Iterator<Item = f64> + Clone,
         left: u64,
         without: &'a [Field],
@@ -263,7 +267,7 @@ impl<'a> Orbit<'a> {
             net: &set.net,
             search,
             fields: scales.clone().take(sets).map(Field::new).collect(),
-            shown: Shown::new(scales.skip(sets), search.threads.get()),
+            shown: LayerCells::new(scales.skip(sets), search.threads.get()),
             waves: Waves::of(&set.net),
             left,
             without,
@@ -368,7 +372,7 @@ impl<'a> Orbit<'a> {
 }
 
 /// Returns points of the outlines of a set, or an error if there are more than `most`.
-fn outlined(graph: &Graph, node: &Node, scale: f64, most: u64) -> Result<Vec<DVec2>, Stopped> {
+fn outlined(graph: &Graph, node: &LimitNode, scale: f64, most: u64) -> Result<Vec<DVec2>, Stopped> {
     let mut points = Vec::new();
     for (map, base_element) in &node.outlines {
         let base_element = &graph.base_elements()[*base_element];

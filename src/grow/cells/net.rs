@@ -32,7 +32,7 @@ impl Edge {
 
 /// Set of the limit, in a unit frame.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Node {
+pub(super) struct LimitNode {
     /// Ways in which it is part of other sets.
     pub(super) images: Vec<Edge>,
     /// Maps by which outlines are parts of it, with the indices of base elements.
@@ -46,7 +46,7 @@ pub(super) struct Node {
 /// Sets: first the descendants of each behaviour, then the contents of each layer of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct Net {
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<LimitNode>,
 }
 
 /// Part of a picture: objects with the maps that place them, including all their descendants.
@@ -87,7 +87,7 @@ impl Builder<'_> {
 
     fn run(&self, layers: &[Layer]) -> Net {
         let behaviours = self.graph.behaviours().count();
-        let mut nodes = vec![Node::default(); behaviours + layers.len()];
+        let mut nodes = vec![LimitNode::default(); behaviours + layers.len()];
         let mut add = |whole: usize, map: &DAffine2, object: usize| {
             if let Some(part) = self.node(object) {
                 let image = Edge {
@@ -221,7 +221,7 @@ impl Net {
     }
 
     /// Returns the largest number of maps that are composed in one edge.
-    pub(super) fn most_maps(&self) -> usize {
+    pub(super) fn max_maps(&self) -> usize {
         let images = self.nodes.iter().flat_map(|node| &node.images);
         images.map(|image| image.maps).max().unwrap_or(1)
     }

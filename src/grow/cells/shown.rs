@@ -35,14 +35,14 @@ impl Mark for u16 {
 /// Cells of layers, divided so that every thread has a part of the plane of its own.
 ///
 /// The points of a cell are put in their order, regardless of the number of threads.
-pub(super) struct Shown<M> {
+pub(super) struct LayerCells<M> {
     /// Fields by thread and by layer.
     parts: Vec<Vec<Field>>,
     /// Points of layers that are not in their cells yet.
     open: Vec<(usize, DVec2, M)>,
 }
 
-impl<M: Mark> Shown<M> {
+impl<M: Mark> LayerCells<M> {
     /// Creates layers without points; `scales` are their numbers of cells per unit of length.
     pub(super) fn new(scales: impl Iterator<Item = f64> + Clone, threads: usize) -> Self {
         let layers = || scales.clone().map(Field::new).collect();
@@ -124,8 +124,8 @@ mod tests {
         };
         let shown = |threads: usize| {
             let scales = [0.3, 0.7].into_iter();
-            let mut places = Shown::new(scales.clone(), threads);
-            let mut labels = Shown::new(scales, threads);
+            let mut places = LayerCells::new(scales.clone(), threads);
+            let mut labels = LayerCells::new(scales, threads);
             for (point, number) in points().zip(0_u32..) {
                 let label = u16::try_from(number % 5_000).unwrap();
                 places.push(number as usize % 2, point, ()).unwrap();

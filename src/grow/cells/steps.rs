@@ -14,9 +14,9 @@ use std::collections::VecDeque;
 
 use super::field::{Field, TooFar};
 use super::net::Edge;
-use super::shown::Shown;
+use super::shown::LayerCells;
 use super::waves::Waves;
-use super::{Found, LimitCells, Search, Stopped};
+use super::{CellSearch, FoundCells, LimitCells, Stopped};
 use super::{finished, looked_for, outlined};
 use crate::geometry::{DAffine2, DMat2, DVec2, stretch};
 
@@ -49,12 +49,12 @@ const MAX_SIZES: usize = 40;
 
 /// Point with the linear part of the maps that were applied to it.
 #[derive(Clone, Copy)]
-struct Drawn {
+struct MappedPoint {
     at: DVec2,
     linear: DMat2,
 }
 
-impl Drawn {
+impl MappedPoint {
     #[inline]
     fn mapped(&self, map: &DAffine2) -> Self {
         Self {
@@ -67,14 +67,14 @@ impl Drawn {
 /// Search for the last steps.
 struct Steps<'a> {
     set: &'a LimitCells<'a>,
-    search: &'a Search<'a>,
+    search: &'a CellSearch<'a>,
     /// Minimum length of elements that are replaced.
     shortest: f64,
     /// Cells of elements that are replaced without end, by set and then by layer.
     cores: Vec<Field>,
     /// Last steps of cells, by set and then by layer; the cells of sets are larger.
     last: Vec<Field>,
-    waves: Waves<Drawn>,
+    waves: Waves<MappedPoint>,
     /// Points of the coming waves: by the number of maps from the last wave, minus 1, by set, and by the size
     /// of the cells that the points represent.
     met: VecDeque<Vec<Vec<Field>>>,
@@ -87,7 +87,7 @@ struct Steps<'a> {
 /// Image of a point.
 struct Image<'a> {
     edge: &'a Edge,
-    drawn: Drawn,
+    drawn: MappedPoint,
     step: u16,
     /// Index of the size of the cell that the point represents.
     size: usize,
@@ -102,7 +102,11 @@ impl LimitCells<'_> {
     /// # Errors
     ///
     /// Returns an error if that takes more work or more steps than are allowed, or if it is cancelled.
-    pub(crate) fn find_steps(&self, search: &Search<'_>, shortest: f64) -> Result<Found, Stopped> {
+    pub(crate) fn find_steps(
+        &self,
+        search: &CellSearch<'_>,
+        shortest: f64,
+    ) -> Result<FoundCells, Stopped> {
         let mut cores = self.find_all(search, false)?;
         self.refine(search, &mut cores)?;
         cores.fields = finished(cores.fields);
@@ -114,7 +118,7 @@ impl LimitCells<'_> {
             waves: Waves::of(&self.net),
             met: VecDeque::new(),
             step: 0,
-            left: search.most_images.saturating_sub(cores.images),
+            left: search.max_images.saturating_sub(cores.images),
             cores: cores.fields,
         };
         let mut inner = 0;
@@ -138,9 +142,9 @@ impl LimitCells<'_> {
                 break;
             }
         }
-        Ok(Found {
+        Ok(FoundCells {
             fields: finished(steps.last.split_off(first_layer)),
-            images: search.most_images - steps.left,
+            images: search.max_images - steps.left,
             steps: inner.max(outer).into(),
         })
     }
@@ -161,7 +165,7 @@ impl Steps<'_> {
 
     /// Returns the length of an element in the picture, as a multiple of the shortest length.
     #[inline]
-    fn ratio(&self, whole: usize, drawn: &Drawn) -> f64 {
+    fn ratio(&self, whole: usize, drawn: &MappedPoint) -> f64 {
         stretch(&drawn.linear) * self.set.net.nodes[whole].stretch / self.shortest
     }
 
@@ -171,7 +175,7 @@ impl Steps<'_> {
         let first_layer = self.first_layer();
         self.step = 0;
         self.waves = Waves::of(net);
-        let waves = 0..net.most_maps();
+        let waves = 0..net.max_maps();
         self.met = waves
             .map(|_| (0..first_layer).map(&met).collect())
             .collect();
@@ -270,7 +274,7 @@ impl Steps<'_> {
         let scales: Vec<f64> = cores.map(|(set, core)| core.scale() / grain(set)).collect();
         let (sets, layers) = scales.split_at(first_layer);
         self.last = sets.iter().map(|&scale| Field::new(scale)).collect();
-        let mut shown = Shown::new(layers.iter().copied(), self.search.threads.get());
+        let mut shown = LayerCells::new(layers.iter().copied(), self.search.threads.get());
         self.begin(|set| {
             let sizes = std::iter::successors(Some(scales[set]), |scale| Some(scale / 2.0));
             sizes.take(MAX_SIZES).map(Field::new).collect()
@@ -278,7 +282,7 @@ impl Steps<'_> {
         let linear = DMat2::IDENTITY;
         for (number, node) in self.set.net.nodes[..first_layer].iter().enumerate() {
             if let Some(at) = node.point.filter(|_| node.stretch >= self.shortest) {
-                self.waves.push(0, number, Drawn { at, linear });
+                self.waves.push(0, number, MappedPoint { at, linear });
             }
         }
         while !self.waves.are_over() {
@@ -324,10 +328,10 @@ impl Steps<'_> {
             for at in points {
                 if number >= first_layer {
                     self.last[number].label(at, 0)?;
-                } else if !self.is_covered(number, &Drawn { at, linear }, 0)
+                } else if !self.is_covered(number, &MappedPoint { at, linear }, 0)
                     && met[number].add(at)?
                 {
-                    self.waves.push(0, number, Drawn { at, linear });
+                    self.waves.push(0, number, MappedPoint { at, linear });
                 }
             }
         }
@@ -356,7 +360,7 @@ impl Steps<'_> {
 
     /// Returns whether elements that are replaced without end cover a point of a step, and thereby all its
     /// images: when they are as short, they are born in at least as many steps, or nearly.
-    fn is_covered(&self, whole: usize, drawn: &Drawn, step: u16) -> bool {
+    fn is_covered(&self, whole: usize, drawn: &MappedPoint, step: u16) -> bool {
         const NEARLY: f64 = 1.25;
         const SPARE: f64 = 2.0;
         if !self.cores[whole].holds(drawn.at) {

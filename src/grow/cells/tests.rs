@@ -3,7 +3,7 @@
 use std::num::NonZero;
 
 use super::field::Field;
-use super::{Found, LimitCells, Search};
+use super::{CellSearch, FoundCells, LimitCells};
 use crate::catalogue::Catalogue;
 use crate::document::Document;
 
@@ -18,13 +18,13 @@ fn sets_between_are_left_out() {
     let parts = graph.initiator(0).instances.iter();
     let layer = parts.map(|it| (*it.frame.map(), it.object)).collect();
     let set = LimitCells::new(&graph, &[layer]);
-    let search = Search {
+    let search = CellSearch {
         scale: 10.0,
-        most_images: u64::MAX,
+        max_images: u64::MAX,
         threads: NonZero::<usize>::MIN,
         cancel: None,
     };
-    let Ok(Found { fields, images, .. }) = set.find_all(&search, false) else {
+    let Ok(FoundCells { fields, images, .. }) = set.find_all(&search, false) else {
         panic!("stopped");
     };
     let layer = fields.last().unwrap();

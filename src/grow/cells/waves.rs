@@ -12,7 +12,7 @@ pub(super) struct Waves<P> {
 impl<P> Waves<P> {
     /// Creates waves without points.
     pub(super) fn of(net: &Net) -> Self {
-        let coming = (0..net.most_maps()).map(|_| none(net.nodes.len()));
+        let coming = (0..net.max_maps()).map(|_| none(net.nodes.len()));
         Self {
             coming: coming.collect(),
         }

@@ -18,7 +18,7 @@ const COMMANDS: &str = "+-|![]/\\@C<>";
 
 /// Content of an entry.
 #[derive(Default)]
-struct System<'e> {
+struct LSystemEntry<'e> {
     /// Divisor of 360 degrees that gives the angle of a turn.
     angle: Option<u32>,
     axiom: Option<&'e Word>,
@@ -27,7 +27,7 @@ struct System<'e> {
 }
 
 pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
-    let system = System::read(entry, found);
+    let system = LSystemEntry::read(entry, found);
     let missing =
         |what: &str| Diagnostic::error(format!("{} has no {what}", entry.name)).at(&entry.place);
     if system.axiom.is_none() {
@@ -164,7 +164,7 @@ fn own(symbol: char) -> char {
     }
 }
 
-impl<'e> System<'e> {
+impl<'e> LSystemEntry<'e> {
     fn read(entry: &'e Entry, found: &mut Diagnostics) -> Self {
         let mut system = Self::default();
         let mut words = entry.words.as_slice();

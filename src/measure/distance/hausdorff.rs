@@ -4,7 +4,7 @@ use crate::geometry::Point;
 
 use super::cover::{NoCover, Subject};
 use super::covering::Covering;
-use super::nearest::{Nearest, Open};
+use super::nearest::{KdTree, Open};
 
 /// Precision of a distance, and the effort allowed for it.
 #[derive(Clone, Copy, Debug)]
@@ -12,14 +12,14 @@ pub struct Precision {
     /// Error, as a multiple of the long side of a box that holds both sets.
     pub tolerance: f64,
     /// Maximum number of points by which a set is covered; where they do not suffice, the error is larger.
-    pub most_points: usize,
+    pub max_points: usize,
 }
 
 impl Default for Precision {
     fn default() -> Self {
         Self {
             tolerance: 1e-3,
-            most_points: 4_000_000,
+            max_points: 4_000_000,
         }
     }
 }
@@ -92,7 +92,7 @@ pub fn hausdorff<F: Covering>(
     let wanted = (precision.tolerance * size / 2.0).max(rounding);
     let covers = |radius: f64| -> Result<[Vec<F::Point>; 2], (usize, NoCover)> {
         let cover = |which: usize| {
-            let points = sets[which].cover(radius, precision.most_points);
+            let points = sets[which].cover(radius, precision.max_points);
             points.map_err(|error| (which, error))
         };
         Ok([cover(0)?, cover(1)?])
@@ -108,7 +108,7 @@ pub fn hausdorff<F: Covering>(
         }
     }
     let points = [0, 1].map(|which| best[which].len());
-    let [first, second] = best.map(Nearest::new);
+    let [first, second] = best.map(KdTree::new);
     Ok(Distance {
         there: farthest(&first, &second),
         back: farthest(&second, &first),
@@ -119,7 +119,7 @@ pub fn hausdorff<F: Covering>(
 }
 
 /// Returns the maximum distance of a point of one set from the nearest of another.
-fn farthest<P: Point>(from: &Nearest<P>, to: &Nearest<P>) -> f64 {
+fn farthest<P: Point>(from: &KdTree<P>, to: &KdTree<P>) -> f64 {
     let (mut farthest, mut near, mut open) = (0.0, 0, Open::new());
     for &point in from.points() {
         // A point that is nearer than the maximum does not matter, and its nearest need not be found.

@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, Point};
 
 /// A k-d tree of points. The tree is the order of the points: the median of a range splits it.
-pub(super) struct Nearest<P> {
+pub(super) struct KdTree<P> {
     points: Vec<P>,
     /// Number of the coordinate by which the point at this index splits its range.
     axes: Vec<u8>,
@@ -16,7 +16,7 @@ pub(super) type Open = Vec<(usize, usize, f64)>;
 /// Ranges of at most this many points are searched one by one.
 const FEW: usize = 8;
 
-impl<P: Point> Nearest<P> {
+impl<P: Point> KdTree<P> {
     pub(super) fn new(mut points: Vec<P>) -> Self {
         let mut axes = vec![0; points.len()];
         let mut open = vec![(0, points.len())];
@@ -120,7 +120,7 @@ mod tests {
         });
         let sets: [Vec<DVec2>; 3] = [line.collect(), grid.collect(), scattered.clone().collect()];
         for set in sets {
-            let tree = Nearest::new(set.clone());
+            let tree = KdTree::new(set.clone());
             let mut open = Open::new();
             for point in scattered.clone() {
                 let squares = set.iter().map(|other| (*other - point).length_squared());

@@ -1,7 +1,7 @@
 //! The generalised dimensions D_q of a measure, where they are known exactly.
 
 use crate::ifs::{AffineMap, Ifs};
-use crate::measure::copies::Shared;
+use crate::measure::copies::WeightedCopies;
 use crate::measure::perron::{Entry, beside_one, crossing, perron};
 
 use super::{Dimensions, GraphDirectedSystem, Overlap, dimensions};
@@ -66,7 +66,7 @@ impl Spectrum {
     /// unique](crate::ifs::Walk::stationary).
     #[must_use]
     pub fn of_weights<M: AffineMap>(ifs: &Ifs<M>) -> Option<Self> {
-        let Shared { copies, shares, .. } = Shared::of_weights(ifs)?;
+        let WeightedCopies { copies, shares, .. } = WeightedCopies::of_weights(ifs)?;
         let maps = copies.copies.iter();
         let system = GraphDirectedSystem::of_maps(maps.map(|copy| (copy.from, copy.to, copy.map)))?;
         let Dimensions { hausdorff, .. } = dimensions(&system)?;

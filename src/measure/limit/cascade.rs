@@ -4,11 +4,11 @@ use crate::extent::Bounded;
 use crate::geometry::{Affine, DAffine2, Point};
 use crate::graph::Graph;
 use crate::ifs::{AffineMap, Ifs};
-use crate::measure::copies::{Copies, Shared};
+use crate::measure::copies::{Copies, WeightedCopies};
 use crate::measure::exact::distinct;
 use crate::measure::space::Space;
 
-use super::{LimitSet, Placed};
+use super::{LimitCopy, LimitSet};
 
 /// A measure on a limit set, defined by the share of every copy in the mass of its set: the mass of a nested
 /// copy is the product of the shares along its path (Hutchinson 1981; for graphs: Mauldin & Williams 1988).
@@ -51,23 +51,23 @@ impl<M: Space> Cascade<M> {
     where
         M: AffineMap,
     {
-        Self::of(&Shared::of_weights(ifs)?)
+        Self::of(&WeightedCopies::of_weights(ifs)?)
     }
 
     /// Creates the measure of shares; `None` if no copy of the whole has mass.
-    pub(in crate::measure) fn of(shared: &Shared<M>) -> Option<Self> {
+    pub(in crate::measure) fn of(shared: &WeightedCopies<M>) -> Option<Self> {
         let mut children = vec![Vec::new(); shared.copies.size];
         let mut shares = vec![Vec::new(); shared.copies.size];
         for (copy, &share) in shared.copies.copies.iter().zip(&shared.shares) {
             if share > 0.0 {
-                children[copy.from].push(Placed::new(copy.map, copy.to));
+                children[copy.from].push(LimitCopy::new(copy.map, copy.to));
                 shares[copy.from].push(share);
             }
         }
         let all = shared.copies.start.iter().zip(&shared.masses);
         let all = all.filter(|(_, mass)| **mass > 0.0);
-        let (start, masses): (Vec<Placed<M>>, Vec<f64>) = all
-            .map(|(&(object, map), &mass)| (Placed::new(map, object), mass))
+        let (start, masses): (Vec<LimitCopy<M>>, Vec<f64>) = all
+            .map(|(&(object, map), &mass)| (LimitCopy::new(map, object), mass))
             .unzip();
         if start.is_empty() {
             return None;

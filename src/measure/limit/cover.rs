@@ -7,7 +7,7 @@ use crate::geometry::{DAffine2, Point};
 use super::super::cover::{Counts, Grid, Scale, least};
 use super::super::space::Space;
 use super::super::voxels::Voxels;
-use super::{LimitSet, Placed};
+use super::{LimitCopy, LimitSet};
 use crate::bits::Bits;
 
 /// Radius, in units of a box's side, of the copies that are not examined further: a box that the set enters
@@ -77,7 +77,7 @@ impl<M: Space> LimitSet<M> {
     /// Every box that is marked holds a point of the set. A box that the set enters by no more than a quarter
     /// of its side may be missed.
     pub(in crate::measure) fn covered(&self, map: &M, boxes: Counts) -> Option<Voxels> {
-        let grid = Placed::new(*map, 0);
+        let grid = LimitCopy::new(*map, 0);
         let mut stack: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
         let mut marking = Marking {
             boxes: Voxels::new(boxes),
@@ -97,8 +97,8 @@ impl<M: Space> LimitSet<M> {
     /// are not marked, are moved to `later` until this is full; without `later`, they are divided further.
     fn mark(
         &self,
-        stack: &mut Vec<Placed<M>>,
-        mut later: Option<&mut Vec<Placed<M>>>,
+        stack: &mut Vec<LimitCopy<M>>,
+        mut later: Option<&mut Vec<LimitCopy<M>>>,
         marking: &mut Marking,
     ) -> Option<()> {
         const WIDEST: i64 = 8;

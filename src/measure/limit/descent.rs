@@ -17,7 +17,7 @@ use crate::random::Pcg;
 use crate::saturating::{real, whole};
 
 use super::cover::GRAZED;
-use super::{LimitSet, Placed, merge};
+use super::{LimitCopy, LimitSet, merge};
 
 /// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes, in the plane and in
 /// space, where more copies come near to a box. Counts are exact as long as there are fewer.
@@ -37,7 +37,7 @@ const MAX_RASTER: usize = 1 << 26;
 const MANY: usize = 8;
 
 /// A box, as the copies near it, on a scale on which the box is the unit box.
-type Cell<M> = Vec<Placed<M>>;
+type Cell<M> = Vec<LimitCopy<M>>;
 
 /// Number of boxes, and whether it is estimated from a sample.
 type Count = (f64, bool);
@@ -55,7 +55,7 @@ struct Descent<'s, M: Space> {
 impl<'s, M: Space> Descent<'s, M> {
     /// Starts from the boxes of a grid: `start` holds copies on a scale on which boxes have side 1, and
     /// corners at whole numbers from (0, 0) to `boxes`.
-    fn new(set: &'s LimitSet<M>, start: Vec<Placed<M>>, boxes: Counts, seed: usize) -> Self {
+    fn new(set: &'s LimitSet<M>, start: Vec<LimitCopy<M>>, boxes: Counts, seed: usize) -> Self {
         let mut descent = Self {
             set,
             cells: Vec::new(),
@@ -118,14 +118,14 @@ impl<'s, M: Space> Descent<'s, M> {
     }
 
     /// Returns the boxes of a grid that copies come near to, row by row from the lower left.
-    fn divided(&mut self, copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
+    fn divided(&mut self, copies: Vec<LimitCopy<M>>, boxes: Counts) -> Vec<Cell<M>> {
         let mut cells = self.entered(copies, boxes);
         cells.retain(|cell| !cell.is_empty());
         cells
     }
 
     /// Returns all boxes of a grid, row by row from the lower left, with the copies that come near to them.
-    fn entered(&mut self, mut copies: Vec<Placed<M>>, boxes: Counts) -> Vec<Cell<M>> {
+    fn entered(&mut self, mut copies: Vec<LimitCopy<M>>, boxes: Counts) -> Vec<Cell<M>> {
         let mut cells = vec![Cell::new(); boxes.iter().product()];
         while let Some(copy) = copies.pop() {
             let part = &self.set.objects[copy.object];
@@ -224,8 +224,8 @@ impl<M: Space> LimitSet<M> {
     }
 
     /// Returns the copies that the set is made of on a grid, and its boxes: for a slice, those of one layer.
-    fn on_grid(&self, (map, mut boxes): (M, Counts)) -> (Vec<Placed<M>>, Counts) {
-        let mut map = Placed::new(map, 0);
+    fn on_grid(&self, (map, mut boxes): (M, Counts)) -> (Vec<LimitCopy<M>>, Counts) {
+        let mut map = LimitCopy::new(map, 0);
         if self.is_layer {
             // The plane of the slice lies in the middle of the layer.
             let up = 0.5 - map.map.translation().coordinates()[2];
@@ -279,8 +279,8 @@ impl<M: Space> LimitSet<M> {
 
     /// Returns `true` if the unit box holds a point of the set; `copies` are those near it. Returns `None`
     /// where more than `left` copies would have to be examined.
-    fn meets(&self, copies: &[Placed<M>], left: &mut usize) -> Option<bool> {
-        let lies_in = |copy: &Placed<M>| {
+    fn meets(&self, copies: &[LimitCopy<M>], left: &mut usize) -> Option<bool> {
+        let lies_in = |copy: &LimitCopy<M>| {
             let point = copy.map.apply(self.objects[copy.object].point);
             let mut coordinates = point.coordinates().into_iter();
             coordinates.all(|at| (0.0..1.0).contains(&at))

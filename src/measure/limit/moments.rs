@@ -20,7 +20,7 @@ use crate::measure::statistics::{differences, mean, readings};
 use crate::parallel::map;
 use crate::saturating::real;
 
-use super::{Cascade, Placed, merge};
+use super::{Cascade, LimitCopy, merge};
 
 /// Maximum radius of a piece, relative to that of a ball. The resulting blur of the balls is the same at all
 /// sizes.
@@ -120,11 +120,11 @@ impl Moments {
 }
 
 /// A copy and its mass.
-type Massive<M> = (Placed<M>, f64);
+type Massive<M> = (LimitCopy<M>, f64);
 
 /// A piece, on a scale on which balls have the radius 1.
-struct Piece<M> {
-    copy: Placed<M>,
+struct MassPiece<M> {
+    copy: LimitCopy<M>,
     /// Copies that a ball about any point of the piece may contain, including the piece itself.
     near: Vec<Massive<M>>,
     /// Logarithms of the mass of the piece, and of the mass of the ball about its centre.
@@ -135,7 +135,7 @@ struct Piece<M> {
 
 /// A small copy, with its mass, its centre of mass, and a disc that holds it.
 struct Small<M: Space> {
-    copy: Placed<M>,
+    copy: LimitCopy<M>,
     mass: f64,
     centre: M::Point,
     middle: M::Point,
@@ -146,7 +146,7 @@ struct Small<M: Space> {
 struct Descent<'c, M: Space> {
     cascade: &'c Cascade<M>,
     orders: &'c [f64],
-    pieces: Vec<Piece<M>>,
+    pieces: Vec<MassPiece<M>>,
     /// Offset of the pieces that are chosen next, from 0 to 1.
     place: f64,
     /// Number of copies that were examined for the pieces of this size, and of larger pieces that were
@@ -238,7 +238,7 @@ impl<'c, M: Space> Descent<'c, M> {
         }
         let mut parts = vec![0.0; self.pieces.len()];
         for &order in self.orders.iter().chain(&[0.0, 1.0]) {
-            for share in [Piece::share, Piece::own_share] {
+            for share in [MassPiece::share, MassPiece::own_share] {
                 let sum = log_sum(self.pieces.iter().map(|piece| share(piece, order)));
                 for (part, piece) in parts.iter_mut().zip(&self.pieces) {
                     *part = f64::max(*part, libm::exp(share(piece, order) - sum));
@@ -259,7 +259,7 @@ impl<'c, M: Space> Descent<'c, M> {
     }
 
     /// Returns a disc that holds a copy.
-    fn disc(&self, copy: &Placed<M>) -> (M::Point, f64) {
+    fn disc(&self, copy: &LimitCopy<M>) -> (M::Point, f64) {
         let part = &self.cascade.set.objects[copy.object];
         (copy.map.apply(part.middle), part.reach * copy.scale)
     }
@@ -304,7 +304,12 @@ impl<'c, M: Space> Descent<'c, M> {
     }
 
     /// Returns pieces with the copies near them; `all` contains the pieces.
-    fn with_near(&mut self, pieces: &[Small<M>], all: &[Small<M>], weight: f64) -> Vec<Piece<M>> {
+    fn with_near(
+        &mut self,
+        pieces: &[Small<M>],
+        all: &[Small<M>],
+        weight: f64,
+    ) -> Vec<MassPiece<M>> {
         self.looked_at += pieces.len() * all.len() / DISTANCES;
         let with_near = |piece: &Small<M>| {
             let mut mass = 0.0;
@@ -319,7 +324,7 @@ impl<'c, M: Space> Descent<'c, M> {
                     near.push((other.copy.moved(-piece.centre), other.mass));
                 }
             }
-            Piece {
+            MassPiece {
                 copy: piece.copy.moved(-piece.centre),
                 near,
                 logs: [piece.mass, mass].map(libm::log),
@@ -333,7 +338,7 @@ impl<'c, M: Space> Descent<'c, M> {
 /// The golden section, whose multiples do not repeat modulo 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-impl<M> Piece<M> {
+impl<M> MassPiece<M> {
     /// Returns the logarithm of the piece's term in the sum of an order.
     fn share(&self, order: f64) -> f64 {
         let [mass, ball] = self.logs;

@@ -9,7 +9,7 @@ use crate::measure::space::Space;
 use crate::saturating::{real, whole};
 use std::num::NonZero;
 
-use super::{LimitSet, Placed};
+use super::{LimitCopy, LimitSet};
 
 /// The slice of a limit set by a plane.
 ///
@@ -42,8 +42,8 @@ impl LimitSet<DAffine3> {
         let turn = DMat3::from_cols(right, up, right.cross(up)).transpose();
         let turn = DAffine3::new(turn, DVec3::new(0.0, 0.0, -offset / length));
         let start = self.start.iter();
-        let start: Vec<Placed<DAffine3>> = start
-            .map(|copy| Placed {
+        let start: Vec<LimitCopy<DAffine3>> = start
+            .map(|copy| LimitCopy {
                 map: turn * copy.map,
                 ..*copy
             })

@@ -17,7 +17,7 @@ use crate::measure::cover::Counts;
 use crate::measure::space::Space;
 use crate::saturating::{real, whole};
 
-use super::{LimitSet, Placed};
+use super::{LimitCopy, LimitSet};
 
 /// Maximum number of states, of copies that are examined, and of linear parts of maps.
 const MAX_STATES: usize = 1 << 13;
@@ -31,7 +31,7 @@ const SAME: f64 = 1e-6;
 type Key = [i64; 13];
 
 /// A box, as the copies that enter it.
-type Cell<M> = Vec<Placed<M>>;
+type Cell<M> = Vec<LimitCopy<M>>;
 
 /// The states that have been found.
 struct States<'s, M: Space> {
@@ -48,7 +48,7 @@ impl<M: Space> LimitSet<M> {
     /// axes from the corner of its bounding box on; `None` where the states are too many.
     pub(super) fn counts_by_states(&self, base: usize, sizes: usize) -> Option<Vec<u64>> {
         let extent = self.bounds.size().max_element();
-        let unit = Placed::new(M::IDENTITY, 0);
+        let unit = LimitCopy::new(M::IDENTITY, 0);
         // The plane of a slice lies in the middle of its layer.
         let height = if self.is_layer { 0.5 } else { 0.0 };
         let middle = M::Point::of_coordinates([0.0, 0.0, height]);
@@ -98,7 +98,7 @@ impl<M: Space> LimitSet<M> {
 impl<M: Space> States<'_, M> {
     /// Returns the number of the state of a box.
     fn number(&mut self, mut cell: Cell<M>) -> Option<usize> {
-        let mut keyed: Vec<(Key, Placed<M>)> = Vec::new();
+        let mut keyed: Vec<(Key, LimitCopy<M>)> = Vec::new();
         for copy in cell.drain(..) {
             keyed.push((key(&copy.map, copy.object), copy));
         }
@@ -155,7 +155,7 @@ impl<M: Space> States<'_, M> {
     }
 
     /// Returns the bounding box of a copy.
-    fn bounds_of(&mut self, copy: &Placed<M>) -> Option<Bounds<M::Point>> {
+    fn bounds_of(&mut self, copy: &LimitCopy<M>) -> Option<Bounds<M::Point>> {
         let at = copy.map.translation();
         let linear = copy.moved(-at);
         let shapes = self.shapes.len();

@@ -12,11 +12,11 @@ use std::sync::atomic::AtomicBool;
 
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Object, Replacement};
-use crate::grow::{Field, Found, Growth, Layer, LimitCells, Search, Stopped, WalkError};
+use crate::grow::{CellSearch, Field, FoundCells, Growth, Layer, LimitCells, Stopped, WalkError};
 use crate::parallel::Team;
 use crate::style::{ColorBy, Colour, Style};
 
-use self::plan::Plan;
+use self::plan::LimitStyle;
 use super::canvas::{Canvas, Size};
 use super::classes::Classes;
 use super::culling::NEARLY;
@@ -60,16 +60,16 @@ pub(super) struct Cells<'a> {
 }
 
 /// Search for the cells of a picture.
-struct Finder<'a> {
+struct CellFinder<'a> {
     set: LimitCells<'a>,
     options: &'a Options,
     cancel: Option<&'a AtomicBool>,
 }
 
-impl Finder<'_> {
+impl CellFinder<'_> {
     /// Finds the cells of a grid of `scale` cells per unit; by steps, if elements are replaced down to a
     /// length. `None` if that takes too much work.
-    fn find(&self, scale: f64, shortest: Option<f64>) -> Result<Option<Found>, RenderError> {
+    fn find(&self, scale: f64, shortest: Option<f64>) -> Result<Option<FoundCells>, RenderError> {
         let search = self.search(scale);
         self.done(match shortest {
             Some(shortest) => self.set.find_steps(&search, shortest),
@@ -87,10 +87,10 @@ impl Finder<'_> {
         self.done(self.set.bounds(&self.search(1.0), long.into()))
     }
 
-    fn search(&self, scale: f64) -> Search<'_> {
-        Search {
+    fn search(&self, scale: f64) -> CellSearch<'_> {
+        CellSearch {
             scale,
-            most_images: match self.options.view.window {
+            max_images: match self.options.view.window {
                 Some(_) => MAX_IMAGES_ABOUT_A_WINDOW,
                 None if self.options.style.color_by == ColorBy::Step => MAX_IMAGES_BY_STEPS,
                 None => MAX_IMAGES,
@@ -175,12 +175,12 @@ fn exceeds(graph: &Graph, shortest: f64, most: f64) -> bool {
 }
 
 /// Method by which a picture is drawn.
-pub(super) enum Way<'a> {
+pub(super) enum DrawingMethod<'a> {
     Elements(Box<Layout<'a>>),
     Cells(Cells<'a>),
 }
 
-impl<'a> Way<'a> {
+impl<'a> DrawingMethod<'a> {
     /// Chooses elements, unless the picture shows a limit set whose elements are too many or flat.
     pub(super) fn find(
         graph: &'a Graph,
@@ -194,11 +194,11 @@ impl<'a> Way<'a> {
         let Some(detail) = options.detail.filter(|detail| detail.decides_steps) else {
             return elements(growth);
         };
-        let Some(mut plan) = Plan::of(graph, options, detail.pixels) else {
+        let Some(mut plan) = LimitStyle::of(graph, options, detail.pixels) else {
             return elements(growth);
         };
         let shows_all = options.view.window.is_none();
-        let goes_by_cells = becomes_flat(graph)
+        let by_cells = becomes_flat(graph)
             || shows_all && {
                 let scale = plan.canvas(graph, options)?.map(|canvas| canvas.scale());
                 let most = max_elements(graph, options, detail.pixels);
@@ -207,13 +207,11 @@ impl<'a> Way<'a> {
                 })
             };
         let mut cells = || Cells::of(graph, growth, options, &mut plan, detail.pixels);
-        if goes_by_cells && let Some(cells) = cells()? {
+        if by_cells && let Some(cells) = cells()? {
             return Ok(Self::Cells(cells));
         }
         match elements(growth) {
-            Err(error)
-                if options.format == Format::Png && !goes_by_cells && is_too_much(&error) =>
-            {
+            Err(error) if options.format == Format::Png && !by_cells && is_too_much(&error) => {
                 match cells()? {
                     Some(cells) => Ok(Self::Cells(cells)),
                     None => Err(error),
@@ -253,13 +251,13 @@ impl<'a> Cells<'a> {
         graph: &Graph,
         growth: &Growth<'_>,
         options: &'a Options,
-        plan: &mut Plan,
+        plan: &mut LimitStyle,
         pixels: f64,
     ) -> Result<Option<Self>, RenderError> {
         let canvas = plan.canvas(graph, options)?;
         let (colours, layers): (Vec<Colour>, Vec<Layer>) =
             std::mem::take(&mut plan.layers).into_iter().unzip();
-        let finder = Finder {
+        let finder = CellFinder {
             set: LimitCells::new(graph, &layers),
             options,
             cancel: growth.cancel,
@@ -273,15 +271,15 @@ impl<'a> Cells<'a> {
         };
         let is_exact = options.format == Format::Png;
         // If colours depend on steps, every cell is a pixel of one colour.
-        let all: &[u8] = if is_exact && !plan.tells_steps {
+        let all: &[u8] = if is_exact && !plan.by_steps {
             &FINENESS
         } else {
             &FINENESS[..1]
         };
         let shortest = plan
-            .tells_steps
+            .by_steps
             .then(|| NEARLY * pixels / (canvas.scale() * graph.unit()));
-        let mut found: Option<(u8, Found)> = None;
+        let mut found: Option<(u8, FoundCells)> = None;
         let mut expected = 0;
         for &fineness in all {
             if expected > WORTH {
@@ -296,13 +294,13 @@ impl<'a> Cells<'a> {
             expected = next.images * growth.min(MAX_TIMES);
             found = Some((fineness, next));
         }
-        let Some((fineness, Found { fields, steps, .. })) = found else {
+        let Some((fineness, FoundCells { fields, steps, .. })) = found else {
             return Ok(None);
         };
         let shown = canvas.shown(plan.pen.width);
         let is_shown = |[from, to]: [DVec2; 2]| shown.meets(&Bounds::new(from, to));
         let mut layers = Vec::new();
-        if plan.tells_steps {
+        if plan.by_steps {
             layers = labelled(&fields, graph, &options.style, is_shown);
             let shift = to_pixels(&canvas, pixels, &fields);
             let marks = layers.iter_mut().flat_map(|(_, marks)| marks);

@@ -15,14 +15,14 @@ use crate::style::{Cap, ColorBy, ColorProperty, Colour, Join, Width};
 const MAX_PARTS: usize = 1 << 12;
 
 /// Colours, layers and pen of a picture.
-pub(super) struct Plan {
+pub(super) struct LimitStyle {
     pub(super) layers: Vec<(Colour, Layer)>,
     pub(super) pen: Pen,
     /// Whether colours depend on steps.
-    pub(super) tells_steps: bool,
+    pub(super) by_steps: bool,
 }
 
-impl Plan {
+impl LimitStyle {
     /// Returns the canvas of the limit set, if the graph determines its bounding box.
     pub(super) fn canvas(
         &self,
@@ -56,13 +56,13 @@ impl Plan {
             && !graph.is_time_indexed()
             && graph.roots.elements.is_empty()
             && !graph.resets().contains(&true);
-        let is_told = match style.color_by.property() {
+        let is_determined = match style.color_by.property() {
             ColorProperty::Uniform | ColorProperty::Object | ColorProperty::Step => true,
             ColorProperty::Tint => !graph.tints(),
             _ => false,
         };
         let fills_rings = style.fill.is_some() && starts_rings(graph);
-        if !is_known || !is_told || fills_rings || options.plot || !graph.contracts() {
+        if !is_known || !is_determined || fills_rings || options.plot || !graph.contracts() {
             return None;
         }
         let drawn = graph.objects().iter().filter(|object| object.visible);
@@ -110,7 +110,7 @@ impl Plan {
                 join: Join::Round,
                 dash: 0.0,
             },
-            tells_steps: style.color_by == ColorBy::Step,
+            by_steps: style.color_by == ColorBy::Step,
         })
     }
 }

@@ -19,7 +19,7 @@ use crate::render::unit::Unit;
 use crate::style::{ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
-use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
+use super::symbols::{Aspect, Dress, ElementSubset, Symbol, Symbols};
 use super::{MAX_SYMBOLS, NotInstanced, text};
 
 /// Part of a class that is painted at once.
@@ -143,28 +143,28 @@ impl<'a> Drawing<'a> {
 
     /// Returns the subsets of elements painted in the colour of a class, as seen from the virtual object that
     /// the initiator replaces.
-    fn parts(&self, class: u64) -> Vec<Part> {
+    fn parts(&self, class: u64) -> Vec<ElementSubset> {
         match self.style.color_by.property() {
             ColorProperty::Step => {
                 let steps = self.classes.steps(class).into_iter().flatten();
-                steps.map(|step| Part::Born(step + 1)).collect()
+                steps.map(|step| ElementSubset::Born(step + 1)).collect()
             }
             ColorProperty::Age if self.graph.seeds => {
                 let steps = self.growth.steps;
                 let born = |age: u32| match steps - age {
-                    0 => Part::Own,
-                    born => Part::Seeded(born + 1),
+                    0 => ElementSubset::Own,
+                    born => ElementSubset::Seeded(born + 1),
                 };
                 let of_class = |age: &u32| self.classes.of_value((*age).into()) == class;
                 (0..=steps).filter(of_class).map(born).collect()
             }
-            ColorProperty::Object => vec![Part::Class(class)],
+            ColorProperty::Object => vec![ElementSubset::Class(class)],
             ColorProperty::Direction => {
                 let number = u32::try_from(class + 1).ok();
                 let direction = number.and_then(Direction::from_number);
-                direction.map(Part::Heading).into_iter().collect()
+                direction.map(ElementSubset::Heading).into_iter().collect()
             }
-            _ => vec![Part::All],
+            _ => vec![ElementSubset::All],
         }
     }
 
@@ -256,7 +256,7 @@ impl<'a> Drawing<'a> {
         text: &mut String,
     ) -> f64 {
         let part = match (of.part, seeded) {
-            (Part::Seeded(1), true) => Part::Own,
+            (ElementSubset::Seeded(1), true) => ElementSubset::Own,
             (part, _) => part,
         };
         let mut expanded = 0.0;

@@ -16,7 +16,7 @@ use crate::style::{Colour, Style};
 use super::super::colours::Colours;
 use super::super::error::RenderError;
 use super::super::space::SpaceError;
-use super::symbols::{Aspect, Dress, Part, Symbol, Symbols};
+use super::symbols::{Aspect, Dress, ElementSubset, Symbol, Symbols};
 use super::{MAX_SYMBOLS, NotInstanced, refusal};
 
 /// Limit of the number of triangles of a mesh that stands for several elements, which are held in memory.
@@ -106,7 +106,7 @@ impl<'g> Nested<'g> {
         let start = Aspect {
             // The initiator replaces a virtual object that has one more step.
             steps: steps + 1,
-            part: Part::All,
+            part: ElementSubset::All,
             dress: Dress(Appearance::NONE),
         };
         let symbols = Symbols::new(graph, style.color_by, colours.classes());

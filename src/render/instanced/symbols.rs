@@ -12,7 +12,7 @@ use super::super::classes::Classes;
 
 /// Subset of the elements of an expanded object that are painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Part {
+pub(super) enum ElementSubset {
     All,
     /// Elements born this many steps after the object.
     Born(u32),
@@ -31,7 +31,7 @@ pub(super) enum Part {
 pub(super) struct Aspect {
     /// Number of remaining steps.
     pub(super) steps: u32,
-    pub(super) part: Part,
+    pub(super) part: ElementSubset,
     /// Appearance, including the object's own change.
     pub(super) dress: Dress,
 }
@@ -114,15 +114,15 @@ impl<'g, F: Frame> Symbols<'g, F> {
         object: usize,
         born: u32,
         direction: Direction,
-        part: Part,
+        part: ElementSubset,
     ) -> bool {
         let object = &self.graph.objects()[object];
         match part {
-            Part::All | Part::Own => true,
-            Part::Seeded(_) => false,
-            Part::Born(steps) => born == steps,
-            Part::Class(class) => self.classes.of_object(object).unwrap_or(0) == class,
-            Part::Heading(heading) => direction == heading,
+            ElementSubset::All | ElementSubset::Own => true,
+            ElementSubset::Seeded(_) => false,
+            ElementSubset::Born(steps) => born == steps,
+            ElementSubset::Class(class) => self.classes.of_object(object).unwrap_or(0) == class,
+            ElementSubset::Heading(heading) => direction == heading,
         }
     }
 
@@ -135,16 +135,16 @@ impl<'g, F: Frame> Symbols<'g, F> {
                 && self.paints(object, 0, Direction::Normal, part);
             let aspect = Aspect {
                 steps: 0,
-                part: Part::All,
+                part: ElementSubset::All,
                 ..aspect
             };
             return is_painted.then_some(Symbol { aspect, object });
         }
         let steps = match part {
-            Part::Born(0) => return None,
+            ElementSubset::Born(0) => return None,
             // Of the elements born before the last step, only infertile ones remain, after any number of
             // further steps; the lines that link them to others depend on that number.
-            Part::Born(born) if !self.links => steps.min(born + 1),
+            ElementSubset::Born(born) if !self.links => steps.min(born + 1),
             _ => steps,
         };
         Some(Symbol {
@@ -162,17 +162,23 @@ impl<'g, F: Frame> Symbols<'g, F> {
         seeded: bool,
     ) -> Option<Symbol> {
         let part = match of.part {
-            Part::Born(steps) => Part::Born(steps.checked_sub(1)?),
-            Part::Heading(heading) => Part::Heading(heading * instance.frame.direction()),
-            Part::Own if seeded => return None,
-            Part::Seeded(1) => return self.dressed(instance, of, Part::Own).filter(|_| seeded),
-            Part::Seeded(steps) => Part::Seeded(steps - 1),
+            ElementSubset::Born(steps) => ElementSubset::Born(steps.checked_sub(1)?),
+            ElementSubset::Heading(heading) => {
+                ElementSubset::Heading(heading * instance.frame.direction())
+            }
+            ElementSubset::Own if seeded => return None,
+            ElementSubset::Seeded(1) => {
+                return self
+                    .dressed(instance, of, ElementSubset::Own)
+                    .filter(|_| seeded);
+            }
+            ElementSubset::Seeded(steps) => ElementSubset::Seeded(steps - 1),
             other => other,
         };
         self.dressed(instance, of, part)
     }
 
-    fn dressed(&self, instance: &Instance<F>, of: &Aspect, part: Part) -> Option<Symbol> {
+    fn dressed(&self, instance: &Instance<F>, of: &Aspect, part: ElementSubset) -> Option<Symbol> {
         let Dress(appearance) = of.dress;
         let dress = Dress(if self.graph.has_appearances() {
             let appearance = appearance.over(self.graph.appearance(instance.object));

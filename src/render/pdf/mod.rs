@@ -8,7 +8,7 @@ mod file;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-use crate::parallel::{Line, Team};
+use crate::parallel::{Pipeline, Team};
 use crate::style::{Cap, Colour, Join};
 
 use super::drawing::Page;
@@ -32,7 +32,7 @@ struct Opacity {
 
 /// Graphics state set by the content so far.
 #[derive(Clone, Copy, Default)]
-struct State {
+struct GraphicsState {
     fill: Option<Colour>,
     stroke: Option<Colour>,
     pen: Option<Pen>,
@@ -42,15 +42,15 @@ struct State {
 pub(super) struct Pdf<'t, 'w, W> {
     file: File<W>,
     piece: Piece,
-    line: Line<'t, 'w, Piece>,
+    line: Pipeline<'t, 'w, Piece>,
     /// Width and height, in the page's units.
     page: [f64; 2],
     /// Points per unit of the page.
     user_unit: f64,
     /// Current graphics state.
-    state: State,
+    state: GraphicsState,
     /// States outside of the parts that have been entered.
-    outer: Vec<State>,
+    outer: Vec<GraphicsState>,
     opacities: BTreeSet<Opacity>,
     /// Operator that paints the current path.
     operator: &'static str,
@@ -76,7 +76,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             line: team.line(Piece::pack),
             page,
             user_unit,
-            state: State::default(),
+            state: GraphicsState::default(),
             outer: Vec::new(),
             opacities: BTreeSet::new(),
             operator: "n",
@@ -145,7 +145,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
     fn paint(&mut self, paint: &Paint) {
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         for (colour, of_strokes) in [(paint.fill, false), (stroke, true)] {
-            let State { fill, stroke, .. } = &mut self.state;
+            let GraphicsState { fill, stroke, .. } = &mut self.state;
             let last = if of_strokes { stroke } else { fill };
             let before = *last;
             let Some(colour) = colour.filter(|&colour| before != Some(colour)) else {

@@ -8,13 +8,13 @@ const FLAT: f64 = 5.0;
 
 /// Window in which lines are drawn, and the origin of positions in it, in positions of the picture.
 #[derive(Clone, Copy)]
-pub(super) struct Window {
+pub(super) struct ClipWindow {
     origin: Position,
     low: Position,
     high: Position,
 }
 
-impl Window {
+impl ClipWindow {
     /// Returns the window of a whole picture.
     pub(super) fn of(size: [u32; 2]) -> Self {
         Self {
@@ -116,11 +116,11 @@ fn fine(pixels: [u32; 2]) -> Position {
 
 #[cfg(test)]
 mod tests {
-    use super::{Window, flattened};
+    use super::{ClipWindow, flattened};
 
     #[test]
     fn what_lies_outside_is_cut_off() {
-        let window = Window::of([10, 10]).part([2, 2], [4, 20]);
+        let window = ClipWindow::of([10, 10]).part([2, 2], [4, 20]);
         let cases = [
             ([[300, 300], [400, 900]], Some([[300, 300], [400, 900]])),
             ([[0, 500], [1000, 500]], Some([[200, 500], [600, 500]])),

@@ -50,7 +50,7 @@ pub(super) fn merged(strokes: &Strokes) -> Strokes {
 }
 
 /// Stroke of a trail.
-struct Part {
+struct TrailStroke {
     number: usize,
     backwards: bool,
 }
@@ -122,12 +122,12 @@ impl Junctions {
     }
 
     /// Extends a trail from a stroke as far as possible.
-    fn trail(&mut self, strokes: &Strokes, first: usize, backwards: bool) -> Vec<Part> {
-        let mut trail = vec![Part {
+    fn trail(&mut self, strokes: &Strokes, first: usize, backwards: bool) -> Vec<TrailStroke> {
+        let mut trail = vec![TrailStroke {
             number: first,
             backwards,
         }];
-        while let Some(&Part { number, backwards }) = trail.last() {
+        while let Some(&TrailStroke { number, backwards }) = trail.last() {
             self.used[number] = true;
             let [from, to] = ends(strokes, number);
             // Closed strokes have no ends.
@@ -136,7 +136,7 @@ impl Junctions {
             }
             let at = if backwards { from } else { to };
             let Some(next) = self.next(at) else { break };
-            trail.push(Part {
+            trail.push(TrailStroke {
                 number: next,
                 backwards: ends(strokes, next)[0] != at,
             });

@@ -28,9 +28,9 @@ use super::error::RenderError;
 use super::options::Options;
 use super::paint::{Paint, Pen, Position, Stroke};
 use super::surface::Surface;
-use clip::{Window, flattened};
+use clip::{ClipWindow, flattened};
 use merge::merged;
-use order::{Order, Way};
+use order::{Order, Traversal};
 use pens::shared;
 use points::{Point, Points, vector};
 use strokes::{Strokes, is_closed};
@@ -62,8 +62,8 @@ pub struct Plotted {
 
 /// Surface that collects a drawing as strokes.
 struct Plotter {
-    window: Window,
-    outer: Vec<Window>,
+    window: ClipWindow,
+    outer: Vec<ClipWindow>,
     points: Points,
     /// Strokes of each colour.
     layers: Vec<(Colour, Strokes)>,
@@ -80,7 +80,7 @@ struct Plotter {
 impl Plotter {
     fn new(size: [u32; 2]) -> Self {
         Self {
-            window: Window::of(size),
+            window: ClipWindow::of(size),
             outer: Vec::new(),
             points: Points::default(),
             layers: Vec::new(),
@@ -323,10 +323,10 @@ impl Plot {
                 if closed {
                     vertices.pop();
                 }
-                match turn.way {
-                    Way::Forwards => {}
-                    Way::Backwards => vertices.reverse(),
-                    Way::From(vertex) => vertices.rotate_left(vertex),
+                match turn.traversal {
+                    Traversal::Forwards => {}
+                    Traversal::Backwards => vertices.reverse(),
+                    Traversal::From(vertex) => vertices.rotate_left(vertex),
                 }
                 draw(number, &vertices, closed)?;
             }

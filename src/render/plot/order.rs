@@ -10,12 +10,12 @@ use super::tree::Tree;
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
     pub(super) stroke: usize,
-    pub(super) way: Way,
+    pub(super) traversal: Traversal,
 }
 
 /// Direction or start of a stroke.
 #[derive(Clone, Copy)]
-pub(super) enum Way {
+pub(super) enum Traversal {
     Forwards,
     Backwards,
     /// From a vertex of a closed stroke.
@@ -40,7 +40,7 @@ impl Order {
     pub(super) fn as_drawn(strokes: &Strokes, places: &[[i32; 2]]) -> Self {
         let turns = (0..strokes.len()).map(|stroke| Turn {
             stroke,
-            way: Way::Forwards,
+            traversal: Traversal::Forwards,
         });
         Self::of(turns.collect(), strokes, places)
     }
@@ -76,10 +76,10 @@ fn ends(turn: &Turn, strokes: &Strokes, places: &[[i32; 2]]) -> [DVec2; 2] {
     let stroke = strokes.get(turn.stroke);
     let place = |vertex: usize| vector(places[stroke[vertex] as usize]);
     let last = stroke.len() - 1;
-    match turn.way {
-        Way::Forwards => [place(0), place(last)],
-        Way::Backwards => [place(last), place(0)],
-        Way::From(vertex) => [place(vertex); 2],
+    match turn.traversal {
+        Traversal::Forwards => [place(0), place(last)],
+        Traversal::Backwards => [place(last), place(0)],
+        Traversal::From(vertex) => [place(vertex); 2],
     }
 }
 
@@ -119,14 +119,14 @@ fn by_nearest(strokes: &Strokes, places: &[[i32; 2]]) -> Vec<Turn> {
     while let Some((_, item)) = tree.nearest(at) {
         let (number, vertex) = owners[item as usize];
         let stroke = strokes.get(number);
-        let way = match vertex {
-            vertex if is_closed(stroke) => Way::From(vertex),
-            0 => Way::Forwards,
-            _ => Way::Backwards,
+        let traversal = match vertex {
+            vertex if is_closed(stroke) => Traversal::From(vertex),
+            0 => Traversal::Forwards,
+            _ => Traversal::Backwards,
         };
         let turn = Turn {
             stroke: number,
-            way,
+            traversal,
         };
         turns.push(turn);
         at = ends(&turn, strokes, places)[1];
@@ -177,10 +177,10 @@ fn exchanged(order: Order, strokes: &Strokes, places: &[[i32; 2]]) -> Order {
 
 impl Turn {
     fn turn(&mut self) {
-        self.way = match self.way {
-            Way::Forwards => Way::Backwards,
-            Way::Backwards => Way::Forwards,
-            from @ Way::From(_) => from,
+        self.traversal = match self.traversal {
+            Traversal::Forwards => Traversal::Backwards,
+            Traversal::Backwards => Traversal::Forwards,
+            from @ Traversal::From(_) => from,
         };
     }
 }

@@ -36,7 +36,7 @@ const MAX_COMPARED: usize = 256;
 
 /// Colours that share a pen.
 #[derive(Clone)]
-struct Shared {
+struct PenColours {
     /// Numbers of the colours, in order.
     members: Vec<usize>,
     /// Amount that the colours draw; their mean, weighted by it, in Oklab.
@@ -44,7 +44,7 @@ struct Shared {
     mean: [f64; 3],
 }
 
-impl Shared {
+impl PenColours {
     /// Returns the cost of merging two clusters: the increase of the sum of squared distances from the mean
     /// (Ward 1963).
     fn cost(&self, other: &Self) -> f64 {
@@ -69,7 +69,7 @@ pub(super) fn shared(colours: &[(Colour, u64)], pens: Pens) -> Vec<(Colour, Vec<
     let most = pens.most(colours.len());
     let numbered = colours.iter().enumerate();
     let mut groups: Vec<_> = numbered
-        .map(|(number, &(colour, weight))| Shared {
+        .map(|(number, &(colour, weight))| PenColours {
             members: vec![number],
             #[expect(clippy::cast_precision_loss, reason = "a weight needs few digits")]
             weight: weight.max(1) as f64,

@@ -28,12 +28,12 @@ impl Tree {
     pub(super) fn between(&self, [from, to]: [[i32; 2]; 2], found: &mut Vec<(f64, u32)>) {
         found.clear();
         let line = [from, to].map(vector);
-        self.look_between(0..self.places.len(), 0, line, line, found);
+        self.search_between(0..self.places.len(), 0, line, line, found);
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
     /// Searches a range, where `part` is the part of the line near it.
-    fn look_between(
+    fn search_between(
         &self,
         range: Range<usize>,
         axis: usize,
@@ -62,7 +62,7 @@ impl Tree {
         let reach = meet + 0.001;
         for (range, side) in [(before, -1.0), (after, 1.0)] {
             if let Some(part) = beyond(part, axis, place[axis] - side * reach, side) {
-                self.look_between(range, 1 - axis, line, part, found);
+                self.search_between(range, 1 - axis, line, part, found);
             }
         }
     }
@@ -77,11 +77,11 @@ impl Tree {
     /// with the lowest number is returned.
     pub(super) fn nearest(&self, to: DVec2) -> Option<([i32; 2], u32)> {
         let mut best = None;
-        self.look_near(0..self.places.len(), 0, to, &mut best);
+        self.search_near(0..self.places.len(), 0, to, &mut best);
         best.map(|(_, item, place)| (place, item))
     }
 
-    fn look_near(
+    fn search_near(
         &self,
         range: Range<usize>,
         axis: usize,
@@ -109,9 +109,9 @@ impl Tree {
         } else {
             (after, before)
         };
-        self.look_near(near, 1 - axis, to, best);
+        self.search_near(near, 1 - axis, to, best);
         if best.is_none_or(|(least, ..)| off * off <= least) {
-            self.look_near(far, 1 - axis, to, best);
+            self.search_near(far, 1 - axis, to, best);
         }
     }
 

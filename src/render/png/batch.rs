@@ -108,7 +108,7 @@ impl BatchBuilder {
     fn at(&self, sticks: &[LineElement], scale: f64) -> Batched {
         let octave = self.octave + libm::log2(scale);
         let mut batched = Batched::default();
-        let mut open = Open::default();
+        let mut open = OpenBundle::default();
         let mut before = None;
         for (number, stick) in sticks.iter().enumerate() {
             let class = width_class(octave + stick.octave);
@@ -185,7 +185,7 @@ impl Batched {
 
 /// Bundle under construction.
 #[derive(Default)]
-struct Open {
+struct OpenBundle {
     bounds: Option<Bounds>,
     /// Sums of areas, and of areas times widths, times positions relative to `origin`, and times products of
     /// the coordinates of these.
@@ -196,7 +196,7 @@ struct Open {
     squares: [f64; 3],
 }
 
-impl Open {
+impl OpenBundle {
     /// Returns whether a line lies close enough to the lines of the bundle.
     fn has_room_for(&self, ends: [DVec2; 2], near: f64) -> bool {
         self.bounds.as_ref().is_none_or(|bounds| {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::render::contribution::ContributionMask;
-use crate::render::paint_key::{Kind, PaintKey};
+use crate::render::paint_key::{PaintKey, PathKind};
 use crate::render::scene::{Pass, Scene};
 use crate::render::short_cuts::ShortCut;
 use crate::style::{Colour, Width};
@@ -51,7 +51,7 @@ fn batches(scene: &Scene<'_>, pass: Pass, raster: &dyn Raster) -> Option<BatchBu
     let Width::Relative(width) = scene.style.width else {
         return None;
     };
-    let paint = PaintKey::of(Kind::Line).paint(scene, pass.colour(scene));
+    let paint = PaintKey::of(PathKind::Line).paint(scene, pass.colour(scene));
     let stroke = paint.stroke.filter(|_| raster.takes_batches(&paint))?;
     Some(BatchBuilder::new(width, stroke.pen))
 }
@@ -92,11 +92,17 @@ fn sprites<'a>(
 }
 
 /// Returns the kinds of the paths that are drawn.
-fn kinds(scene: &Scene<'_>) -> Vec<Kind> {
+fn kinds(scene: &Scene<'_>) -> Vec<PathKind> {
     let drawn = scene.graph.objects().iter().filter(|object| object.visible);
     let closed: BTreeSet<bool> = drawn
         .map(|object| scene.base_element(object).is_closed())
         .collect();
-    let kind = |is_closed| if is_closed { Kind::Polygon } else { Kind::Line };
+    let kind = |is_closed| {
+        if is_closed {
+            PathKind::Polygon
+        } else {
+            PathKind::Line
+        }
+    };
     closed.into_iter().map(kind).collect()
 }

@@ -18,7 +18,7 @@ use super::split::ROWS;
 const MAX_COVERED: u64 = MAX_PIXELS * 4 / (4 + CoverageBuffer::BYTES);
 
 /// Part of a picture, or all of it.
-pub(super) struct Part {
+pub(super) struct PicturePart {
     pub(super) pixmap: Pixmap,
     /// Width and height of the part, in pixels.
     size: [u32; 2],
@@ -42,7 +42,7 @@ struct Layer {
 /// Coverage buffers of a part's layers.
 pub(super) type Layers = [Option<Arc<CoverageBuffers>>; 2];
 
-impl Part {
+impl PicturePart {
     /// Creates a part of this one, with its rows that lie in the rows of this one, or a few more: the first
     /// is a multiple of [`ROWS`].
     pub(super) fn enter(&self, corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
@@ -107,7 +107,7 @@ impl Part {
     /// Returns whether a path of this colour is covered together with the preceding ones, without
     /// preparation.
     #[inline]
-    pub(super) fn goes_on_in(&self, colour: Colour) -> bool {
+    pub(super) fn continues_in(&self, colour: Colour) -> bool {
         self.layers[0].ink == Some(colour) && self.layers[1].ink.is_none()
     }
 

@@ -24,7 +24,7 @@ use crate::render::contribution::Painted;
 use crate::render::culling::own_reach;
 use crate::render::paint::overhang;
 use crate::render::paint::{FINE, Position, position};
-use crate::render::paint_key::Kind;
+use crate::render::paint_key::PathKind;
 use crate::render::scene::{Pass, Scene};
 use crate::render::short_cuts::ShortCut;
 use crate::rule::Piece;
@@ -168,11 +168,11 @@ impl<'a> Sprites<'a> {
     }
 
     /// Returns the kind of the path in which colonies are put.
-    pub(in crate::render) fn kind(&self) -> Kind {
+    pub(in crate::render) fn kind(&self) -> PathKind {
         if self.paint.pen.is_some() && !self.paint.outlines {
-            Kind::Line
+            PathKind::Line
         } else {
-            Kind::Polygon
+            PathKind::Polygon
         }
     }
 }

@@ -5,8 +5,8 @@ use crate::render::paint_key::PaintKey;
 
 /// Successive elements with equal paint keys, each joined to the one before.
 #[derive(Clone, Copy)]
-pub(in crate::render) struct Line {
-    pub(in crate::render) look: PaintKey,
+pub(in crate::render) struct LineMark {
+    pub(in crate::render) key: PaintKey,
     /// Whether the first element joins the preceding one.
     pub(in crate::render) joined: bool,
     /// Whether the first element starts, and the last one ends, where its frame does.
@@ -21,7 +21,7 @@ pub(in crate::render) enum Mark {
     /// Class of the following elements.
     Class(u64),
     /// Beginning of a line, at a point.
-    Line(Line),
+    Line(LineMark),
     /// Beginning of a polygon, at a point.
     Polygon(PaintKey),
     /// Beginning or continuation of the outline of a fractal, at a point.

@@ -5,10 +5,10 @@ use crate::grow::{Colony, Element, LineElement, Run};
 use crate::render::contribution::Painted;
 use crate::render::display::Command;
 use crate::render::paint::{FINE, position};
-use crate::render::paint_key::{Kind, PaintKey, width_class};
+use crate::render::paint_key::{PaintKey, PathKind, width_class};
 use crate::render::png::{PlacedSprite, Put};
 
-use super::{Line, Mark, Sketcher};
+use super::{LineMark, Mark, Sketcher};
 
 impl Sketcher<'_> {
     /// Draws lines of one class that end in the given points, one after another.
@@ -38,18 +38,18 @@ impl Sketcher<'_> {
         let whole = self.octave(run.map().matrix2.x_axis.length());
         let kind = self.kind();
         for (stick, joined) in sticks {
-            let look = PaintKey {
+            let key = PaintKey {
                 kind,
                 width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
                 colour: None,
             };
             let goes_on = match self.open.map(|open| &self.sketch.commands[open]) {
-                Some(Command::Other(Mark::Line(line))) => joined && line.look == look,
+                Some(Command::Other(Mark::Line(line))) => joined && line.key == key,
                 _ => false,
             };
             if !goes_on {
-                self.mark(Mark::Line(Line {
-                    look,
+                self.mark(Mark::Line(LineMark {
+                    key,
                     joined,
                     meets_frame: [true; 2],
                 }));
@@ -127,16 +127,16 @@ impl Sketcher<'_> {
         };
         // Elements that join the run continue at its end; nothing joins runs of closed elements.
         if let Some(end) = run.last().filter(is_open) {
-            self.put(Kind::Line, placed);
+            self.put(PathKind::Line, placed);
             self.pass_by(Mark::Skip { meets_frame: true });
             self.start_at(end.frame.ends()[1]);
         } else {
-            self.put(Kind::Polygon, placed);
+            self.put(PathKind::Polygon, placed);
         }
         true
     }
 
-    fn put(&mut self, kind: Kind, sprite: PlacedSprite) {
+    fn put(&mut self, kind: PathKind, sprite: PlacedSprite) {
         self.open = None;
         self.sketch.sprites(PaintKey::of(kind), &[sprite]);
     }

@@ -106,7 +106,8 @@ impl Visitor for Sketcher<'_> {
                     if self.sprite(run, Painted::Steps(*steps.start(), *steps.end())) => {}
                 (_, Some(steps)) => self.some(run, run.born_in(steps)),
                 (Pass::Class(class), None)
-                    if self.mask.tells_objects() && self.sprite(run, Painted::Class(class)) => {}
+                    if self.mask.depends_on_objects()
+                        && self.sprite(run, Painted::Class(class)) => {}
                 (Pass::Class(class), None) if self.mask.stands_alone => {
                     let fractal = self.fractal;
                     let is_of = |element: &Element| classes.of(element, &fractal, graph) == class;

@@ -17,7 +17,7 @@ use crate::style::Colour;
 struct Paint {
     class: u16,
     /// Number of its appearance, where colours are by tints.
-    look: u32,
+    appearance: u32,
 }
 
 /// An instance that may be seen on the tile.
@@ -206,9 +206,11 @@ impl Descent {
     ) -> Paint {
         Paint {
             class: class.unwrap_or(outer.class),
-            look: match roots.class_by {
-                ClassBy::Tint => self.tints.inside(outer.look, roots.parts[object].look),
-                _ => outer.look,
+            appearance: match roots.class_by {
+                ClassBy::Tint => self
+                    .tints
+                    .inside(outer.appearance, roots.parts[object].appearance),
+                _ => outer.appearance,
             },
         }
     }
@@ -238,7 +240,7 @@ impl Descent {
             match roots.lit {
                 None if roots.class_by == ClassBy::Tint => {
                     tints.make_room(1, buffer);
-                    let colour = tints.colour(node.paint.look, roots.inks[0]);
+                    let colour = tints.colour(node.paint.appearance, roots.inks[0]);
                     draw(buffer, Classes::One(tints.class(colour)));
                 }
                 None => draw(buffer, Classes::One(class)),
@@ -249,7 +251,7 @@ impl Descent {
                     }
                     None => {
                         let colour = match roots.class_by {
-                            ClassBy::Tint => tints.colour(node.paint.look, roots.inks[0]),
+                            ClassBy::Tint => tints.colour(node.paint.appearance, roots.inks[0]),
                             _ => roots.inks[usize::from(class) % roots.inks.len()],
                         };
                         let faces = match solid.primitive() {

@@ -77,7 +77,7 @@ pub(super) struct Part {
     pub(super) stand_in: Option<Solid>,
     pub(super) hull: Hull,
     /// Tint of its subtree.
-    pub(super) look: Appearance,
+    pub(super) appearance: Appearance,
     /// Number of the map that is applied first, from 1 if [`draws_unmade`].
     pub(super) origin: Option<usize>,
     /// Number that objects share which draw the same, but for classes.
@@ -155,7 +155,7 @@ pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
             stand_in,
             is_replaced: graph.is_fertile(number),
             solid: graph.drawn(number).cloned(),
-            look: graph.appearance(number),
+            appearance: graph.appearance(number),
             hull,
             origin: object.origin.map(|map| map + before),
             kind: match graph.is_fertile(number) {

@@ -16,7 +16,7 @@ use super::buffer::{Buffer, CLASS_BITS, EMPTY, MAX_CLASS, SIDE};
 #[derive(Default)]
 pub(super) struct Tints {
     /// Appearances of instances that have been met; the first is that of instances without tint.
-    looks: Vec<Appearance>,
+    appearances: Vec<Appearance>,
     classes: FastMap<Colour, u16>,
     /// Colours of the classes from 1 on.
     colours: Vec<Colour>,
@@ -27,8 +27,8 @@ pub(super) struct Tints {
 impl Tints {
     /// Forgets all.
     pub(super) fn clear(&mut self) {
-        self.looks.clear();
-        self.looks.push(Appearance::NONE);
+        self.appearances.clear();
+        self.appearances.push(Appearance::NONE);
         self.classes.clear();
         self.colours.clear();
     }
@@ -38,14 +38,14 @@ impl Tints {
         if inner == Appearance::NONE {
             return outer;
         }
-        let look = self.looks[outer as usize].over(inner);
-        self.looks.push(look);
-        u32::try_from(self.looks.len() - 1).unwrap_or(outer)
+        let appearance = self.appearances[outer as usize].over(inner);
+        self.appearances.push(appearance);
+        u32::try_from(self.appearances.len() - 1).unwrap_or(outer)
     }
 
     /// Returns the colour of a solid in an instance.
-    pub(super) fn colour(&self, look: u32, ink: Colour) -> Colour {
-        self.looks[look as usize].on(ink)
+    pub(super) fn colour(&self, appearance: u32, ink: Colour) -> Colour {
+        self.appearances[appearance as usize].on(ink)
     }
 
     /// Makes room for classes of new colours, at most [`MAX_CLASS`].
@@ -146,8 +146,8 @@ mod tests {
         };
         for (at, pixel) in (0u16..).zip(pixmap.pixels()) {
             let [x, y] = [at % 40, 39 - at / 40].map(|at| u8::try_from(at).unwrap());
-            let look = tint(row(y)).over(tint(column(x)));
-            let expected = look.on(Colour::grey(64)).rgba();
+            let appearance = tint(row(y)).over(tint(column(x)));
+            let expected = appearance.on(Colour::grey(64)).rgba();
             let found = [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()];
             assert_eq!(found, expected, "{x} {y}");
         }

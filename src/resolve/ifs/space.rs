@@ -15,12 +15,12 @@ impl Resolver<OfIfs> {
     pub(in crate::resolve) fn system_in_space(
         &mut self,
         document: &IfsDocument,
-        heading: Metadata,
+        metadata: Metadata,
     ) -> Option<System<DAffine3>> {
         let maps = document.maps.as_ref();
         let maps = maps.and_then(|maps| self.maps_in_space(maps));
         let parts = self.parts(document, maps, Self::solids);
-        self.assembled(document, heading, parts)
+        self.assembled(document, metadata, parts)
     }
 
     fn maps_in_space(&mut self, document: &MapsDocument) -> Option<Maps<DAffine3>> {

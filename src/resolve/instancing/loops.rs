@@ -49,7 +49,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let ways = edges.iter().map(|edge| outer[edge.from].len());
         if ways.sum::<usize>() > MAX_WAYS {
             let message = "there are too many ways to decide whether all loops contract";
-            let place = &document.heading.place;
+            let place = &document.metadata.place;
             self.warn(place, message, UNKNOWN);
             return Some(());
         }
@@ -61,7 +61,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             .objects
             .iter()
             .find(|written| object.split('(').next() == Some(&written.name.value));
-        let place = written.map_or(&document.heading.place, |written| &written.name.place);
+        let place = written.map_or(&document.metadata.place, |written| &written.name.place);
         match contraction.verdict {
             Verdict::Contracts => Some(()),
             Verdict::Diverges => {

@@ -14,7 +14,7 @@ use crate::rule::{ElementContext, Move};
 const MAX_MOVES: usize = 1000;
 
 /// Lists of points that several moves share.
-struct Shared {
+struct MovedPoints {
     all: Arc<[usize]>,
     inner: Arc<[usize]>,
 }
@@ -92,7 +92,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             let hint = "one move can scale, turn and shift any number of points";
             self.error_with_hint(&moving.place, message, hint);
         }
-        let shared = Shared {
+        let shared = MovedPoints {
             all: (0..count).collect(),
             inner: inner.into(),
         };
@@ -102,7 +102,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             .collect()
     }
 
-    fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &Shared) -> Move<F> {
+    fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &MovedPoints) -> Move<F> {
         let mut vector = |point: &Option<WrittenPoint>| match point {
             Some(point) => F::point_in(self, point, scope),
             None => F::splat(&Program::constant(0.0)),

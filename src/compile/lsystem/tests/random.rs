@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use crate::compile::lsystem::effects::Effects;
 use crate::graph::Graph;
 
-use super::{assert_same, assert_told, system};
+use super::{assert_reported, assert_same, system};
 
 /// Words of letters, turns, scalings, reflections and stroke attributes, with balanced brackets.
 fn word(drawn: bool) -> impl Strategy<Value = String> {
@@ -72,7 +72,7 @@ proptest! {
         for steps in 0..=4 {
             if Graph::of_derived_word(&system, steps, 0, 2_000).is_ok() {
                 assert_same(&text, &graph, &system, steps, 0);
-                assert_told(&graph, steps);
+                assert_reported(&graph, steps);
             }
         }
     }

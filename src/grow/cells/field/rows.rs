@@ -4,24 +4,24 @@ use super::{Field, SIDE, bits, corner};
 use crate::geometry::DVec2;
 
 /// Row of cells of a [`Field`].
-pub(crate) struct Row<'f> {
+pub(crate) struct CellRow<'f> {
     field: &'f Field,
     number: i64,
 }
 
 impl Field {
     /// Iterates over all rows of cells that may hold points, from the lowest.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+    pub(crate) fn rows(&self) -> impl Iterator<Item = CellRow<'_>> {
         let from = self.low[1] * SIDE;
         let to = (self.low[1] + self.room[1]) * SIDE;
-        (from..to).map(|number| Row {
+        (from..to).map(|number| CellRow {
             field: self,
             number,
         })
     }
 }
 
-impl Row<'_> {
+impl CellRow<'_> {
     /// Returns the number of the row.
     pub(crate) fn number(&self) -> i64 {
         self.number
@@ -33,7 +33,7 @@ impl Row<'_> {
         self.visit(|word, _| [word, word], visit);
     }
 
-    /// Visits the cells as [`Row::visit_runs`] does, except that cells with at most two of four neighbours
+    /// Visits the cells as [`CellRow::visit_runs`] does, except that cells with at most two of four neighbours
     /// are given by their points, and cells with all four are visited only if `needs_inner` is set.
     pub(crate) fn visit_points(&self, needs_inner: bool, visit: impl FnMut([DVec2; 2])) {
         let Self { field, number } = *self;

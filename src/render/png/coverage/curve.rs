@@ -21,7 +21,7 @@ pub(crate) fn flattened_within(
     curve: Curve,
     tolerance: f64,
 ) -> impl ExactSizeIterator<Item = [f64; 2]> {
-    lines(curve, least_lines(curve, tolerance), 1.0)
+    lines(curve, min_lines(curve, tolerance), 1.0)
 }
 
 /// Iterates over the ends of the lines that replace a curve as a side of a polygon: they deviate equally to
@@ -36,7 +36,7 @@ pub(crate) fn bounding_within(
     curve: Curve,
     tolerance: f64,
 ) -> impl ExactSizeIterator<Item = [f64; 2]> {
-    let count = least_lines(curve, tolerance).max(2.0);
+    let count = min_lines(curve, tolerance).max(2.0);
     // Evenly spaced chords of a parabola cut off the reciprocal of the square of their number.
     lines(curve, count, 1.0 / (1.0 - 1.0 / (count * count)))
 }
@@ -54,7 +54,7 @@ fn rounded(point: [f64; 2]) -> Position {
 }
 
 /// Returns the number of lines that replace a curve.
-fn least_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
+fn min_lines([from, a, b, to]: Curve, tolerance: f64) -> f64 {
     let bend = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
         let [x, y] = [0, 1].map(|axis| p[axis] - 2.0 * q[axis] + r[axis]);
         x * x + y * y

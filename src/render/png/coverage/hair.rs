@@ -192,8 +192,8 @@ impl CoverageBuffer {
         let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * first[axis]);
         // Negative positions become larger than any buffer.
         let cell = least.map(|least| index(least) / (2 * FINE) as usize);
-        let [most_columns, most_rows] = self.size.map(|side| index(side + 2 * MARGIN) - 2);
-        if cell[0] > most_columns || cell[1] > most_rows {
+        let [max_columns, max_rows] = self.size.map(|side| index(side + 2 * MARGIN) - 2);
+        if cell[0] > max_columns || cell[1] > max_rows {
             return;
         }
         let within = [0, 1].map(|axis| least[axis] - cell[axis] as i64 * 2 * FINE);

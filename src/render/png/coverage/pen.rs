@@ -178,8 +178,8 @@ impl CoverageBuffer {
         let (column, row) = (x >> STEP_BITS, (y >> STEP_BITS) - self.top);
         let (column, row) = (column + MARGIN, row + MARGIN);
         let (column, row) = (index(column), index(row));
-        let [most_columns, most_rows] = self.size.map(|side| index(side + MARGIN));
-        if column > most_columns || row > most_rows {
+        let [max_columns, max_rows] = self.size.map(|side| index(side + MARGIN));
+        if column > max_columns || row > max_rows {
             return;
         }
         let start = row * self.stride + column;

@@ -117,12 +117,12 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
     let turned = |map: &DMat2| *map * (1.0 / map.x_axis.length());
     let start = graph.initiator(0).instances.iter();
     let start = start.map(|instance| (DMat2::IDENTITY, Direction::Normal, instance));
-    let mut standing = start.collect::<Vec<_>>();
+    let mut state = start.collect::<Vec<_>>();
     let (mut runs, mut sides) = (FastSet::default(), Vec::new());
     for step in 0..=growth.steps {
         let mut known = FastSet::default();
         sides.clear();
-        for (linear, direction, instance) in standing.drain(..) {
+        for (linear, direction, instance) in state.drain(..) {
             let linear = linear * instance.frame.map().matrix2;
             let direction = direction * instance.frame.direction();
             let length = linear.x_axis.length();
@@ -140,7 +140,7 @@ fn sides(scene: &Scene<'_>, longest_run: u64) -> Option<u64> {
                 return None;
             }
         }
-        standing.extend(sides.iter().flat_map(|&(object, linear, direction)| {
+        state.extend(sides.iter().flat_map(|&(object, linear, direction)| {
             let children = graph.children(object);
             children.map(move |(_, instance)| (linear, direction, instance))
         }));
