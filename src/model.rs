@@ -6,7 +6,6 @@ mod instancing;
 mod lsystem;
 mod place;
 mod rule;
-mod space;
 
 pub use crate::graph::OutOfRange;
 pub use crate::kind::Kind;
@@ -84,13 +83,25 @@ models! {
     LSystem: LSystem(LSystem);
 }
 
+/// Graph of a model in space.
+type CompiledInSpace = Result<Graph<Frame3>, CompileError>;
+
 /// Properties of a model that depend on its kind. Each kind implements them in a file of this module.
 pub(crate) trait OfKind {
     /// Returns the metadata of the file.
     fn metadata(&self) -> &Metadata;
 
-    /// Compiles the model as [`Model::compile_for`] does.
-    fn compile(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Graph, CompileError>;
+    /// Compiles a model of the plane as [`Model::compile_for`] does.
+    fn compile(&self, _steps: u32, _seed: u64, _max_elements: u64) -> Result<Graph, CompileError> {
+        Err(CompileError::InSpace)
+    }
+
+    /// Compiles a model in space to a graph that is resolved for at least `steps` steps; `None` for a model of the
+    /// plane. Objects of a system record the map that is applied last if `records_last`, unless there are too many for
+    /// it.
+    fn compile_in_space(&self, _steps: u32, _records_last: bool) -> Option<CompiledInSpace> {
+        None
+    }
 
     /// Converts an error of compiling or of a walk to a diagnostic of the model's file.
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {
@@ -222,6 +233,36 @@ impl Model {
         match self.as_kind().of_limit() {
             Some(model) => Cow::Owned(model),
             None => Cow::Borrowed(self),
+        }
+    }
+
+    /// Returns whether the model lies in space; [`graph_in_space`](Self::graph_in_space) compiles it then.
+    #[must_use]
+    pub fn is_in_space(&self) -> bool {
+        matches!(
+            self,
+            Self::RuleInSpace(_) | Self::IfsInSpace(_) | Self::InstancingInSpace(_)
+        )
+    }
+
+    /// Compiles a model in space to the graph of its elements, which is resolved for at least `steps` steps; `None` for
+    /// a model of the plane.
+    ///
+    /// # Errors
+    ///
+    /// If a generator yields points that are not finite within these steps.
+    pub fn graph_in_space(&self, steps: u32) -> Option<Result<Graph<Frame3>, CompileError>> {
+        self.as_kind().compile_in_space(steps, false)
+    }
+
+    /// Compiles a system or a structure in space to its graph; `None` for other models. Objects of a system record the map
+    /// that is applied last if `records_last`, unless there are too many for it.
+    #[must_use]
+    pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {
+        match self.kind() {
+            // The graph of a rule depends on the number of steps.
+            Kind::Rule => None,
+            _ => self.as_kind().compile_in_space(0, records_last)?.ok(),
         }
     }
 

@@ -94,11 +94,11 @@ fn resolve(
         }),
         KindDocument::Ifs(document) if document.is_in_space => {
             resolved(&document.metadata, settings, |to, metadata| {
-                to.system_in_space(document, metadata)
+                to.system::<DAffine3, 3>(document, metadata)
             })
         }
         KindDocument::Ifs(document) => resolved(&document.metadata, settings, |to, metadata| {
-            to.system(document, metadata)
+            to.system::<DAffine2, 2>(document, metadata)
         }),
         KindDocument::Instancing(document) if document.is_in_space => {
             resolved(&document.metadata, settings, |to, metadata| {

@@ -178,7 +178,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             is_light,
         } => Drawing::new(arguments, loaded, format, shown, path)?.write(is_light)?,
         Plan::Chaos(table) => {
-            let game = chaos::ChaosGame::new(arguments, &loaded)?;
+            let game = chaos::PlaneGame::new(arguments, &loaded)?;
             output::write(path, arguments.growth.quiet, |out, progress| match table {
                 Some(format) => game.list(format, progress, out, path),
                 None => game.draw(progress, out, path),

@@ -1,7 +1,6 @@
 //! `kfrac info`: describes a rule and forecasts the sizes of its steps.
 
 mod numbers;
-mod space;
 
 use std::fmt::Write as _;
 
@@ -11,8 +10,9 @@ use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
 use crate::count::Count;
 use crate::estimate::{Estimator, SizeEstimate, instanced_bytes};
-use crate::geometry::{Bounds, Point};
-use crate::graph::{Graph, Level};
+use crate::extent::Bounded;
+use crate::geometry::{Bounds, Homothety, Point};
+use crate::graph::{Forecast, Graph, Level};
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
 use crate::metadata::Parameter;
@@ -164,22 +164,24 @@ fn number(value: f64) -> serde_json::Value {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
-    if let Some(graph) = loaded.in_space(arguments.steps)? {
+    let (info, unit) = if let Some(graph) = loaded.in_space(arguments.steps)? {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;
-        let info = space::info(&loaded, &graph, steps);
-        return output::print_as(arguments.json, &info, || {
-            described(&loaded, &info, graph.place().ratio())
-        });
-    }
-    let steps = steps::choose(arguments.steps, &loaded)?;
-    check_steps(steps)?;
-    let graph = loaded.compile(steps)?;
-    let limit = loaded.other_limit(steps)?;
-    let info = info(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
-    output::print_as(arguments.json, &info, || {
-        described(&loaded, &info, graph.place().ratio())
-    })
+        let bounds = graph.bounds(steps);
+        let info = Info {
+            system: SystemInfo::of(&loaded.model, &Homothety::IDENTITY),
+            ..info(&loaded, [&graph, &graph], steps, bounds, |_, _| None)
+        };
+        (info, graph.place().ratio())
+    } else {
+        let steps = steps::choose(arguments.steps, &loaded)?;
+        check_steps(steps)?;
+        let graph = loaded.compile(steps)?;
+        let limit = loaded.other_limit(steps)?;
+        let info = in_plane(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
+        (info, graph.place().ratio())
+    };
+    output::print_as(arguments.json, &info, || described(&loaded, &info, unit))
 }
 
 fn check_steps(steps: u32) -> Result<(), Failure> {
@@ -190,15 +192,43 @@ fn check_steps(steps: u32) -> Result<(), Failure> {
     Err(Failure::Usage(message))
 }
 
-/// Collects the description. `limit` is the graph that has the limit set.
-fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Info<'a> {
+/// Collects the description of a set of the plane, with estimates of sizes of files and of times. `limit` is the graph
+/// that has the limit set.
+fn in_plane<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Info<'a> {
+    /// Step after which bounding boxes change little.
+    const SETTLED: u32 = 12;
     let bounds = bounds(graph, steps);
-    let rows = rows(
-        loaded,
-        graph,
-        steps,
-        bounds.or_else(|| rough_bounds(graph, steps)),
-    );
+    let last = bounds.or_else(|| rough_bounds(graph, steps));
+    let options = Options::of(loaded.model.metadata());
+    let estimator = Estimator::new(graph, &options);
+    let boxes = graph.boxes();
+    // Every estimate after one that exceeds the range of doubles exceeds it too.
+    let mut may_be = true;
+    let estimate = |step: u32, forecast: &Forecast<'_>| {
+        let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
+        let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
+        let estimate = bounds.filter(|_| may_be);
+        let estimate = estimate.and_then(|bounds| estimator.at(forecast, &bounds));
+        may_be = estimate.is_some();
+        estimate
+    };
+    Info {
+        instanced_svg_bytes: instanced_bytes(graph, &options, steps).map(readable::two_digits),
+        system: SystemInfo::of(&loaded.model, graph.place()),
+        ..info(loaded, [graph, limit], steps, bounds, estimate)
+    }
+}
+
+/// Collects the description from the graph and the graph that has the limit set. The area in space is the sum of the
+/// surfaces of all elements, where maps are similarities.
+fn info<'a, F: Bounded>(
+    loaded: &'a Loaded,
+    [graph, limit]: [&Graph<F>; 2],
+    steps: u32,
+    bounds: Option<Bounds<F::Point>>,
+    estimate: impl FnMut(u32, &Forecast<'_, F>) -> Option<SizeEstimate>,
+) -> Info<'a> {
+    let rows = rows(graph, steps, estimate);
     // A measure is absent if one step lacks it; for a single step it is `None` beyond the range of doubles.
     let measures = |measure: fn(&Level) -> Option<f64>| {
         let rows = rows.as_ref()?;
@@ -208,19 +238,16 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     };
     let estimates = |part: fn(&SizeEstimate) -> f64| {
         let rows = rows.as_ref().filter(|rows| rows[0].estimate.is_some())?;
-        Some(
-            rows.iter()
-                .map(|row| row.estimate.as_ref().map(part))
-                .collect(),
-        )
+        let estimates = rows.iter().map(|row| row.estimate.as_ref().map(part));
+        Some(estimates.collect())
     };
     let place = graph.place();
     let length = in_units(measures(|level| level.length), &[place.ratio()]);
-    let area = in_units(measures(|level| level.area), &[place.ratio(); 2]);
+    let has_area = F::Point::DIMENSION == 2 || graph.is_similar();
+    let area = has_area.then(|| measures(|level| level.area)).flatten();
+    let area = in_units(area, &[place.ratio(); 2]);
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
-    let options = Options::of(loaded.model.metadata());
-    let instanced_svg_bytes = instanced_bytes(graph, &options, steps).map(readable::two_digits);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
         let mut counts = [const { Vec::new() }; 3];
         for ForecastRow { level, .. } in rows {
@@ -239,7 +266,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
     Info {
         name: &loaded.name,
         kind: loaded.model.kind().name(),
-        space: 2,
+        space: if F::Point::DIMENSION == 2 { 2 } else { 3 },
         title: metadata.description.title.as_deref(),
         params: params
             .map(|parameter| (parameter.name.clone(), number(parameter.value)))
@@ -254,7 +281,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
         area,
         svg_bytes,
         seconds,
-        instanced_svg_bytes,
+        instanced_svg_bytes: None,
         bounds: bounds.map(|bounds| corners(&place.bounds(&bounds))),
         limit_bounds: (limit.limit_bounds()).map(|bounds| corners(&place.bounds(&bounds))),
         dimension: Dimension {
@@ -263,7 +290,7 @@ fn info<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Inf
             hausdorff: hausdorff(exact.as_ref()),
             exact: exact.map(|known| known.hausdorff),
         },
-        system: SystemInfo::of(&loaded.model, place),
+        system: None,
         structure: StructureInfo::of(&loaded.model),
     }
 }
@@ -288,33 +315,21 @@ struct ForecastRow {
     estimate: Option<SizeEstimate>,
 }
 
-fn rows(
-    loaded: &Loaded,
-    graph: &Graph,
+/// Returns the forecast of all steps, with estimates; `None` if it takes too long.
+fn rows<F: Bounded>(
+    graph: &Graph<F>,
     steps: u32,
-    last: Option<Bounds>,
+    mut estimate: impl FnMut(u32, &Forecast<'_, F>) -> Option<SizeEstimate>,
 ) -> Option<Vec<ForecastRow>> {
-    /// Step after which bounding boxes change little.
-    const SETTLED: u32 = 12;
-    let options = Options::of(loaded.model.metadata());
-    let estimator = Estimator::new(graph, &options);
     let mut forecast = graph.forecast()?;
-    let boxes = graph.boxes();
     let mut rows = Vec::new();
     for step in 0..=steps {
         if step > 0 && !forecast.advance() {
             return None;
         }
-        let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
-        let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
-        // Every estimate after one that exceeds the range of doubles exceeds it too.
-        let may_be = rows
-            .last()
-            .is_none_or(|row: &ForecastRow| row.estimate.is_some());
-        let bounds = bounds.filter(|_| may_be);
         rows.push(ForecastRow {
             level: forecast.level(),
-            estimate: bounds.and_then(|bounds| estimator.at(&forecast, &bounds)),
+            estimate: estimate(step, &forecast),
         });
     }
     Some(rows)

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::info;
 use super::readable::decimal;
-use crate::geometry::{DAffine3, DVec2, DVec3, Homothety};
-use crate::ifs::{Contraction, System, Verdict};
+use crate::geometry::{DVec2, Homothety, Point as _};
+use crate::ifs::{AffineMap, Contraction, Ifs, PointOf, System, Verdict};
 use crate::model::Model;
 
 /// Maps of a system, their contraction, and the measure of random iteration.
@@ -67,55 +67,60 @@ impl ContractionInfo {
 
 impl SystemInfo {
     /// Collects the information of a system. `place` maps coordinates near the unit box around the origin, in which
-    /// everything is computed, to those of the system.
+    /// everything is computed in the plane, to those of the system.
     pub(super) fn of(model: &Model, place: &Homothety) -> Option<Self> {
-        let (Model::Ifs(system), Model::Ifs(within)) = (model, model.within(place)) else {
+        let system = match model {
+            Model::Ifs(system) => system,
+            Model::IfsInSpace(system) => {
+                return Some(Self::within(
+                    system,
+                    system.ifs(),
+                    &Homothety::IDENTITY,
+                    None,
+                ));
+            }
+            _ => return None,
+        };
+        let Model::Ifs(within) = model.within(place) else {
             return None;
         };
-        let ifs = within.ifs();
-        let contraction = system.contraction();
-        let point = |point: DVec2| (place.point(point) + DVec2::ZERO).to_array();
+        let measure = within.ifs().measure().map(|measure| MeasureInfo {
+            mean: (place.point(measure.moments.mean) + DVec2::ZERO).to_array(),
+            covariance: (measure.moments.covariance.to_cols_array_2d())
+                .map(|row| row.map(|value| value * place.ratio() * place.ratio())),
+        });
+        Some(Self::within(system, within.ifs(), place, measure))
+    }
+
+    /// Collects the information of a system with maps in coordinates that `place` maps to its own.
+    fn within<M: AffineMap>(
+        system: &System<M>,
+        ifs: &Ifs<M>,
+        place: &Homothety<PointOf<M>>,
+        measure: Option<MeasureInfo>,
+    ) -> Self {
+        let point = |point: PointOf<M>| {
+            let coordinates = place.point(point).coordinates();
+            let coordinates = coordinates.iter().take(PointOf::<M>::DIMENSION);
+            coordinates.map(|value| value + 0.0).collect()
+        };
         let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
         let maps = maps.map(|((map, &weight), fixed)| MapInfo {
             name: map.name.clone(),
             weight,
-            fixed_point: fixed.map(|fixed| point(fixed).to_vec()),
-        });
-        let measure = ifs.measure().map(|measure| MeasureInfo {
-            mean: point(measure.moments.mean),
-            covariance: (measure.moments.covariance.to_cols_array_2d())
-                .map(|row| row.map(|value| value * place.ratio() * place.ratio())),
+            fixed_point: fixed.map(point),
         });
         let weights_by = if system.is_interpolation() {
             Some(Weights::Widths)
         } else {
             ifs.has_default_weights().then_some(Weights::Determinants)
         };
-        Some(Self {
-            maps: maps.collect(),
-            default_weights: weights_by.is_some(),
-            weights_by,
-            contraction: ContractionInfo::of(contraction),
-            measure,
-        })
-    }
-
-    /// Collects the information of a system in space.
-    pub(super) fn in_space(system: &System<DAffine3>) -> Self {
-        let ifs = system.ifs();
-        let maps = ifs.maps().iter().zip(ifs.weights()).zip(ifs.fixed_points());
-        let maps = maps.map(|((map, &weight), fixed)| MapInfo {
-            name: map.name.clone(),
-            weight,
-            fixed_point: fixed.map(|fixed| (fixed + DVec3::ZERO).to_array().to_vec()),
-        });
-        let weights_by = ifs.has_default_weights().then_some(Weights::Determinants);
         Self {
             maps: maps.collect(),
             default_weights: weights_by.is_some(),
             weights_by,
             contraction: ContractionInfo::of(system.contraction()),
-            measure: None,
+            measure,
         }
     }
 

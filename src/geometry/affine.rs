@@ -53,40 +53,48 @@ pub trait Affine:
     fn of_space(map: &DAffine3) -> Self;
 }
 
+/// Implements what the maps of the `glam` crate have, by the names that depend on the dimension: of the linear part,
+/// the constructor and the image of a point.
+macro_rules! by_glam {
+    ($linear:ident, $new:ident, $apply:ident) => {
+        const IDENTITY: Self = Self::IDENTITY;
+
+        #[inline]
+        fn new(linear: Self::Linear, translation: Self::Point) -> Self {
+            Self::$new(linear, translation)
+        }
+
+        #[inline]
+        fn linear(&self) -> Self::Linear {
+            self.$linear
+        }
+
+        #[inline]
+        fn translation(&self) -> Self::Point {
+            self.translation
+        }
+
+        #[inline]
+        fn apply(&self, point: Self::Point) -> Self::Point {
+            self.$apply(point)
+        }
+
+        fn is_finite(&self) -> bool {
+            self.is_finite()
+        }
+
+        #[inline]
+        fn is_near(&self, other: &Self, tolerance: f64) -> bool {
+            self.abs_diff_eq(*other, tolerance)
+        }
+    };
+}
+
 impl Affine for DAffine2 {
     type Point = DVec2;
     type Linear = DMat2;
 
-    const IDENTITY: Self = Self::IDENTITY;
-
-    #[inline]
-    fn new(linear: DMat2, translation: DVec2) -> Self {
-        Self::from_mat2_translation(linear, translation)
-    }
-
-    #[inline]
-    fn linear(&self) -> DMat2 {
-        self.matrix2
-    }
-
-    #[inline]
-    fn translation(&self) -> DVec2 {
-        self.translation
-    }
-
-    #[inline]
-    fn apply(&self, point: DVec2) -> DVec2 {
-        self.transform_point2(point)
-    }
-
-    fn is_finite(&self) -> bool {
-        self.is_finite()
-    }
-
-    #[inline]
-    fn is_near(&self, other: &Self, tolerance: f64) -> bool {
-        self.abs_diff_eq(*other, tolerance)
-    }
+    by_glam!(matrix2, from_mat2_translation, transform_point2);
 
     fn in_space(&self) -> DAffine3 {
         let DMat2 { x_axis, y_axis } = self.matrix2;
@@ -110,36 +118,7 @@ impl Affine for DAffine3 {
     type Point = DVec3;
     type Linear = DMat3;
 
-    const IDENTITY: Self = Self::IDENTITY;
-
-    #[inline]
-    fn new(linear: DMat3, translation: DVec3) -> Self {
-        Self::from_mat3_translation(linear, translation)
-    }
-
-    #[inline]
-    fn linear(&self) -> DMat3 {
-        self.matrix3
-    }
-
-    #[inline]
-    fn translation(&self) -> DVec3 {
-        self.translation
-    }
-
-    #[inline]
-    fn apply(&self, point: DVec3) -> DVec3 {
-        self.transform_point3(point)
-    }
-
-    fn is_finite(&self) -> bool {
-        self.is_finite()
-    }
-
-    #[inline]
-    fn is_near(&self, other: &Self, tolerance: f64) -> bool {
-        self.abs_diff_eq(*other, tolerance)
-    }
+    by_glam!(matrix3, from_mat3_translation, transform_point3);
 
     fn in_space(&self) -> DAffine3 {
         *self

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::geometry::Homothety;
+use crate::geometry::{DAffine3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::{System, Verdict};
 use crate::metadata::Metadata;
 
 use super::place::Extent;
-use super::{Model, OfKind};
+use super::{CompiledInSpace, Model, OfKind};
 
 impl OfKind for Arc<System> {
     fn metadata(&self) -> &Metadata {
@@ -33,6 +33,23 @@ impl OfKind for Arc<System> {
 
     fn has_plane_maps(&self) -> bool {
         true
+    }
+
+    fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {
+        self.contraction().verdict == Verdict::Contracts
+    }
+}
+
+impl OfKind for Arc<System<DAffine3>> {
+    fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    fn compile_in_space(&self, _steps: u32, records_last: bool) -> Option<CompiledInSpace> {
+        let recorded = records_last.then(|| Graph::with_last_maps(self));
+        Some(Ok(recorded
+            .flatten()
+            .unwrap_or_else(|| Graph::of_system(self))))
     }
 
     fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::geometry::Homothety;
+use crate::geometry::{DAffine3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::{Map, Shape};
 use crate::instancing::{Instancing, Master};
 use crate::metadata::Metadata;
 
 use super::place::Extent;
-use super::{Model, OfKind};
+use super::{CompiledInSpace, Model, OfKind};
 
 impl OfKind for Arc<Instancing> {
     fn metadata(&self) -> &Metadata {
@@ -45,6 +45,24 @@ impl OfKind for Arc<Instancing> {
 
     fn has_plane_maps(&self) -> bool {
         true
+    }
+
+    fn ends(&self) -> Option<u32> {
+        self.depth()
+    }
+
+    fn is_drawn_to_limit(&self, has_limit: &dyn Fn() -> bool) -> bool {
+        self.depth().is_none() && has_limit()
+    }
+}
+
+impl OfKind for Arc<Instancing<DAffine3>> {
+    fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    fn compile_in_space(&self, _steps: u32, _records_last: bool) -> Option<CompiledInSpace> {
+        Some(Ok(Graph::of_structure(self)))
     }
 
     fn ends(&self) -> Option<u32> {

@@ -8,8 +8,8 @@ use crate::graph::{CompileError, Graph};
 use crate::metadata::Metadata;
 use crate::rule::Rule;
 
-use super::OfKind;
 use super::place::Extent;
+use super::{CompiledInSpace, OfKind};
 
 impl OfKind for Arc<Rule> {
     fn metadata(&self) -> &Metadata {
@@ -38,8 +38,8 @@ impl OfKind for Arc<Rule<Frame3>> {
         &self.metadata
     }
 
-    fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
-        Err(CompileError::InSpace)
+    fn compile_in_space(&self, steps: u32, _records_last: bool) -> Option<CompiledInSpace> {
+        Some(Graph::compile(self, steps))
     }
 
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {

@@ -1,7 +1,7 @@
 //! Fractals as sets: approximants of other fractals, which are grown during resolution.
 
 use crate::document::{FractalDocument, Setting};
-use crate::geometry::Frame2;
+use crate::geometry::{DAffine2, Frame2};
 use crate::grow::{Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
 
@@ -18,7 +18,7 @@ impl<K> Resolver<K> {
         let map = document
             .map
             .as_ref()
-            .map(|map| self.affine(map)?.as_constant());
+            .map(|map| self.affine::<DAffine2, 2>(map)?.as_constant());
         let settings = self.settings(document)?;
         let model = match resolve(&document.file, &settings) {
             Ok((model, _)) => model,

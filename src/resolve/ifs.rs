@@ -1,12 +1,9 @@
 //! Resolution of iterated function systems.
 
 mod scatter;
-mod space;
 
 use crate::diagnostic::did_you_mean;
-use crate::document::{
-    EdgeDocument, IfsDocument, MapDocument, MapsDocument, ShapeDocument, Written,
-};
+use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
 use crate::expression::{Affine, Program, Symbols};
 use crate::geometry::DAffine2;
 use crate::ifs::{
@@ -16,7 +13,8 @@ use crate::ifs::{
 use crate::metadata::Metadata;
 
 use super::Resolver;
-use super::numbers::values;
+use super::instancing::StructureMap;
+use super::map::WrittenMap;
 
 /// Maximum size of a system, with all instances of sets and of maps in maps.
 const MAX_INSTANCES: usize = 2_000_000;
@@ -45,22 +43,26 @@ struct Parts<M: AffineMap> {
 
 impl Resolver<OfIfs> {
     /// Resolves the system. Reports mistakes and returns `None`.
-    pub(super) fn system(&mut self, document: &IfsDocument, metadata: Metadata) -> Option<System> {
-        let maps = document.maps.as_ref().and_then(|maps| self.maps(maps));
-        let parts = self.parts(document, maps, Self::set);
+    pub(super) fn system<M: WrittenMap<N>, const N: usize>(
+        &mut self,
+        document: &IfsDocument,
+        metadata: Metadata,
+    ) -> Option<System<M>> {
+        let maps = document.maps.as_ref();
+        let maps = maps.and_then(|maps| self.maps(maps));
+        let parts = self.parts(document, maps);
         self.assembled(document, metadata, parts)
     }
 
-    /// Resolves the sets of a system, each by `set`.
-    fn parts<M: AffineMap>(
+    /// Resolves the sets of a system.
+    fn parts<M: StructureMap>(
         &mut self,
         document: &IfsDocument,
         maps: Option<Maps<M>>,
-        mut set: impl FnMut(&mut Self, &ShapeDocument) -> Option<M::Set>,
     ) -> Parts<M> {
         let condensation = document.condensation.iter().map(|own| {
             let weight = self.optional(own.weight.as_ref());
-            let shape = set(self, &own.shape);
+            let shape = M::set(self, &own.shape);
             Some(Condensation {
                 weight: weight?,
                 shape: shape?,
@@ -69,7 +71,7 @@ impl Resolver<OfIfs> {
         Parts {
             maps,
             condensation: condensation.collect(),
-            initial: document.initial.as_ref().map(|own| set(self, own)),
+            initial: document.initial.as_ref().map(|own| M::set(self, own)),
         }
     }
 
@@ -140,15 +142,15 @@ impl Resolver<OfIfs> {
         })
     }
 
-    fn maps(&mut self, document: &MapsDocument) -> Option<Maps> {
+    fn maps<M: WrittenMap<N>, const N: usize>(
+        &mut self,
+        document: &MapsDocument,
+    ) -> Option<Maps<M>> {
         match document {
             MapsDocument::Listed(maps) => {
                 let maps: Vec<_> = maps.iter().map(|map| self.map(map)).collect();
-                let (maps, written) = maps
-                    .into_iter()
-                    .collect::<Option<Vec<_>>>()?
-                    .into_iter()
-                    .unzip();
+                let maps = maps.into_iter().collect::<Option<Vec<_>>>()?;
+                let (maps, written) = maps.into_iter().unzip();
                 Some(Maps {
                     maps,
                     written,
@@ -158,32 +160,36 @@ impl Resolver<OfIfs> {
             }
             MapsDocument::Vertices { points, shrink } => {
                 let factor = self.constant_program(shrink);
-                let points = self.vertices(points, Self::point)?;
-                let factors = [factor.clone(), factor];
-                let toward = |point| {
-                    let map = Affine::scaling(&mut Symbols, factors.clone());
-                    map.about(&mut Symbols, point)
+                let points = self.vertices::<M, N>(points)?;
+                let toward = |point: &[Program; N]| {
+                    let factors = std::array::from_fn(|_| factor.clone());
+                    Affine::scaling(&mut Symbols, factors).about(&mut Symbols, point)
                 };
                 let written: Vec<_> = points.iter().map(toward).collect();
-                let maps = written.iter().map(|map| map.as_constant().map(Map::new));
+                let maps = written.iter().map(|map| M::as_constant(map).map(Map::new));
+                let maps = maps.collect::<Option<_>>()?;
+                let points: Option<Vec<_>> = points.iter().map(M::value).collect();
                 Some(Maps {
-                    maps: maps.collect::<Option<_>>()?,
+                    maps,
                     written,
-                    initial: Some(DAffine2::hull(&values(&points))),
+                    initial: Some(M::hull(&points?)),
                     chained: false,
                 })
             }
-            MapsDocument::Interpolated(document) => self.interpolation(document),
+            MapsDocument::Interpolated(document) => M::interpolation(self, document),
         }
     }
 
-    fn map(&mut self, document: &MapDocument) -> Option<(Map, Affine<Program>)> {
-        let written = self.affine(document);
+    fn map<M: WrittenMap<N>, const N: usize>(
+        &mut self,
+        document: &MapDocument,
+    ) -> Option<(Map<M>, Affine<Program, N>)> {
+        let written = self.affine::<M, N>(document);
         let weight = self.optional(document.weight.as_ref());
         let written = written?;
         let map = Map {
             name: document.name.as_ref().map(|name| name.value.clone()),
-            affine: written.as_constant()?,
+            affine: M::as_constant(&written)?,
             weight: weight?,
         };
         Some((map, written))

@@ -1,33 +1,27 @@
 //! `kfrac grow --method chaos`: random iteration of iterated function systems.
 
+mod plane;
 mod space;
 
+pub(super) use plane::PlaneGame;
 pub(super) use space::SpaceGame;
 
 use std::fmt;
 use std::io::Write;
 use std::num::NonZero;
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use crate::chaos::{
-    ClassBy, Game, GameError, HistogramWindow, RandomPoint, RandomPoints, Start, Walked,
-    WeightedMaps, play,
-};
+use crate::chaos::{ClassBy, Game, RandomPoint, RandomPoints, Start, Walked, WeightedMaps};
 use crate::export;
-use crate::geometry::{Bounds, DVec3, Homothety};
-use crate::graph::Graph;
+use crate::geometry::{DVec3, Homothety};
 use crate::grow::Progress;
-use crate::ifs::{self, Ifs};
+use crate::ifs::{PointOf, System};
 use crate::metadata::Metadata;
-use crate::model::Model;
-use crate::render::{Canvas, Density, RenderError, Shades, Size, Tone, write_density};
-use crate::style::{ColorBy, Colour, Named, Style};
+use crate::render::{RenderError, Tone};
+use crate::style::{ColorBy, Named};
 
-use super::super::labels::labels;
-use super::super::length::Paper;
 use super::super::picture::{self, PictureArguments};
 use super::super::readable::counted;
 use super::super::rule::Loaded;
@@ -206,15 +200,6 @@ fn classes(color_by: ColorBy, steps: u32) -> ClassBy {
     ClassBy::Map { ago }
 }
 
-/// Returns the weighted maps of a system.
-fn weighted<M: Walked>(ifs: &Ifs<M>, loaded: &Loaded) -> Result<WeightedMaps<M>, Failure> {
-    let weighted = WeightedMaps::of(ifs).map_err(|error| {
-        let message = format!("{} cannot be drawn by random iteration", loaded.name);
-        anyhow::Error::new(error).context(message)
-    })?;
-    Ok(weighted)
-}
-
 /// Returns an error if the number of steps is given, and has no meaning for points of a colour.
 fn refuse_steps(steps: Option<u32>, color_by: ColorBy) -> Result<(), Failure> {
     if steps.is_none() || color_by == ColorBy::FirstMap {
@@ -238,212 +223,116 @@ fn check_rows(points: u64, most: u64) -> Result<(), Failure> {
 const DRAWN: u64 = 10_000_000;
 const LISTED: u64 = 100_000;
 
-/// Game that is ready to be played.
-pub(super) struct ChaosGame<'a> {
+/// Random iteration of a system, as the options request it.
+pub(super) struct Iteration<'a, M: Walked> {
     arguments: &'a Arguments,
     loaded: &'a Loaded,
     /// System in the coordinates that `place` maps to those of its file.
-    source: Arc<ifs::System>,
-    place: Homothety,
-    system: WeightedMaps,
-    start: Start,
+    system: WeightedMaps<M>,
+    place: Homothety<PointOf<M>>,
+    start: Start<PointOf<M>>,
     color_by: ColorBy,
-    /// Whether hits replace steps, for which the file has a palette.
-    is_by_steps: bool,
     /// Number of steps for which first maps are distinguished.
     steps: u32,
 }
 
-/// Number of points from which the extent of walks is estimated.
-const PILOT: usize = 20_000;
-
-/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
-const EDGE: f64 = 1.0 / 32.0;
-
-impl<'a> ChaosGame<'a> {
-    /// Returns the game that the options request.
-    pub(super) fn new(arguments: &'a Arguments, loaded: &'a Loaded) -> Result<Self, Failure> {
-        let Arguments {
-            chaos,
-            picture,
-            steps,
-            ..
-        } = arguments;
-        let Model::Ifs(source) = &loaded.model else {
-            return Err(Failure::Usage(format!(
-                "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}; \
-                 without --method it is grown step by step",
-                loaded.name,
-                loaded.model.kind().name()
-            )));
-        };
-        let place = loaded.place()?;
-        let source = source
-            .within(&place)
-            .map_or_else(|| source.clone(), Arc::new);
-        let system = weighted(source.ifs(), loaded)?;
-        let color_by = color_by(picture, source.metadata())?;
-        refuse_steps(*steps, color_by)?;
-        if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {
-            return Err(Failure::Usage(format!(
-                "--start {start} lies in space, and {} in the plane: a point is X,Y",
-                loaded.name
-            )));
-        }
-        let start = chaos.start(|start| place.origin_of(start.place.truncate()));
+impl<'a, M: Walked> Iteration<'a, M> {
+    fn new(
+        arguments: &'a Arguments,
+        loaded: &'a Loaded,
+        source: &System<M>,
+        place: Homothety<PointOf<M>>,
+        start: Start<PointOf<M>>,
+    ) -> Result<Self, Failure> {
+        let system = WeightedMaps::of(source.ifs()).map_err(|error| {
+            let message = format!("{} cannot be drawn by random iteration", loaded.name);
+            anyhow::Error::new(error).context(message)
+        })?;
+        let color_by = color_by(&arguments.picture, source.metadata())?;
+        refuse_steps(arguments.steps, color_by)?;
+        let steps = arguments.steps.or(source.metadata().steps);
         Ok(Self {
             arguments,
             loaded,
             system,
+            place,
             start,
             color_by,
-            is_by_steps: color_by == ColorBy::Hits
-                && picture.asked_color_by().is_none()
-                && !picture.asks_palette()
-                && source.metadata().style.color_by == ColorBy::Step,
-            steps: steps.or(source.metadata().steps).unwrap_or(8),
-            source,
-            place,
+            steps: steps.unwrap_or(8),
         })
     }
 
-    /// Returns the canvas that shows the attractor and the ways to it, or the window.
-    fn canvas(&self, size: Size) -> Result<Canvas, RenderError> {
-        let view = self
-            .arguments
-            .picture
-            .view(self.source.metadata())
-            .within(&self.place);
-        if let Some(window) = view.window {
-            return Ok(Canvas::of_window(window, &view, size)?);
-        }
-        let limit = Graph::of_system(&self.source).limit_bounds();
-        let mut bounds = limit.unwrap_or(Bounds::EMPTY);
-        if limit.is_none() || self.start != Start::Attractor {
-            for point in RandomPoints::new(&self.system, &self.start, 0).take(PILOT) {
-                bounds.add(point.place);
-            }
-        }
-        Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+    /// Returns the number of points.
+    fn points(&self, default: u64) -> u64 {
+        self.arguments.chaos.points.unwrap_or(default)
     }
 
-    /// Returns the failure for which `path` has not been written.
-    fn explain(&self, error: RenderError, path: &Path) -> Failure {
-        (self.arguments.growth).explain(error, self.loaded, path)
+    /// Describes the points of a picture.
+    pub(super) fn described(&self) -> String {
+        counted(&self.points(DRAWN).into(), "point")
     }
 
-    /// Plays the game, draws it and returns a summary.
-    pub(super) fn draw(
-        &self,
-        progress: Option<&Progress>,
-        out: &mut impl Write,
-        path: &Path,
-    ) -> Result<String, Failure> {
-        let Arguments {
-            chaos,
-            growth,
-            picture,
-            size: Paper { size, .. },
-            ..
-        } = self.arguments;
-        let canvas = self
-            .canvas(*size)
-            .map_err(|error| self.explain(error, path))?;
-        let points = chaos.points.unwrap_or(DRAWN);
-        let window = HistogramWindow {
-            to_pixels: canvas.to_pixels(),
-            size: canvas.size(),
-        };
-        let game = Game {
-            points,
+    /// Returns the options of a picture, with their values.
+    pub(super) fn options(&self) -> Vec<(&'static str, String)> {
+        let chaos = &self.arguments.chaos;
+        let mut options = chaos.options(self.points(DRAWN), self.color_by, self.steps);
+        options.extend(self.arguments.growth.options());
+        options
+    }
+
+    /// Returns the game of a picture.
+    fn game<'p>(&self, progress: Option<&'p Progress>) -> Game<'p, PointOf<M>> {
+        let growth = &self.arguments.growth;
+        Game {
+            points: self.points(DRAWN),
             seed: growth.seed,
             start: self.start.clone(),
             classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
             cancel: None,
             progress,
-        };
-        let histogram = play(&self.system, &window, &game).map_err(|error| {
-            match error {
-                error @ GameError::TooManyBins { .. } => anyhow!(
-                    "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
-                     in bands"
-                ),
-                other => anyhow::Error::new(other),
-            }
-        })?;
-        let style = picture.style(self.source.metadata());
-        let density = Density {
-            tone: chaos.tone.unwrap_or_default(),
-            shades: self.shades(&style, picture.ink(self.source.metadata())),
-            background: style.background,
-        };
-        let described = counted(&points.into(), "point");
-        let mut options = chaos.options(points, self.color_by, self.steps);
-        options.extend(growth.options());
-        options.push(("format", "png".into()));
-        options.push(("size", size.to_string()));
-        options.extend(picture.options());
-        let labels = labels(self.loaded, &described, "grow", options);
-        write_density(&histogram, &density, &labels, out)
-            .map_err(|error| self.explain(error, path))?;
-        let inside = match histogram.inside() {
-            inside if inside == points => String::new(),
-            inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
-        };
-        let [width, height] = canvas.size();
-        Ok(format!(
-            "{}, {described}{inside}, {width} x {height} pixels",
-            self.loaded.name
-        ))
+        }
     }
 
-    /// Lists the points and returns a summary.
-    pub(super) fn list(
-        &self,
-        format: export::TableFormat,
-        progress: Option<&Progress>,
-        out: &mut impl Write,
-        path: &Path,
-    ) -> Result<String, Failure> {
+    /// Returns the number of points of a list, and a walk without end.
+    fn walk(&self, progress: Option<&Progress>) -> Result<(u64, RandomPoints<'_, M>), Failure> {
         let growth = &self.arguments.growth;
-        let points = self.arguments.chaos.points.unwrap_or(LISTED);
+        let points = self.points(LISTED);
         check_rows(points, growth.max_elements())?;
         if let Some(progress) = progress {
             progress.expect(points);
         }
         let all = RandomPoints::new(&self.system, &self.start, growth.seed);
+        Ok((points, all))
+    }
+
+    /// Lists the points as a table and returns a summary.
+    pub(super) fn list(
+        &self,
+        format: export::TableFormat,
+        progress: Option<&Progress>,
+        mut out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let (points, all) = self.walk(progress)?;
         let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
         let all = all.map(|point| RandomPoint {
             place: self.place.point(point.place),
             ..point
         });
-        export::write_points(all, format, None, progress, out)
+        export::write_points(all, format, None, progress, &mut out)
             .map_err(|error| self.explain(error.into(), path))?;
-        let described = counted(&points.into(), "point");
-        Ok(format!("{}, {described}", self.loaded.name))
+        Ok(self.listed(points))
     }
 
-    /// Returns the colours of hits, maps or all points in a style.
-    fn shades(&self, style: &Style, ink: Option<Colour>) -> Shades {
-        let maps = self.source.ifs().maps().len();
-        match self.color_by {
-            // A palette by steps begins with the largest elements, which are hit most.
-            ColorBy::Hits if self.is_by_steps => Shades::Palette(style.palette.clone().reversed()),
-            ColorBy::Hits => Shades::Palette(style.palette.clone()),
-            ColorBy::FirstMap | ColorBy::LastMap => {
-                // As in approximants, the palette begins with condensation sets, if there are any.
-                let before = usize::from(self.system.classes() > maps);
-                let last = (maps + before).saturating_sub(1).max(1);
-                let place = |class: usize| {
-                    let number = if class < maps { class + before } else { 0 };
-                    #[expect(clippy::cast_precision_loss, reason = "there are not so many maps")]
-                    style.palette.at(number as f64 / last as f64)
-                };
-                Shades::Classes((0..self.system.classes()).map(place).collect())
-            }
-            _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
-        }
+    /// Describes a number of points of the system.
+    pub(super) fn listed(&self, points: u64) -> String {
+        format!("{}, {}", self.loaded.name, counted(&points.into(), "point"))
+    }
+
+    /// Returns the failure for which `path` has not been written.
+    fn explain(&self, error: RenderError, path: &Path) -> Failure {
+        (self.arguments.growth).explain(error, self.loaded, path)
     }
 }
 

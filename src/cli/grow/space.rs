@@ -37,7 +37,7 @@ pub(super) fn draw(
         return Ok((path.clone(), summary, bytes));
     }
     let game = match plan {
-        Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::new(arguments, loaded)?),
+        Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::in_space(arguments, loaded)?),
         _ => None,
     };
     let steps = arguments

@@ -1,8 +1,9 @@
 //! Resolution of vertices, also of those at random places.
 
-use crate::document::{ScatterDocument, VerticesDocument, WrittenPoint};
+use crate::document::{ScatterDocument, VerticesDocument};
 use crate::draws::{Distribution, Path, Variable};
 use crate::expression::Program;
+use crate::resolve::map::WrittenMap;
 use crate::resolve::{Resolver, numbers, whole_number};
 
 use super::OfIfs;
@@ -11,19 +12,18 @@ use super::OfIfs;
 const MAX_POINTS: u32 = 1000;
 
 impl Resolver<OfIfs> {
-    /// Resolves the vertices of a system; `point` compiles a point. Reports mistakes and returns `None`.
-    pub(super) fn vertices<const N: usize>(
+    /// Resolves the vertices of a system. Reports mistakes and returns `None`.
+    pub(super) fn vertices<M: WrittenMap<N>, const N: usize>(
         &mut self,
         document: &VerticesDocument,
-        point: impl Fn(&mut Self, &WrittenPoint) -> Option<[Program; N]>,
     ) -> Option<Vec<[Program; N]>> {
         match document {
             VerticesDocument::Listed(points) => {
-                let points: Vec<_> = points.iter().map(|it| point(self, it)).collect();
+                let points: Vec<_> = points.iter().map(|it| M::point(self, it)).collect();
                 points.into_iter().collect()
             }
             VerticesDocument::Scattered(document) => {
-                let axes = point(self, &document.ellipsoid);
+                let axes = M::point(self, &document.ellipsoid);
                 self.scattered(document, axes)
             }
         }

@@ -23,10 +23,7 @@ pub(in crate::resolve) trait StructureMap: AffineMap {
     fn product(transforms: &[Self::Written], slots: &[f64]) -> Self;
 
     /// Resolves a set. Reports mistakes and returns `None`.
-    fn set(
-        resolver: &mut Resolver<OfInstancing<Self>>,
-        document: &ShapeDocument,
-    ) -> Option<Self::Set>;
+    fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Self::Set>;
 
     /// Names of the canonical primitives.
     const PRIMITIVES: &[&str];
@@ -76,7 +73,7 @@ impl StructureMap for DAffine2 {
         Affine::product(&mut Doubles, transforms, slots).into()
     }
 
-    fn set(resolver: &mut Resolver<OfInstancing<Self>>, document: &ShapeDocument) -> Option<Shape> {
+    fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Shape> {
         resolver.set(document)
     }
 
@@ -135,10 +132,7 @@ impl StructureMap for DAffine3 {
         Affine::product(&mut Doubles, transforms, slots).into()
     }
 
-    fn set(
-        resolver: &mut Resolver<OfInstancing<Self>>,
-        document: &ShapeDocument,
-    ) -> Option<Arc<[Solid]>> {
+    fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Arc<[Solid]>> {
         resolver.solids(document)
     }
 

@@ -4,40 +4,30 @@ use std::collections::VecDeque;
 use std::io::Write;
 use std::path::Path;
 
-use crate::chaos::{ClassBy, Game, RandomPoint, RandomPoints, Start, WeightedMaps};
-use crate::export::{self, Surface, TableFormat};
-use crate::geometry::{Bounds, DAffine3, DVec3, Frame3};
+use crate::chaos::{ClassBy, RandomPoint, RandomPoints, Start};
+use crate::export::{self, Surface};
+use crate::geometry::{Bounds, DAffine3, DVec3, Frame3, Homothety};
 use crate::graph::Graph;
 use crate::grow::Progress;
 use crate::model::Model;
+use crate::render::Options;
 use crate::render::space::{SpaceOptions, SpacePicture, colours_of_maps, points_in_space};
-use crate::render::{Options, RenderError};
 use crate::style::{ColorBy, Style};
 
 use super::super::super::Failure;
-use super::super::super::output;
-use super::super::super::readable::counted;
 use super::super::super::rule::Loaded;
 use super::super::Arguments;
-use super::{DRAWN, LISTED, check_rows, classes, color_by, refuse_steps, weighted};
+use super::{Iteration, classes};
 
 /// Number of points from which normals are computed.
 const SURFACE: usize = 1_000_000;
 
-/// Game in space that is ready to be played.
-pub(in crate::cli::grow) struct SpaceGame<'a> {
-    arguments: &'a Arguments,
-    loaded: &'a Loaded,
-    system: WeightedMaps<DAffine3>,
-    start: Start<DVec3>,
-    color_by: ColorBy,
-    /// Number of steps for which first maps are distinguished.
-    steps: u32,
-}
+/// Random iteration in space.
+pub(in crate::cli::grow) type SpaceGame<'a> = Iteration<'a, DAffine3>;
 
 impl<'a> SpaceGame<'a> {
     /// Returns the game that the options request.
-    pub(in crate::cli::grow) fn new(
+    pub(in crate::cli::grow) fn in_space(
         arguments: &'a Arguments,
         loaded: &'a Loaded,
     ) -> Result<Self, Failure> {
@@ -48,36 +38,8 @@ impl<'a> SpaceGame<'a> {
                 loaded.model.kind().name()
             )));
         };
-        let system = weighted(source.ifs(), loaded)?;
-        let color_by = color_by(&arguments.picture, source.metadata())?;
-        refuse_steps(arguments.steps, color_by)?;
-        let steps = arguments.steps.or(source.metadata().steps);
-        Ok(Self {
-            arguments,
-            loaded,
-            system,
-            start: arguments.chaos.start(|start| start.place),
-            color_by,
-            steps: steps.unwrap_or(8),
-        })
-    }
-
-    /// Returns the number of points.
-    fn points(&self, default: u64) -> u64 {
-        self.arguments.chaos.points.unwrap_or(default)
-    }
-
-    /// Describes the points of a picture.
-    pub(in crate::cli::grow) fn described(&self) -> String {
-        counted(&self.points(DRAWN).into(), "point")
-    }
-
-    /// Returns the options of a picture, with their values.
-    pub(in crate::cli::grow) fn options(&self) -> Vec<(&'static str, String)> {
-        let chaos = &self.arguments.chaos;
-        let mut options = chaos.options(self.points(DRAWN), self.color_by, self.steps);
-        options.extend(self.arguments.growth.options());
-        options
+        let start = arguments.chaos.start(|start| start.place);
+        Self::new(arguments, loaded, source, Homothety::IDENTITY, start)
     }
 
     /// Plays the game and draws it.
@@ -99,34 +61,10 @@ impl<'a> SpaceGame<'a> {
         }
         let mut options = options.clone();
         options.style.color_by = self.color_by;
-        let growth = &self.arguments.growth;
-        let game = Game {
-            points: self.points(DRAWN),
-            seed: growth.seed,
-            start: self.start.clone(),
-            classes: classes(self.color_by, self.steps),
-            threads: growth.threads(),
-            cancel: None,
-            progress,
-        };
+        let game = self.game(progress);
         let tone = self.arguments.chaos.tone.unwrap_or_default();
         points_in_space(graph, &self.system, &game, tone, &options, space)
             .map_err(|error| self.explain(error, path))
-    }
-
-    /// Lists the points as a table and returns a summary.
-    pub(in crate::cli::grow) fn list(
-        &self,
-        format: TableFormat,
-        progress: Option<&Progress>,
-        mut out: &mut dyn Write,
-        path: &Path,
-    ) -> Result<String, Failure> {
-        let (points, all) = self.walk(progress)?;
-        let all = all.take(usize::try_from(points).unwrap_or(usize::MAX));
-        export::write_points(all, format, None, progress, &mut out)
-            .map_err(|error| self.explain(error.into(), path))?;
-        Ok(self.listed(points))
     }
 
     /// Writes the points as a PLY file and returns a summary.
@@ -172,31 +110,6 @@ impl<'a> SpaceGame<'a> {
         export::write_ply(all, points, &surface, colour, None, progress, &mut out)
             .map_err(|error| self.explain(error.into(), path))?;
         Ok(self.listed(points))
-    }
-
-    /// Returns the number of points of a list, and a walk without end.
-    fn walk(
-        &self,
-        progress: Option<&Progress>,
-    ) -> Result<(u64, RandomPoints<'_, DAffine3>), Failure> {
-        let growth = &self.arguments.growth;
-        let points = self.points(LISTED);
-        check_rows(points, growth.max_elements())?;
-        if let Some(progress) = progress {
-            progress.expect(points);
-        }
-        let all = RandomPoints::new(&self.system, &self.start, growth.seed);
-        Ok((points, all))
-    }
-
-    /// Describes a number of points of the system.
-    pub(in crate::cli::grow) fn listed(&self, points: u64) -> String {
-        format!("{}, {}", self.loaded.name, counted(&points.into(), "point"))
-    }
-
-    /// Returns the failure for which `path` has not been written.
-    fn explain(&self, error: RenderError, path: &Path) -> Failure {
-        output::explain(error, path)
     }
 }
 

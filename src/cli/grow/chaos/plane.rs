@@ -1,0 +1,183 @@
+//! Random iteration in the plane: pictures and tables of points.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::anyhow;
+
+use crate::chaos::{GameError, HistogramWindow, RandomPoints, Start, play};
+use crate::export;
+use crate::geometry::{Bounds, DAffine2};
+use crate::graph::Graph;
+use crate::grow::Progress;
+use crate::ifs::System;
+use crate::model::Model;
+use crate::render::{Canvas, Density, RenderError, Shades, Size, write_density};
+use crate::style::{ColorBy, Colour, Style};
+
+use super::super::super::Failure;
+use super::super::super::labels::labels;
+use super::super::super::rule::Loaded;
+use super::super::Arguments;
+use super::Iteration;
+
+/// Number of points from which the extent of walks is estimated.
+const PILOT: usize = 20_000;
+
+/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
+const EDGE: f64 = 1.0 / 32.0;
+
+/// Random iteration in the plane.
+pub(in crate::cli::grow) struct PlaneGame<'a> {
+    iteration: Iteration<'a, DAffine2>,
+    /// System in the coordinates of the iteration.
+    source: Arc<System>,
+    /// Whether hits replace steps, for which the file has a palette.
+    is_by_steps: bool,
+}
+
+impl<'a> PlaneGame<'a> {
+    /// Returns the game that the options request.
+    pub(in crate::cli::grow) fn new(
+        arguments: &'a Arguments,
+        loaded: &'a Loaded,
+    ) -> Result<Self, Failure> {
+        let Model::Ifs(source) = &loaded.model else {
+            return Err(Failure::Usage(format!(
+                "--method chaos needs a system of maps (kind: ifs), and {} is of the kind {}; \
+                 without --method it is grown step by step",
+                loaded.name,
+                loaded.model.kind().name()
+            )));
+        };
+        let Arguments { chaos, picture, .. } = arguments;
+        let place = loaded.place()?;
+        let source = source
+            .within(&place)
+            .map_or_else(|| source.clone(), Arc::new);
+        let start = chaos.start(|start| place.origin_of(start.place.truncate()));
+        let iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {
+            return Err(Failure::Usage(format!(
+                "--start {start} lies in space, and {} in the plane: a point is X,Y",
+                loaded.name
+            )));
+        }
+        Ok(Self {
+            is_by_steps: iteration.color_by == ColorBy::Hits
+                && picture.asked_color_by().is_none()
+                && !picture.asks_palette()
+                && source.metadata().style.color_by == ColorBy::Step,
+            iteration,
+            source,
+        })
+    }
+
+    /// Returns the canvas that shows the attractor and the ways to it, or the window.
+    fn canvas(&self, size: Size) -> Result<Canvas, RenderError> {
+        let Iteration {
+            arguments, place, ..
+        } = &self.iteration;
+        let view = arguments.picture.view(self.source.metadata());
+        let view = view.within(place);
+        if let Some(window) = view.window {
+            return Ok(Canvas::of_window(window, &view, size)?);
+        }
+        let limit = Graph::of_system(&self.source).limit_bounds();
+        let mut bounds = limit.unwrap_or(Bounds::EMPTY);
+        let Iteration { system, start, .. } = &self.iteration;
+        if limit.is_none() || *start != Start::Attractor {
+            for point in RandomPoints::new(system, start, 0).take(PILOT) {
+                bounds.add(point.place);
+            }
+        }
+        Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+    }
+
+    /// Plays the game, draws it and returns a summary.
+    pub(in crate::cli::grow) fn draw(
+        &self,
+        progress: Option<&Progress>,
+        out: &mut impl Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let Iteration {
+            arguments, system, ..
+        } = &self.iteration;
+        let Arguments { chaos, picture, .. } = arguments;
+        let size = arguments.size.size;
+        let explain = |error: RenderError| self.iteration.explain(error, path);
+        let canvas = self.canvas(size).map_err(explain)?;
+        let game = self.iteration.game(progress);
+        let window = HistogramWindow {
+            to_pixels: canvas.to_pixels(),
+            size: canvas.size(),
+        };
+        let histogram = play(system, &window, &game).map_err(|error| {
+            match error {
+                error @ GameError::TooManyBins { .. } => anyhow!(
+                    "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
+                     in bands"
+                ),
+                other => anyhow::Error::new(other),
+            }
+        })?;
+        let style = picture.style(self.source.metadata());
+        let density = Density {
+            tone: chaos.tone.unwrap_or_default(),
+            shades: self.shades(&style, picture.ink(self.source.metadata())),
+            background: style.background,
+        };
+        let described = self.iteration.described();
+        let mut options = self.iteration.options();
+        options.push(("format", "png".into()));
+        options.push(("size", size.to_string()));
+        options.extend(picture.options());
+        let labels = labels(self.iteration.loaded, &described, "grow", options);
+        write_density(&histogram, &density, &labels, out).map_err(explain)?;
+        let inside = match histogram.inside() {
+            inside if inside == game.points => String::new(),
+            inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
+        };
+        let [width, height] = canvas.size();
+        Ok(format!(
+            "{}, {described}{inside}, {width} x {height} pixels",
+            self.iteration.loaded.name
+        ))
+    }
+
+    /// Lists the points as a table and returns a summary.
+    pub(in crate::cli::grow) fn list(
+        &self,
+        format: export::TableFormat,
+        progress: Option<&Progress>,
+        out: &mut dyn Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        self.iteration.list(format, progress, out, path)
+    }
+
+    /// Returns the colours of hits, maps or all points in a style.
+    fn shades(&self, style: &Style, ink: Option<Colour>) -> Shades {
+        let maps = self.source.ifs().maps().len();
+        let classes = self.iteration.system.classes();
+        match self.iteration.color_by {
+            // A palette by steps begins with the largest elements, which are hit most.
+            ColorBy::Hits if self.is_by_steps => Shades::Palette(style.palette.clone().reversed()),
+            ColorBy::Hits => Shades::Palette(style.palette.clone()),
+            ColorBy::FirstMap | ColorBy::LastMap => {
+                // As in approximants, the palette begins with condensation sets, if there are any.
+                let before = usize::from(classes > maps);
+                let last = (maps + before).saturating_sub(1).max(1);
+                let place = |class: usize| {
+                    let number = if class < maps { class + before } else { 0 };
+                    #[expect(clippy::cast_precision_loss, reason = "there are not so many maps")]
+                    style.palette.at(number as f64 / last as f64)
+                };
+                Shades::Classes((0..classes).map(place).collect())
+            }
+            _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
+        }
+    }
+}
