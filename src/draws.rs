@@ -3,35 +3,91 @@
 //! A path is the position in the initiator, followed at each replacement by the position in the generator
 //! as listed. Its representation is a 64-bit hash that takes one mixing step a replacement. A draw
 //! therefore does not depend on other draws, on the order of the walk or on the number of steps.
+//!
+//! A draw may also belong to an edge of the element, which neighbours share (Fournier, Fussell & Carpenter 1982). Edges
+//! are known by their ends, and these by how they came to be, never by their coordinates: see [`Corner`].
 
 use crate::expression::{Interval, Program};
 use crate::random::{self, GOLDEN, Pcg};
 
-/// Hash of a seed and of an element's path.
+/// Hash of a seed and of an element's path, with those of the element's corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Path(u64);
+pub struct Path {
+    hash: u64,
+    /// Hashes of the first three corners of its surface. Elements that share a corner have equal hashes for it.
+    corners: [u32; 3],
+}
+
+/// Origin of a corner of a listed element, from which neighbours find that they share it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Corner {
+    /// A corner that no other element shares.
+    #[default]
+    Apart,
+    /// The corner of this number, from 0, of the element that is replaced.
+    Same(u8),
+    /// A point on the edge of this number of the element that is replaced: 0 from corner 0 to corner 1, 1 from there to
+    /// corner 2, 2 from there back to corner 0.
+    OnEdge(u8),
+    /// The point of this number inside the element that is replaced.
+    Inside(u16),
+}
 
 impl Path {
     /// Returns the empty path for a seed.
     #[must_use]
     pub fn of_seed(seed: u64) -> Self {
-        Self(mix(seed ^ 0x6b66_7261_635f_7631))
+        Self {
+            hash: mix(seed ^ 0x6b66_7261_635f_7631),
+            corners: [0; 3],
+        }
     }
 
     /// Returns the path of the child at a position.
     #[inline]
     #[must_use]
     pub fn child(self, position: u32) -> Self {
-        Self(mix(
-            self.0.rotate_left(17) ^ (u64::from(position) + 1).wrapping_mul(GOLDEN)
-        ))
+        Self {
+            hash: mix(self.hash.rotate_left(17) ^ (u64::from(position) + 1).wrapping_mul(GOLDEN)),
+            ..self
+        }
     }
 
-    /// Returns the random number stream of a name at this path.
-    fn stream(self, name: u64) -> Pcg {
-        let high = mix(self.0 ^ name);
+    /// Returns the path with the corners of a child, which is that at this path but for them.
+    #[must_use]
+    pub fn with_corners(self, parent: Self, corners: &[Corner; 3]) -> Self {
+        let mut number = 0;
+        let corners = corners.map(|corner| {
+            number += 1;
+            match corner {
+                Corner::Apart => low(mix(self.hash ^ number)),
+                Corner::Same(corner) => parent.corners[usize::from(corner % 3)],
+                Corner::OnEdge(edge) => low(parent.edge(edge)),
+                Corner::Inside(point) => low(mix(
+                    parent.hash ^ (u64::from(point) + 4).wrapping_mul(GOLDEN)
+                )),
+            }
+        });
+        Self { corners, ..self }
+    }
+
+    /// Returns the hash of an edge, which has no direction.
+    fn edge(self, edge: u8) -> u64 {
+        let [from, to] = [edge, edge + 1].map(|corner| self.corners[usize::from(corner % 3)]);
+        mix(u64::from(from.min(to)) << 32 | u64::from(from.max(to)))
+    }
+
+    /// Returns the random number stream of a name at this path, or of one of its edges.
+    fn stream(self, name: u64, edge: Option<u8>) -> Pcg {
+        let own = edge.map_or(self.hash, |edge| self.edge(edge));
+        let high = mix(own ^ name);
         Pcg::new(high, mix(high.wrapping_add(GOLDEN)))
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "half of a hash is one")]
+fn low(hash: u64) -> u32 {
+    hash as u32
 }
 
 /// Applies a step of SplitMix64.
@@ -79,8 +135,13 @@ pub enum Distribution {
 pub struct Variable {
     name: String,
     stream: u64,
+    /// Edge of the element to which the draw belongs, if it does not belong to the element.
+    edge: Option<u8>,
     distribution: Distribution,
 }
+
+/// Numbers of the ends of edges, as they follow the name of a draw for each edge.
+const EDGES: [&str; 3] = ["_01", "_12", "_20"];
 
 impl Variable {
     /// Creates a variable with a distribution.
@@ -89,8 +150,32 @@ impl Variable {
         Self {
             name: name.into(),
             stream: hash_of_name(name),
+            edge: None,
             distribution,
         }
+    }
+
+    /// Creates a variable for each edge of an element: `NAME_01`, `NAME_12` and `NAME_20`. Elements that share an edge draw
+    /// the same value for it.
+    #[must_use]
+    pub fn by_edge(name: &str, distribution: &Distribution) -> [Self; 3] {
+        let mut edge = 0;
+        EDGES.map(|ends| {
+            edge += 1;
+            Self {
+                name: format!("{name}{ends}"),
+                stream: hash_of_name(name),
+                edge: Some(edge - 1),
+                distribution: distribution.clone(),
+            }
+        })
+    }
+
+    /// Returns the edge of the element to which the draw belongs, as of [`Corner::OnEdge`]; `None` if it belongs to the
+    /// element.
+    #[must_use]
+    pub fn edge(&self) -> Option<u8> {
+        self.edge
     }
 
     /// Returns the name by which expressions refer to the variable.
@@ -169,7 +254,7 @@ impl Variable {
     /// Returns the value drawn for a path.
     #[must_use]
     pub fn draw(&self, path: Path, slots: &[f64]) -> f64 {
-        let mut stream = path.stream(self.stream);
+        let mut stream = path.stream(self.stream, self.edge);
         match &self.distribution {
             Distribution::Uniform(low, high) => {
                 let (low, high) = (low.eval(slots), high.eval(slots));
@@ -205,7 +290,7 @@ const SELECTION: &str = "the selection";
 #[must_use]
 pub(crate) fn pick_by_weight(path: Path, weights: impl Iterator<Item = f64> + Clone) -> usize {
     let total: f64 = weights.clone().sum();
-    let mut left = path.stream(hash_of_name(SELECTION)).unit() * total;
+    let mut left = path.stream(hash_of_name(SELECTION), None).unit() * total;
     let mut last = 0;
     for (index, weight) in weights.enumerate() {
         if weight > 0.0 {
@@ -341,7 +426,9 @@ mod tests {
                 for position in 0..10 {
                     for name in ["a", "b", "ab"] {
                         assert!(
-                            seen.insert(path.child(position).stream(hash_of_name(name)).bits())
+                            seen.insert(
+                                path.child(position).stream(hash_of_name(name), None).bits()
+                            )
                         );
                     }
                 }

@@ -161,7 +161,7 @@ pub mod zoom;
 
 pub use bits::Bits;
 pub use count::Count;
-pub use draws::{Distribution, Path, Variable};
+pub use draws::{Corner, Distribution, Path, Variable};
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
 pub use grow::Element;
 pub use kind::Kind;

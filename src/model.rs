@@ -9,7 +9,7 @@ mod rule;
 
 pub use crate::graph::OutOfRange;
 pub use crate::kind::Kind;
-pub use drawn::{DrawnError, DrawnInSpace, MAX_HELD};
+pub use drawn::{DrawnError, DrawnInSpace, MAX_HELD, for_pixels};
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -233,6 +233,15 @@ impl Model {
         match self.as_kind().of_limit() {
             Some(model) => Cow::Owned(model),
             None => Cow::Borrowed(self),
+        }
+    }
+
+    /// Returns the production rule in space, or `None` for another model.
+    #[must_use]
+    pub fn rule_in_space(&self) -> Option<&Arc<Rule<Frame3>>> {
+        match self {
+            Self::RuleInSpace(rule) => Some(rule),
+            _ => None,
         }
     }
 

@@ -8,7 +8,7 @@ mod space;
 
 use std::fmt;
 
-use crate::geometry::Homothety;
+use crate::geometry::{DVec3, Homothety};
 
 pub use camera::{Camera, CameraError};
 pub use light::{Light, Shade};
@@ -167,6 +167,8 @@ pub enum ColorBy {
     Hits,
     /// Tints of the objects of a structure, or colours that the turtle of an L-system sets.
     Tint,
+    /// In space: the height of the normal of a face, from downwards to upwards. In the plane there is one colour.
+    Normal,
 }
 
 /// Property that determines the class of an element by colour: all that rooms beside `render::Classes` need to know of a
@@ -191,7 +193,7 @@ impl ColorBy {
     #[inline]
     pub(crate) fn property(self) -> ColorProperty {
         match self {
-            Self::None | Self::Hits => ColorProperty::Uniform,
+            Self::None | Self::Hits | Self::Normal => ColorProperty::Uniform,
             Self::Tint => ColorProperty::Tint,
             Self::Step => ColorProperty::Step,
             Self::Age => ColorProperty::Age,
@@ -268,6 +270,7 @@ impl Named for ColorBy {
         ("last-map", Self::LastMap),
         ("hits", Self::Hits),
         ("tint", Self::Tint),
+        ("normal", Self::Normal),
     ];
 }
 
@@ -294,6 +297,14 @@ pub struct Style {
     pub color_by: ColorBy,
     /// Palette of the classes.
     pub palette: Palette,
+}
+
+impl Style {
+    /// Returns the colour of a face with a unit normal, if colours are by normal.
+    pub(crate) fn colour_of_normal(&self, normal: DVec3) -> Option<Colour> {
+        let is_asked = self.color_by == ColorBy::Normal;
+        is_asked.then(|| self.palette.at(f64::midpoint(normal.y, 1.0)))
+    }
 }
 
 impl Default for Style {

@@ -10,6 +10,7 @@ use kfrac::geometry::{DVec3, Frame3};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{MeshFormat, MeshOptions, Meshed, Options, write_mesh};
+use kfrac::style::ColorBy;
 
 fn graph(name: &str) -> (Options, Graph<Frame3>) {
     let model = common::document(name).resolve(&[]).unwrap().0;
@@ -36,72 +37,72 @@ fn write(
 /// Corners, and the indices of the corners of faces.
 type Read = (Vec<DVec3>, Vec<Vec<usize>>);
 
-fn read_obj(bytes: &[u8]) -> Read {
-    let (mut corners, mut faces) = (Vec::new(), Vec::new());
-    for line in std::str::from_utf8(bytes).unwrap().lines() {
-        let mut words = line.split(' ');
-        match words.next() {
-            Some("v") => {
-                let numbers: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
-                corners.push(DVec3::from_slice(&numbers));
-            }
-            Some("f") => faces.push(
-                words
-                    .map(|word| word.parse::<usize>().unwrap() - 1)
-                    .collect(),
-            ),
-            first => assert_eq!(first, Some("#"), "{line}"),
-        }
-    }
-    (corners, faces)
-}
-
-fn float(bytes: &[u8]) -> f64 {
-    f32::from_le_bytes(bytes.try_into().unwrap()).into()
-}
-
-fn read_ply(bytes: &[u8]) -> (Read, Vec<[u8; 3]>) {
-    let end = b"end_header\n";
-    let from = bytes.windows(end.len()).position(|it| it == end).unwrap();
-    let head = std::str::from_utf8(&bytes[..from]).unwrap();
-    let count = |what: &str| -> usize {
-        let line = head.lines().find_map(|line| line.strip_prefix(what));
-        line.unwrap().trim().parse().unwrap()
+fn read_obj(mut bytes: &[u8]) -> Read {
+    let options = tobj::LoadOptions::default();
+    let no_materials = |_: &std::path::Path| Err(tobj::LoadError::GenericFailure);
+    let (models, _) = tobj::load_obj_buf(&mut bytes, &options, no_materials).unwrap();
+    let [tobj::Model { mesh, .. }] = models.as_slice() else {
+        panic!("{} meshes", models.len());
     };
-    let (vertices, faces) = (count("element vertex"), count("element face"));
-    let (points, mut rest) = bytes[from + end.len()..].split_at(12 * vertices);
-    let points = points
-        .chunks(12)
-        .map(|it| DVec3::new(float(&it[..4]), float(&it[4..8]), float(&it[8..])));
-    let (mut all, mut colours) = (Vec::new(), Vec::new());
-    for _ in 0..faces {
-        let end = 1 + 4 * usize::from(rest[0]);
-        let index = |it: &[u8]| u32::from_le_bytes(it.try_into().unwrap()) as usize;
-        all.push(rest[1..end].chunks(4).map(index).collect());
-        colours.push(rest[end..end + 3].try_into().unwrap());
-        rest = &rest[end + 3..];
-    }
-    assert!(rest.is_empty());
-    ((points.collect(), all), colours)
+    let corners = mesh.positions.chunks(3).map(DVec3::from_slice);
+    let mut indices = mesh.indices.iter().map(|index| *index as usize);
+    let triangles = vec![3; mesh.indices.len() / 3];
+    let arities = match mesh.face_arities.as_slice() {
+        [] => &triangles,
+        arities => arities,
+    };
+    let faces = arities
+        .iter()
+        .map(|arity| indices.by_ref().take(*arity as usize).collect());
+    (corners.collect(), faces.collect())
+}
+
+fn read_ply(mut bytes: &[u8]) -> (Read, Vec<[u8; 3]>) {
+    use ply_rs_bw::parser::Parser;
+    use ply_rs_bw::ply::{DefaultElement, Property};
+
+    let ply = Parser::<DefaultElement>::new()
+        .read_ply(&mut bytes)
+        .unwrap();
+    assert!(bytes.is_empty());
+    let corner = |vertex: &DefaultElement| {
+        DVec3::from(["x", "y", "z"].map(|axis| match vertex[axis] {
+            Property::Float(value) => f64::from(value),
+            ref other => panic!("{other:?}"),
+        }))
+    };
+    let face = |face: &DefaultElement| match &face["vertex_indices"] {
+        Property::ListUInt(list) => list.iter().map(|index| *index as usize).collect(),
+        other => panic!("{other:?}"),
+    };
+    let colour = |face: &DefaultElement| {
+        ["red", "green", "blue"].map(|part| match face[part] {
+            Property::UChar(value) => value,
+            ref other => panic!("{other:?}"),
+        })
+    };
+    let [vertices, faces] = ["vertex", "face"].map(|name| ply.payload[name].iter());
+    let read = (
+        vertices.map(corner).collect(),
+        faces.clone().map(face).collect(),
+    );
+    (read, faces.map(colour).collect())
 }
 
 fn read_stl(bytes: &[u8]) -> Read {
     assert!(!bytes.starts_with(b"solid"));
-    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
-    assert_eq!(bytes.len(), 84 + 50 * count);
-    let (mut corners, mut faces) = (Vec::new(), Vec::new());
-    for facet in bytes[84..].chunks(50) {
-        let vectors = facet[..48].chunks(12);
-        let vectors: Vec<DVec3> = vectors
-            .map(|it| DVec3::new(float(&it[..4]), float(&it[4..8]), float(&it[8..])))
-            .collect();
-        let own = (vectors[2] - vectors[1]).cross(vectors[3] - vectors[1]);
-        assert!(own.normalize().dot(vectors[0]) > 0.999);
-        faces.push((corners.len()..corners.len() + 3).collect());
-        // z points up in STL.
-        corners.extend(vectors[1..].iter().map(|it| DVec3::new(it.x, it.z, -it.y)));
+    let mesh = stl_io::read_stl(&mut std::io::Cursor::new(bytes)).unwrap();
+    // z points up in STL.
+    let upright = |x: f32, y: f32, z: f32| DVec3::new(x.into(), z.into(), -f64::from(y));
+    let corners = mesh.vertices.iter().map(|it| upright(it[0], it[1], it[2]));
+    let corners: Vec<DVec3> = corners.collect();
+    for face in &mesh.faces {
+        let [a, b, c] = face.vertices.map(|corner| corners[corner]);
+        let normal = upright(face.normal[0], face.normal[1], face.normal[2]);
+        assert!((b - a).cross(c - a).normalize().dot(normal) > 0.999);
     }
-    (corners, faces)
+    let faces = mesh.faces.iter().map(|face| face.vertices.to_vec());
+    (corners, faces.collect())
 }
 
 /// Returns the volume, by the divergence theorem, and the area.
@@ -139,20 +140,107 @@ fn the_shell_of_a_menger_sponge_is_its_surface() {
         assert!(is_near(volume, power(20.0 / 27.0)), "{volume}");
         let surface = 2.0 * power(20.0 / 9.0) + 4.0 * power(8.0 / 9.0);
         assert!(is_near(area, surface), "{area} {surface}");
-        // Every edge is passed once in either direction.
-        let mut edges: BTreeMap<[usize; 2], u32> = BTreeMap::new();
-        for face in &read.1 {
-            for (number, &from) in face.iter().enumerate() {
-                *edges
-                    .entry([from, face[(number + 1) % face.len()]])
-                    .or_default() += 1;
-            }
+        assert_eq!(open_edges(&read.1), 0, "step {steps}");
+    }
+}
+
+/// Returns the number of edges that faces do not pass as often in one direction as in the other.
+fn open_edges(faces: &[Vec<usize>]) -> usize {
+    let mut edges: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+    for face in faces {
+        for (number, &from) in face.iter().enumerate() {
+            let to = face[(number + 1) % face.len()];
+            let sense = if from < to { 1 } else { -1 };
+            *edges.entry([from.min(to), from.max(to)]).or_default() += sense;
         }
-        let is_paired = |(edge, count): (&[usize; 2], &u32)| {
-            let [from, to] = *edge;
-            *count == 1 && edges.get(&[to, from]) == Some(&1)
+    }
+    edges.values().filter(|sum| **sum != 0).count()
+}
+
+/// Writes a step of a rule of the library as a shell.
+fn shell_of_rule(name: &str, steps: u32) -> Read {
+    let model = common::document(name).resolve(&[]).unwrap().0;
+    let growth = Growth::steps(steps).seed(5);
+    let drawn = model.drawn_in_space(Some(steps), &growth, ColorBy::None);
+    let drawn = drawn.unwrap().unwrap();
+    let growth = Growth::steps(drawn.steps.unwrap());
+    let mesh = MeshOptions::default().format(MeshFormat::Obj).shell(true);
+    let mut bytes = Vec::new();
+    write_mesh(&drawn.graph, &growth, &Options::default(), mesh, &mut bytes).unwrap();
+    read_obj(&bytes)
+}
+
+/// Koch surfaces stay closed: the faces around a bump replace the one below it. Their volumes have a closed form.
+#[test]
+fn koch_surfaces_are_closed() {
+    // Regular tetrahedron of edge 1, and icosahedron.
+    let tetrahedron = 2f64.sqrt() / 12.0;
+    let icosahedron = 5.0 * (3.0 + 5f64.sqrt()) / 12.0;
+    let triangles = |steps: u32| {
+        (0..steps)
+            .map(|k| 0.75f64.powi(k.cast_signed()))
+            .sum::<f64>()
+            / 8.0
+    };
+    let squares = |steps: u32| {
+        (0..steps)
+            .map(|k| (13.0f64 / 27.0).powi(k.cast_signed()))
+            .sum::<f64>()
+            / 27.0
+    };
+    for steps in 0..4 {
+        let on_triangles = tetrahedron * triangles(steps);
+        for (name, whole, bumps) in [
+            (
+                "koch-surface",
+                8f64.powf(1.5) * tetrahedron,
+                4.0 * 8f64.powf(1.5) * on_triangles,
+            ),
+            (
+                "koch-icosahedron",
+                8.0 * icosahedron,
+                20.0 * 8.0 * on_triangles,
+            ),
+            (
+                "koch-icosahedron-inwards",
+                8.0 * icosahedron,
+                -20.0 * 8.0 * on_triangles,
+            ),
+            ("koch-cube", 1.0, 6.0 * squares(steps)),
+            ("koch-cube-inwards", 1.0, -6.0 * squares(steps)),
+        ] {
+            let read = shell_of_rule(name, steps);
+            assert_eq!(open_edges(&read.1), 0, "{name} {steps}");
+            let [volume, _] = sizes(&read);
+            let expected = whole + bumps;
+            assert!(
+                (volume.abs() - expected).abs() < 1e-4 * whole,
+                "{name} {steps}: {volume} {expected}"
+            );
+        }
+    }
+}
+
+/// Triangles on both sides of an edge draw the same displacement: only the rim of the mountain is open.
+#[test]
+fn a_mountain_has_no_cracks() {
+    for steps in [1, 3, 5] {
+        let (corners, faces) = shell_of_rule("mountain", steps);
+        let [side, count] = [2usize.pow(steps), 4usize.pow(steps)];
+        assert_eq!(faces.len(), 6 * count);
+        // The points of a triangular grid in a hexagon: three times as many triangles would have 18 · 4ⁿ corners.
+        assert_eq!(corners.len(), 3 * side * side + 3 * side + 1);
+        assert_eq!(open_edges(&faces), 6 * side);
+        // It is no plane, and projects to the grid.
+        let heights: Vec<f64> = corners.iter().map(|corner| corner.y).collect();
+        assert!(heights.iter().any(|height| height.abs() > 0.02));
+        let area = |face: &Vec<usize>| {
+            let [a, b, c] = [0, 1, 2].map(|it| corners[face[it]]);
+            (b - a).cross(c - a).y / 2.0
         };
-        assert!(edges.iter().all(is_paired), "step {steps}");
+        let whole = 6.0 * 3f64.sqrt() / 4.0;
+        let sum: f64 = faces.iter().map(area).sum();
+        assert!((sum.abs() - whole).abs() < 1e-5, "{sum}");
     }
 }
 

@@ -19,7 +19,7 @@ use crate::measure::{
     similarity_dimension,
 };
 use crate::render::{self, Canvas, Size};
-use crate::style::Style;
+use crate::style::{ColorBy, Style};
 
 use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
@@ -162,7 +162,7 @@ impl Arguments {
             return Err(Failure::Usage(message.into()));
         }
         let compiled = both.map(|loaded| {
-            let graph = loaded.drawn_in_space(self.steps, false)?.graph;
+            let graph = loaded.drawn_in_space(self.steps, ColorBy::None)?.graph;
             Ok::<_, Failure>(One { loaded, graph })
         });
         let [a, b] = compiled;

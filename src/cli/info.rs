@@ -43,7 +43,8 @@ pub(super) struct Arguments {
     ///
     /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two digits for
     /// each step: the size of an SVG in the rule's own style, 1024 pixels large, and the time to draw it;
-    /// null where the rule does not determine them or they exceed a double. instanced_svg_bytes is the size
+    /// null where the rule does not determine them or they exceed a double. In space, area and volume are the surface and
+    /// the volume of all elements: exact unless they overlap or touch. instanced_svg_bytes is the size
     /// of the last step with --svg instanced; null if that is not possible. limit_bounds is the bounding box
     /// of the limit set; an L-system has one if all its approximants are drawn as large as the first.
     #[arg(long)]
@@ -81,6 +82,8 @@ struct Info<'a> {
     fractals: Option<Vec<Count>>,
     length: Option<Vec<Option<f64>>>,
     area: Option<Vec<Option<f64>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    volume: Option<Vec<Option<f64>>>,
     #[serde(serialize_with = "numbers::rounded")]
     svg_bytes: Option<Vec<Option<f64>>>,
     #[serde(serialize_with = "numbers::rounded")]
@@ -168,9 +171,24 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;
         let bounds = graph.bounds(steps);
+        let own = info(&loaded, [&graph, &graph], steps, bounds, |_, _| None);
+        let surfaces = match loaded.model.rule_in_space() {
+            // An element may consist of several surfaces.
+            Some(rule) if graph.is_plain() => {
+                let surfaces = graph.clone().with_surfaces(rule.base_elements());
+                rows(&surfaces, steps, |_, _| None)
+            }
+            Some(_) => None,
+            None => rows(&graph, steps, |_, _| None),
+        };
+        let surfaces = surfaces.as_deref();
         let info = Info {
             system: SystemInfo::of(&loaded.model, &Homothety::IDENTITY),
-            ..info(&loaded, [&graph, &graph], steps, bounds, |_, _| None)
+            area: { graph.is_similar() }
+                .then(|| measures(surfaces, |level| level.area))
+                .flatten(),
+            volume: measures(surfaces, |level| level.volume),
+            ..own
         };
         (info, graph.place().ratio())
     } else {
@@ -219,8 +237,7 @@ fn in_plane<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) ->
     }
 }
 
-/// Collects the description from the graph and the graph that has the limit set. The area in space is the sum of the
-/// surfaces of all elements, where maps are similarities.
+/// Collects the description from the graph and the graph that has the limit set.
 fn info<'a, F: Bounded>(
     loaded: &'a Loaded,
     [graph, limit]: [&Graph<F>; 2],
@@ -229,13 +246,7 @@ fn info<'a, F: Bounded>(
     estimate: impl FnMut(u32, &Forecast<'_, F>) -> Option<SizeEstimate>,
 ) -> Info<'a> {
     let rows = rows(graph, steps, estimate);
-    // A measure is absent if one step lacks it; for a single step it is `None` beyond the range of doubles.
-    let measures = |measure: fn(&Level) -> Option<f64>| {
-        let rows = rows.as_ref()?;
-        let all: Option<Vec<_>> = rows.iter().map(|row| measure(&row.level)).collect();
-        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-        Some(all?.into_iter().map(finite).collect())
-    };
+    let measures = |measure| measures(rows.as_deref(), measure);
     let estimates = |part: fn(&SizeEstimate) -> f64| {
         let rows = rows.as_ref().filter(|rows| rows[0].estimate.is_some())?;
         let estimates = rows.iter().map(|row| row.estimate.as_ref().map(part));
@@ -243,9 +254,7 @@ fn info<'a, F: Bounded>(
     };
     let place = graph.place();
     let length = in_units(measures(|level| level.length), &[place.ratio()]);
-    let has_area = F::Point::DIMENSION == 2 || graph.is_similar();
-    let area = has_area.then(|| measures(|level| level.area)).flatten();
-    let area = in_units(area, &[place.ratio(); 2]);
+    let area = in_units(measures(|level| level.area), &[place.ratio(); 2]);
     let svg_bytes = estimates(|estimate| estimate.svg_bytes);
     let seconds = estimates(|estimate| estimate.seconds);
     let [elements, fertile, fractals] = rows.map_or([const { None }; 3], |rows| {
@@ -279,6 +288,7 @@ fn info<'a, F: Bounded>(
         fractals,
         length,
         area,
+        volume: None,
         svg_bytes,
         seconds,
         instanced_svg_bytes: None,
@@ -293,6 +303,16 @@ fn info<'a, F: Bounded>(
         system: None,
         structure: StructureInfo::of(&loaded.model),
     }
+}
+
+/// Returns a measure of all steps, with `None` where it exceeds the range of doubles; `None` if a step lacks it.
+fn measures(
+    rows: Option<&[ForecastRow]>,
+    measure: fn(&Level) -> Option<f64>,
+) -> Option<Vec<Option<f64>>> {
+    let all: Option<Vec<_>> = rows?.iter().map(|row| measure(&row.level)).collect();
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    Some(all?.into_iter().map(finite).collect())
 }
 
 /// Multiplies measures by all factors; a result beyond the range of doubles becomes `None`.
@@ -435,18 +455,14 @@ fn parameter_line(parameter: &Parameter) -> String {
 
 /// Formats the forecast, one row per step. Long numbers are abbreviated to their magnitude.
 fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
-    let mut rows = vec![
-        [
-            "step",
-            "elements",
-            "fertile",
-            "fractals",
-            "length",
-            "SVG (about)",
-            "time (about)",
-        ]
-        .map(String::from),
-    ];
+    let is_in_space = info.space == 3;
+    let last = match is_in_space {
+        true => ["surface", "volume"],
+        false => ["SVG (about)", "time (about)"],
+    };
+    let head = ["step", "elements", "fertile", "fractals", "length"];
+    let head = head.into_iter().chain(last).map(String::from);
+    let mut rows: Vec<Vec<String>> = vec![head.collect()];
     for step in 0..elements.len() {
         let at = |column: &Option<Vec<Count>>| {
             column
@@ -456,15 +472,22 @@ fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
         let of = |column: &Option<Vec<Option<f64>>>| column.as_ref().and_then(|all| all[step]);
         let estimated =
             |value: Option<f64>, wording: fn(f64) -> String| value.map_or("-".into(), wording);
-        rows.push([
+        let measured = |column| of(column).map_or("-".into(), |it| readable::measure(it, unit));
+        let last = match is_in_space {
+            true => [measured(&info.area), measured(&info.volume)],
+            false => [
+                estimated(of(&info.svg_bytes), readable::rough_bytes),
+                estimated(of(&info.seconds), readable::duration),
+            ],
+        };
+        let row = [
             step.to_string(),
             readable::grouped(&elements[step]),
             at(&info.fertile),
             at(&info.fractals),
-            of(&info.length).map_or("-".into(), |length| readable::measure(length, unit)),
-            estimated(of(&info.svg_bytes), readable::rough_bytes),
-            estimated(of(&info.seconds), readable::duration),
-        ]);
+            measured(&info.length),
+        ];
+        rows.push(row.into_iter().chain(last).collect());
     }
     let widths: Vec<_> = (0..rows[0].len())
         .map(|column| rows.iter().map(|row| row[column].len()).max().unwrap_or(0))

@@ -260,6 +260,7 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
             ColorBy::LastMap => "The map that is applied last: the tiling",
             ColorBy::Hits => "The number of hits of random iteration per pixel",
             ColorBy::Tint => "The tints of the objects of a structure",
+            ColorBy::Normal => "In space, the height of the normal: from faces that look down to those that look up",
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))

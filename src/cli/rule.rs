@@ -145,7 +145,7 @@ impl Loaded {
     pub(super) fn drawn_in_space(
         &self,
         steps: Option<u32>,
-        records_last: bool,
+        color_by: ColorBy,
     ) -> Result<DrawnInSpace, Failure> {
         let (seed, max_elements) = self.growth;
         let growth = Growth {
@@ -153,15 +153,15 @@ impl Loaded {
             max_elements,
             ..Growth::steps(self.steps_in_space(steps))
         };
-        let Some(drawn) = self.model.drawn_in_space(steps, &growth, records_last) else {
+        let Some(drawn) = self.model.drawn_in_space(steps, &growth, color_by) else {
             return Err(anyhow::anyhow!("{} lies in the plane", self.name).into());
         };
         drawn.map_err(|error| match error {
             DrawnError::Compile(error) => self.failure(&error),
             error => {
                 let message = format!(
-                    "step {} of {}: {error}; elements that depend on draws, or that are placed as the initiator, are held in \
-                     memory, and --max-elements allows up to {MAX_HELD}",
+                    "step {} of {}: {error}; elements that depend on draws, that are placed as the initiator, or that have \
+                     colours by index or fractal are held in memory, and --max-elements allows up to {MAX_HELD}",
                     growth.steps, self.name
                 );
                 anyhow::anyhow!(message).into()
@@ -194,6 +194,13 @@ impl Loaded {
                 "{} is a rule and has no maps that --color-by {} could distinguish",
                 self.name,
                 color_by.name()
+            );
+            return Err(anyhow::anyhow!(message).into());
+        }
+        if color_by == ColorBy::Normal {
+            let message = format!(
+                "{} lies in the plane, where all normals are equal",
+                self.name
             );
             return Err(anyhow::anyhow!(message).into());
         }

@@ -1,5 +1,6 @@
 //! Compilation of the models of all kinds to graphs.
 
+mod distinguished;
 mod ifs;
 mod instancing;
 mod lsystem;

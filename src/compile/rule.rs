@@ -168,6 +168,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
             regular: !self.depends.index_is_free,
             counts_index: self.depends.counts_index,
             draws: rule.is_random(),
+            affine: rule.is_affine(),
             seeds,
             middle: F::Point::of_coordinates([0.5, 0.0, 0.0]),
             ..Graph::of(

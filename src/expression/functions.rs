@@ -34,7 +34,7 @@ const fn one(name: &'static str, operation: One) -> Function {
     function(name, "x", Meaning::One(operation))
 }
 
-pub(super) static FUNCTIONS: [Function; 28] = [
+pub(super) static FUNCTIONS: [Function; 29] = [
     one("sqrt", One::Sqrt),
     one("cbrt", One::Cbrt),
     one("abs", One::Abs),
@@ -63,6 +63,7 @@ pub(super) static FUNCTIONS: [Function; 28] = [
     function("uniform", "a, b", Meaning::Distribution),
     function("normal", "mean, deviation", Meaning::Distribution),
     function("choice", "a, b, ...", Meaning::Distribution),
+    function("by_edge", "distribution", Meaning::Distribution),
 ];
 
 impl Function {

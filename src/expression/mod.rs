@@ -183,7 +183,7 @@ impl Expression {
 
     /// Returns the name and the arguments of a distribution, `uniform`, `normal` or `choice`, if the
     /// expression is a call of one. The parser has checked the number of arguments: two, two, at least
-    /// one.
+    /// one, one.
     #[must_use]
     pub fn as_call(&self) -> Option<(&str, &[Self])> {
         match &self.node {

@@ -13,6 +13,7 @@ mod lines;
 mod marks;
 mod page;
 mod panel;
+mod shown;
 mod space;
 mod structure;
 mod system;
@@ -90,7 +91,7 @@ pub fn write(
 ) -> Result<[u32; 2], RenderError> {
     let title = &options.labels.title;
     let page = match (model, document.rule()) {
-        (Model::Rule(rule), Some(document)) => page::page(rule, document, alone, title),
+        (Model::Rule(rule), Some(document)) => page::page(rule, document, alone, (), title),
         (Model::Ifs(system), _) => system::page(system, title),
         (Model::IfsInSpace(system), _) => {
             let view = options.camera.rotation().map_err(SpaceError::from)?;
@@ -101,7 +102,10 @@ pub fn write(
             let view = options.camera.rotation().map_err(SpaceError::from)?;
             structure::page(structure, view, title)
         }
-        (Model::RuleInSpace(_), _) => return Err(RenderError::NoFigureInSpace),
+        (Model::RuleInSpace(rule), Some(document)) => {
+            let view = options.camera.rotation().map_err(SpaceError::from)?;
+            page::page(rule, document, alone, view, title)
+        }
         _ => return Err(RenderError::NoFigure(model.kind())),
     };
     Figure::write(page, options, out)

@@ -86,6 +86,8 @@ impl Fractal {
         if let Some(set) = self.graph_to_draw_in_space(&options)? {
             let cancel = self.cancel.as_deref();
             let space = self.space_options();
+            let mut options = options;
+            set.colour(&mut options.style);
             let drawn = pixels_in_space(&set.graph, set.steps, &options, &space, cancel);
             return Ok(drawn?.pixels);
         }
@@ -377,6 +379,9 @@ impl Fractal {
 
     fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {
         if let Some(set) = self.graph_to_draw_in_space(options)? {
+            let mut options = options.clone();
+            set.colour(&mut options.style);
+            let options = &options;
             if options.format != Format::Png {
                 let steps = { set.steps }.unwrap_or_else(|| self.steps_in_space(&set.graph));
                 let growth = self.growth(steps);

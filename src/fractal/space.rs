@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DVec3, Frame3};
 use crate::graph::{Forecast, Graph};
 use crate::grow::{Element, Elements};
-use crate::model::{DrawnError, DrawnInSpace};
+use crate::model::{DrawnError, DrawnInSpace, for_pixels};
 use crate::render::space::{DepthMap, Shade, SpaceOptions, pixels_in_space};
 use crate::render::{Detail, Format, NoRoom, Options, RenderError, Size};
 
@@ -143,7 +143,9 @@ impl Fractal {
         }
         let growth = self.growth(self.resolved_steps_in_space());
         let steps = self.steps_drawn_in_space();
-        let drawn = self.model.drawn_in_space(steps, &growth, false);
+        let style = { self.style.as_ref() }.unwrap_or(&self.model.metadata().style);
+        let by = for_pixels(style.color_by);
+        let drawn = self.model.drawn_in_space(steps, &growth, by);
         let drawn = drawn.ok_or(Error::InPlane(instead))?;
         let drawn = drawn.map_err(|error| match error {
             DrawnError::Compile(error) => self.model.diagnostic(&error).into(),

@@ -75,6 +75,12 @@ pub trait Frame: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     #[must_use]
     fn area(&self) -> f64;
 
+    /// Returns the volume of the image of the unit cube; 0 in the plane.
+    #[must_use]
+    fn volume(&self) -> f64 {
+        0.0
+    }
+
     /// Returns `true` if the map is a similarity of a ratio, up to rounding.
     #[must_use]
     fn is_similarity(&self, ratio: f64) -> bool;
@@ -111,6 +117,12 @@ pub trait Outline<F: Frame<Outline = Self>>: Clone + Debug + Send + Sync + 'stat
     /// negative where the contour runs clockwise.
     #[must_use]
     fn signed_area(&self) -> f64;
+
+    /// Returns the volume of the shape; 0 for a flat one, and in the plane.
+    #[must_use]
+    fn volume(&self) -> f64 {
+        0.0
+    }
 
     /// Returns the support function of the shape: the maximum of x·u over its points x.
     #[must_use]

@@ -71,6 +71,29 @@ impl Frame3 {
                 linear.z_axis = z_axis * cosine - y_axis * sine;
             }
         }
+        Self::reflected(linear, [from, to], direction)
+    }
+
+    /// Returns the frame of an element with a direction whose first three corners lie at these points: the map takes
+    /// (0, 0, 0), (1, 0, 0) and (x, y, 0), with x and y those of `third`, to them, and (0, 0, 1) to `up`, or else to the normal
+    /// of the length of the first side.
+    #[must_use]
+    pub fn stretched(
+        corners: [DVec3; 3],
+        third: [f64; 2],
+        up: Option<DVec3>,
+        direction: Direction,
+    ) -> Self {
+        let [from, to, other] = corners;
+        let along = to - from;
+        let across = (other - from - along * third[0]) / third[1];
+        let normal = along.cross(across).normalize() * along.length();
+        let linear = DMat3::from_cols(along, across, up.unwrap_or(normal));
+        Self::reflected(linear, [from, to], direction)
+    }
+
+    /// Returns the frame of a map after the reflections of a direction, for an element with these ends.
+    fn reflected(linear: DMat3, [from, to]: [DVec3; 2], direction: Direction) -> Self {
         let [x, y, z] = direction.reflected();
         let signed = |is_reflected: bool, axis: DVec3| if is_reflected { -axis } else { axis };
         let linear = DMat3::from_cols(
@@ -184,6 +207,10 @@ impl Frame for Frame3 {
     fn area(&self) -> f64 {
         let linear = self.map.matrix3;
         linear.x_axis.cross(linear.y_axis).length()
+    }
+
+    fn volume(&self) -> f64 {
+        self.map.matrix3.determinant().abs()
     }
 
     fn is_similarity(&self, ratio: f64) -> bool {

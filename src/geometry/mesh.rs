@@ -55,6 +55,14 @@ impl Mesh {
         mesh
     }
 
+    /// Returns the unit normal of the image of a face under a map.
+    pub(crate) fn normal(&self, face: usize, map: &DAffine3) -> DVec3 {
+        let corners = { self.faces[face].iter() }.map(|it| map.transform_point3(self.corners[*it]));
+        let next = corners.clone().cycle().skip(1);
+        let around: DVec3 = corners.zip(next).map(|(from, to)| from.cross(to)).sum();
+        around.normalize_or_zero() * map.matrix3.determinant().signum()
+    }
+
     fn push(&mut self, corner: DVec3) -> usize {
         self.corners.push(corner);
         self.corners.len() - 1

@@ -45,7 +45,7 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<Solid>, PolygonError> {
     let normal: DVec3 = near.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
     let area = normal.length() / 2.0;
     let hull = Solid::hull(points);
-    let whole = hull.signed_area() / 2.0 / (size * size);
+    let whole = hull.signed_area() / (size * size);
     let unit = normal
         .try_normalize()
         .filter(|_| area > 1e-12 && whole > 0.0);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     fn area(pieces: &[Solid]) -> f64 {
-        pieces.iter().map(|piece| piece.signed_area() / 2.0).sum()
+        pieces.iter().map(|piece| piece.signed_area()).sum()
     }
 
     #[test]

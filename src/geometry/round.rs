@@ -22,6 +22,17 @@ pub enum Round {
 }
 
 impl Round {
+    /// Returns the volume.
+    #[must_use]
+    pub fn volume(self) -> f64 {
+        use std::f64::consts::PI;
+        match self {
+            Self::Ball => 4.0 / 3.0 * PI,
+            Self::Cylinder => PI,
+            Self::Cone => PI / 3.0,
+        }
+    }
+
     /// Returns the support function: the largest x · `direction` over the points x.
     #[inline]
     #[must_use]

@@ -428,8 +428,29 @@ impl Outline<Frame3> for Solid {
         [DVec3::ZERO, DVec3::X].map(|end| !self.is_closed() && self.corners.contains(&end))
     }
 
+    /// Returns the area of the surface; of a flat solid, that of one side.
     fn signed_area(&self) -> f64 {
-        self.surface
+        let sides = if self.dimension() < 3.0 { 2.0 } else { 1.0 };
+        self.surface / sides
+    }
+
+    fn volume(&self) -> f64 {
+        if let Some(round) = self.round {
+            return round.volume() * self.place.matrix3.determinant().abs();
+        }
+        // Pyramids over the faces, by the divergence theorem.
+        let polygons = self.polygons();
+        let faces = polygons.iter().filter_map(|face| face.split_first());
+        let sixths = faces.flat_map(|(first, others)| {
+            let pairs = others.windows(2);
+            pairs.map(|pair| first.dot(pair[0].cross(pair[1])))
+        });
+        let flat = polygons.len() < 4;
+        if flat {
+            0.0
+        } else {
+            sixths.sum::<f64>().abs() / 6.0
+        }
     }
 
     fn support(&self, direction: DVec3) -> f64 {
@@ -492,7 +513,7 @@ mod tests {
         let cuboid = Solid::cuboid(&Bounds::new(DVec3::ONE, DVec3::new(3.0, 4.0, 2.0)));
         let faces = cuboid.polygons();
         assert_eq!(faces.iter().map(Vec::len).collect::<Vec<_>>(), [4; 6]);
-        assert!((volume(&cuboid) - 6.0).abs() < 1e-9);
+        assert!((volume(&cuboid) - 6.0).abs() < 1e-9 && (cuboid.volume() - 6.0).abs() < 1e-9);
         let corners = [DVec3::X, DVec3::Y, DVec3::Z];
         let octahedron = Solid::hull(&corners.map(|it| [it, -it]).concat());
         assert_eq!(octahedron.polygons().len(), 8);
@@ -514,7 +535,8 @@ mod tests {
         let triangle = [DVec3::X, DVec3::Y, DVec3::Z];
         let hull = Solid::hull(&triangle);
         assert_eq!((hull.faces().len(), hull.corners().len()), (5, 3));
-        assert!((hull.signed_area() - 3f64.sqrt()).abs() < 1e-9);
+        assert!((hull.signed_area() - 3f64.sqrt() / 2.0).abs() < 1e-9);
+        assert_eq!(hull.volume(), 0.0);
         assert!(hull.place().matrix3.determinant().abs() < 1e-12);
         let line = Solid::hull(&[DVec3::ZERO, DVec3::ONE, DVec3::splat(0.25)]);
         assert_eq!(line.corners().len(), 2);

@@ -31,6 +31,9 @@ pub struct Level {
     /// Enclosed area, in square units, if all outlines are closed: the sum over the outlines, which
     /// counts overlaps once for each outline.
     pub area: Option<f64>,
+    /// Enclosed volume in cubic units, in space: the sum over the outlines, which counts overlaps once for each outline. 0 in
+    /// the plane.
+    pub volume: Option<f64>,
 }
 
 /// Sizes of successive approximants, from that of the current step on: approximant 0 at first.
@@ -54,6 +57,8 @@ pub struct Forecast<'g, F: Frame = Frame2> {
     outlines: Outlines,
     /// Signed areas of the base elements, by number.
     areas: Vec<f64>,
+    /// Volumes of the base elements, by number.
+    volumes: Vec<f64>,
     /// Area enclosed by the closed paths through the end points of elements.
     path_area: f64,
 }
@@ -107,6 +112,12 @@ struct Sums {
     root_square: f64,
     /// Sum of the areas of the closed base elements.
     area: f64,
+    /// Sum of cubes of lengths.
+    cube: f64,
+    /// Sum of the cubes of the lengths of the initiator elements from which the elements descend.
+    root_cube: f64,
+    /// Sum of the volumes of the base elements.
+    volume: f64,
 }
 
 impl AddAssign for Sums {
@@ -120,6 +131,9 @@ impl AddAssign for Sums {
         self.root_length += other.root_length;
         self.root_square += other.root_square;
         self.area += other.area;
+        self.cube += other.cube;
+        self.root_cube += other.root_cube;
+        self.volume += other.volume;
     }
 }
 
@@ -242,11 +256,15 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 .iter()
                 .map(Outline::signed_area)
                 .collect(),
+            volumes: { graph.base_elements().iter() }
+                .map(Outline::volume)
+                .collect(),
             path_area: area_under(graph.initiator(0)).abs(),
         };
         let orientation = area_under(graph.initiator(0)).signum();
         for (number, instance) in graph.initiator(0).instances.iter().enumerate() {
             let square = forecast.square(instance);
+            let cube = forecast.cube(instance);
             forecast.add(
                 instance.object,
                 &Count::from(1u64),
@@ -263,7 +281,9 @@ impl<'g, F: Frame> Forecast<'g, F> {
                     signed: square * orientation * side(instance.frame.direction()),
                     root_length: instance.length,
                     root_square: square,
-                    area: 0.0,
+                    cube,
+                    root_cube: cube,
+                    ..Sums::default()
                 },
             );
         }
@@ -279,12 +299,30 @@ impl<'g, F: Frame> Forecast<'g, F> {
         }
     }
 
+    /// Returns the factor by which an instance changes volumes.
+    fn cube(&self, instance: &Instance<F>) -> f64 {
+        if self.graph.affine {
+            instance.frame.volume()
+        } else {
+            instance.length * instance.length * instance.length
+        }
+    }
+
     fn add(&mut self, object: usize, count: &Count, sums: Sums) {
         let area = sums.square * self.own_area(object);
+        let own = &self.graph.objects[object];
+        let volume = match own.visible {
+            true => sums.cube * self.volumes[own.base_element],
+            false => 0.0,
+        };
         self.work += 1;
         let population = self.population.entry(object).or_default();
         population.count += count;
-        population.sums += Sums { area, ..sums };
+        population.sums += Sums {
+            area,
+            volume,
+            ..sums
+        };
     }
 
     /// Returns the area of an object's base element if it is closed and drawn, otherwise 0.
@@ -349,6 +387,8 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 }
                 _ => None,
             },
+            volume: (plain && self.outlines == Outlines::ClosedElements)
+                .then(|| all().fold(0.0, |volume, (_, tally)| volume + tally.sums.volume)),
         }
     }
 
@@ -423,6 +463,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
                         if seed.placement == Placement::SeedsAsInitiator {
                             parent.length = parent.root_length;
                             parent.square = parent.root_square;
+                            parent.cube = parent.root_cube;
                         }
                         self.path_area += parent.square * area.abs();
                         parent.signed = orientation * parent.square;
@@ -468,6 +509,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
             }
             before = instance;
             let square = self.square(instance);
+            let cube = self.cube(instance);
             let sums = Sums {
                 apart: match (is_first, joins) {
                     (true, _) => parent.apart,
@@ -478,6 +520,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 parted: if is_first { parent.parted } else { 0.0 },
                 length: parent.length * instance.length,
                 square: parent.square * square,
+                cube: parent.cube * cube,
                 signed: side(instance.frame.direction()) * parent.signed * square,
                 ..parent
             };

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::draws::Corner;
 use crate::geometry::{Frame, Frame2, Point as _};
 use crate::instancing::{Thickness, Tint};
 use crate::rule::{Part, Placement, RuleFrame};
@@ -70,6 +71,8 @@ pub struct Instance<F: Frame = Frame2> {
     pub position: u32,
     /// Number of the object.
     pub object: usize,
+    /// Origins of the first three corners of its surface, if draws belong to edges.
+    pub corners: Option<[Corner; 3]>,
 }
 
 /// Sequence of instances.
@@ -128,6 +131,7 @@ impl<F: Frame> Instance<F> {
             joined: false,
             position,
             object,
+            corners: None,
         }
     }
 }
@@ -218,12 +222,18 @@ impl<F: RuleFrame> Successor<F> {
                 .map_or(&mut self.body.instances, |seed| &mut seed.chain.instances);
             for element in &part.elements {
                 let (from, to) = (points[element.from], points[element.to]);
+                let frame = F::placed(element, points);
+                let length = match element.is_stretched() {
+                    true => frame.stretch(),
+                    false => (to - from).length(),
+                };
                 instances.push(Instance {
-                    frame: F::placed(element, points),
-                    length: (to - from).length(),
+                    frame,
+                    length,
                     joined: element.joined,
                     position,
                     object: objects[position as usize],
+                    corners: element.corners,
                 });
                 position += 1;
             }

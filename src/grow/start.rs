@@ -65,7 +65,11 @@ impl<F: Frame> TraversalState<F> {
             length: self.length * instance.length,
             root: self.root,
             path: if graph.draws() {
-                self.path.child(instance.position)
+                let path = self.path.child(instance.position);
+                match &instance.corners {
+                    Some(corners) => path.with_corners(self.path, corners),
+                    None => path,
+                }
             } else {
                 self.path
             },

@@ -44,6 +44,7 @@ fn cells() -> Vec<DVec3> {
 /// Returns the instances of an object in cells, a third as large.
 fn chain(cells: &[DVec3], object: usize) -> Chain<Frame3> {
     let instances = (0..).zip(cells).map(|(position, &cell)| Instance {
+        corners: None,
         frame: shrunk(1.0 / 3.0, cell / 3.0),
         length: 1.0 / 3.0,
         joined: false,
@@ -59,6 +60,7 @@ fn chain(cells: &[DVec3], object: usize) -> Chain<Frame3> {
 /// Returns a graph that starts with object 0 in a frame, and whose only shape is the cube.
 fn graph(objects: Vec<Object<Frame3>>, start: Frame3) -> Graph<Frame3> {
     let root = Instance {
+        corners: None,
         length: start.length(),
         frame: start,
         joined: false,

@@ -1,16 +1,24 @@
 //! Graphs of models in space as they are drawn.
 
 use std::convert::Infallible;
+use std::sync::Arc;
 
-use crate::geometry::Frame3;
+use crate::geometry::{Frame as _, Frame3};
 use crate::graph::{Chain, CompileError, Graph, Instance, Object, Replacement};
-use crate::grow::{Elements, Growth, WalkError};
+use crate::grow::{Element, Elements, FractalInfo, Growth, WalkError};
 use crate::rule::Rule;
+use crate::style::{ColorBy, Style};
 
 use super::Model;
 
 /// Largest number of elements of an approximant that is held in memory.
 pub const MAX_HELD: u64 = 1_000_000;
+
+/// Largest number of classes into which values are quantised.
+const MAX_CLASSES: u128 = 64;
+
+/// Number of steps whose ages are distinguished in the limit.
+const STEPS_OF_LIMIT: u32 = 16;
 
 /// Graph of a model in space as it is drawn: with fixed instances, and one object for each surface.
 #[derive(Clone, Debug)]
@@ -19,6 +27,27 @@ pub struct DrawnInSpace {
     pub graph: Graph<Frame3>,
     /// Number of steps of the graph to be drawn; `None` for the limit set.
     pub steps: Option<u32>,
+    /// Property that the origins of objects stand for, in place of generators.
+    records: Option<ColorBy>,
+}
+
+impl DrawnInSpace {
+    /// Adapts a style to the graph: colours by a property that the origins of objects stand for are those by generator.
+    pub fn colour(&self, style: &mut Style) {
+        if self.records == Some(style.color_by) {
+            style.color_by = ColorBy::Generator;
+        }
+    }
+}
+
+/// Returns the property that the graph of a picture of pixels has to record: not the map that is applied last, which the
+/// descent finds.
+#[must_use]
+pub fn for_pixels(color_by: ColorBy) -> ColorBy {
+    match color_by {
+        ColorBy::LastMap => ColorBy::None,
+        by => by,
+    }
 }
 
 /// Error: a model in space cannot be compiled or grown.
@@ -34,11 +63,11 @@ pub enum DrawnError {
 }
 
 impl Model {
-    /// Returns the graph of a model in space as it is drawn after a number of steps, or in the limit; `None` for a model
-    /// of the plane. A rule whose elements depend on draws or on more than place and age is grown: its approximant is
-    /// held in memory, with at most [`MAX_HELD`] elements.
+    /// Returns the graph of a model in space as it is drawn after a number of steps, or in the limit, in colours by a
+    /// property; `None` for a model of the plane. A rule whose elements depend on draws or on more than place and age, or whose
+    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements.
     ///
-    /// Objects of a system record the map that is applied last if `records_last`, unless there are too many for it.
+    /// Objects of a system record the map that is applied last if colours depend on it, unless there are too many for it.
     ///
     /// # Errors
     ///
@@ -47,59 +76,112 @@ impl Model {
         &self,
         steps: Option<u32>,
         growth: &Growth<'_>,
-        records_last: bool,
+        color_by: ColorBy,
     ) -> Option<Result<DrawnInSpace, DrawnError>> {
         let Self::RuleInSpace(rule) = self else {
-            let graph = self.compile_in_space(records_last)?;
-            return Some(Ok(DrawnInSpace { graph, steps }));
+            let graph = self.compile_in_space(color_by == ColorBy::LastMap)?;
+            return Some(Ok(DrawnInSpace {
+                graph,
+                steps,
+                records: None,
+            }));
         };
-        Some(drawn(rule, steps, growth))
+        Some(drawn(rule, steps, growth, color_by))
     }
 }
 
 fn drawn(
-    rule: &std::sync::Arc<Rule<Frame3>>,
+    rule: &Arc<Rule<Frame3>>,
     steps: Option<u32>,
     growth: &Growth<'_>,
+    color_by: ColorBy,
 ) -> Result<DrawnInSpace, DrawnError> {
     let graph = Graph::compile(rule, steps.unwrap_or(growth.steps))?;
     let is_fixed = graph.is_plain() && !graph.resets().contains(&true);
-    let (graph, steps) = match (is_fixed, steps) {
-        (true, Some(_)) => (graph, steps),
-        // A graph that is resolved for any number of steps has a limit.
-        (true, None) if graph.depth().is_none() => (graph, None),
-        _ => (held(&graph, growth)?, Some(0)),
+    let is_counted = matches!(color_by, ColorBy::Index | ColorBy::Fractal);
+    let is_limit = steps.is_none() && graph.depth().is_none();
+    // A graph that is resolved for any number of steps has a limit.
+    let (graph, steps, records) = if is_fixed && !is_counted && (steps.is_some() || is_limit) {
+        match color_by {
+            ColorBy::Direction => (graph.by_direction(), steps, true),
+            ColorBy::Age => {
+                let distinguished = steps.unwrap_or(STEPS_OF_LIMIT);
+                (graph.by_age(distinguished), steps, true)
+            }
+            _ => (graph, steps, false),
+        }
+    } else {
+        let value = value_of(color_by);
+        (held(&graph, growth, value)?, Some(0), value.is_some())
     };
     Ok(DrawnInSpace {
         graph: graph.with_surfaces(rule.base_elements()),
         steps,
+        records: records.then_some(color_by),
     })
 }
 
-/// Returns a graph whose initiator consists of the elements of an approximant, none of which is replaced.
+/// Property of an element on which its colour depends.
+type Value = fn(&Element<Frame3>, &FractalInfo) -> u128;
+
+/// Returns the property of elements that are held, if their objects do not record it.
+fn value_of(color_by: ColorBy) -> Option<Value> {
+    match color_by {
+        ColorBy::Step => Some(|element, _| element.born.into()),
+        ColorBy::Age => Some(|_, fractal| fractal.age.into()),
+        ColorBy::Fractal => Some(|_, fractal| fractal.number.into()),
+        ColorBy::Index => Some(|element, _| element.index - 1),
+        ColorBy::Direction => Some(|element, _| u128::from(element.frame.direction().number()) - 1),
+        _ => None,
+    }
+}
+
+/// Returns a graph whose initiator consists of the elements of an approximant, none of which is replaced. The origins of
+/// its objects stand for a value of their elements, if one is given.
 fn held(
     graph: &Graph<Frame3>,
     growth: &Growth<'_>,
+    value: Option<Value>,
 ) -> Result<Graph<Frame3>, WalkError<Infallible>> {
     let growth = Growth {
         max_elements: growth.max_elements.min(MAX_HELD),
         ..*growth
     };
-    let mut instances = Vec::new();
+    let mut elements = Vec::new();
+    let mut largest = 0;
     for element in Elements::of(graph, &growth) {
-        let (_, element) = element?;
+        let (fractal, element) = element?;
+        let value = value.map_or(0, |value| value(&element, &fractal));
+        largest = largest.max(value);
         if graph.objects()[element.object].visible {
-            instances.push(Instance::new(element.object, element.frame, 0));
+            elements.push((element.object, element.frame, value));
         }
     }
-    let objects = graph.objects().iter().map(|object| Object {
-        replacement: Replacement::Kept,
-        behaviour: 0,
-        ..object.clone()
+    let classes = (largest + 1).min(MAX_CLASSES);
+    let class = |value: u128| {
+        let class = match largest < MAX_CLASSES {
+            true => value,
+            false => value * MAX_CLASSES / (largest + 1),
+        };
+        usize::try_from(class).unwrap_or_default()
+    };
+    let count = graph.objects().len();
+    let instances = { elements.iter() }
+        .map(|(object, frame, value)| Instance::new(class(*value) * count + object, *frame, 0));
+    let instances = instances.collect();
+    let classes = usize::try_from(classes).unwrap_or(1);
+    let objects = (0..classes).flat_map(|class| {
+        graph.objects().iter().map(move |object| Object {
+            replacement: Replacement::Kept,
+            behaviour: 0,
+            origin: value.map_or(object.origin, |_| Some(class)),
+            ..object.clone()
+        })
     });
     Ok(Graph {
-        origins: graph.origins(),
+        origins: value.map_or(graph.origins(), |_| classes),
         tints: graph.tints(),
+        affine: graph.is_affine(),
         middle: graph.middle,
         ..Graph::of(
             objects.collect(),

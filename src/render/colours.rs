@@ -48,6 +48,11 @@ impl<'a> Colours<'a> {
         colour.unwrap_or(own)
     }
 
+    /// Returns the style.
+    pub(super) fn style(&self) -> &'a Style {
+        self.style
+    }
+
     /// Returns the classes, for symbols.
     pub(super) fn classes(&self) -> Classes {
         self.classes

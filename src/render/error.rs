@@ -45,11 +45,6 @@ pub enum RenderError {
     /// There is no figure of a kind.
     #[error("there is no figure of an {}'s productions", .0.noun())]
     NoFigure(Kind),
-    /// The rule lies in space.
-    #[error(
-        "figures of rules are of the plane: `kfrac sheet` shows the steps of a rule in space, and `kfrac cat` its components"
-    )]
-    NoFigureInSpace,
     /// The picture cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),

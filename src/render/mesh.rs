@@ -9,10 +9,10 @@ mod shell;
 
 use std::io::{self, Write};
 
-use crate::geometry::{BEYOND, Frame3};
+use crate::geometry::{BEYOND, DAffine3, Frame3};
 use crate::graph::Graph;
 use crate::grow::{Element, Growth, Visitor, WalkError, walk_in_spans};
-use crate::style::Named;
+use crate::style::{ColorBy, Named};
 
 use super::colours::Colours;
 use super::error::RenderError;
@@ -173,6 +173,21 @@ impl Walk<'_> {
     }
 }
 
+impl Walk<'_> {
+    /// Returns the colour of a face of an element under a map, if that of the element is `own`.
+    fn colour_of_face(&self, shape: &Shape, face: usize, map: &DAffine3, own: [u8; 3]) -> [u8; 3] {
+        let style = self.colours.style();
+        if style.color_by != ColorBy::Normal {
+            return own;
+        }
+        let colour = style.colour_of_normal(shape.mesh().normal(face, map));
+        colour.map_or(own, |colour| {
+            let [red, green, blue, _] = colour.rgba();
+            [red, green, blue]
+        })
+    }
+}
+
 /// Counts the faces of a span.
 struct Sizes<'a>(Meshed, &'a Walk<'a>);
 
@@ -207,7 +222,9 @@ impl Visitor<Frame3> for Collector<'_> {
 
     fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
         if let Some((shape, colour)) = self.walk.shape(element) {
-            let is_finite = self.encoder.add(shape, element.frame.map(), |_| colour);
+            let map = element.frame.map();
+            let colour = |face| self.walk.colour_of_face(shape, face, map, colour);
+            let is_finite = self.encoder.add(shape, map, colour);
             if !is_finite {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
             }

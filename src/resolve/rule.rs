@@ -3,6 +3,7 @@
 mod attitude;
 mod base_element;
 mod body;
+mod corners;
 mod elements;
 mod frame;
 mod generator;
@@ -18,7 +19,7 @@ use crate::geometry::Point as _;
 use crate::metadata::Metadata;
 use crate::rule::{ElementContext, Rule, Selection, constant};
 
-use crate::style::ColorBy;
+use crate::style::{ColorBy, Width};
 use generator::loops_shrink;
 
 use super::Resolver;
@@ -36,6 +37,10 @@ pub(super) struct OfRule<F: ResolvedFrame> {
     /// Warnings of elements that are not shorter than those they replace. The warnings are dropped if
     /// every cycle of generators shrinks nonetheless.
     growing: Vec<Diagnostic>,
+    /// Whether draws of a generator belong to edges.
+    draws_by_edge: bool,
+    /// Width of the tubes that lines are in space, as a multiple of the element's length.
+    tube: Option<f64>,
 }
 
 impl<F: ResolvedFrame> Default for OfRule<F> {
@@ -47,18 +52,24 @@ impl<F: ResolvedFrame> Default for OfRule<F> {
             generator_names: Vec::new(),
             generator_numbers: HashMap::new(),
             growing: Vec::new(),
+            draws_by_edge: false,
+            tube: None,
         }
     }
 }
 
 impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     pub(super) fn rule(&mut self, document: &RuleDocument, mut metadata: Metadata) -> Rule<F> {
+        self.kind.tube = match metadata.style.width {
+            Width::Relative(width) => Some(width).filter(|width| *width > 0.0),
+            Width::Pixels(_) => None,
+        };
         match &document.base_element {
             Some(document) => {
                 self.base_element(document);
             }
             None => {
-                self.kind.base_elements.push(F::line());
+                self.kind.base_elements.push(F::line(self.kind.tube));
             }
         }
         let names = document.generators.iter().map(|(name, _)| &name.value);
@@ -71,6 +82,9 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             moment.variable(name, slot);
         }
         let moment = Arc::new(moment);
+        let random = { document.generators.iter() }.flat_map(|(_, generator)| &generator.random);
+        self.kind.draws_by_edge = { random }
+            .any(|(_, drawn)| matches!(drawn.value.as_call(), Some((random::BY_EDGE, _))));
         let (written_points, initiator) = self.initiator(document);
         let generators: Vec<_> = document
             .generators

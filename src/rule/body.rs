@@ -1,6 +1,6 @@
 //! Base elements in space: surfaces and solids in the unit frame.
 
-use crate::geometry::{DAffine3, DVec3, Outline as _, Solid};
+use crate::geometry::{DAffine3, DVec3, Solid};
 use crate::style::Colour;
 
 /// Surface or solid of a base element (Kaandorp 1987, section 2.4): a convex piece, with its normal if it is flat.
@@ -89,16 +89,6 @@ impl Body {
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.is_closed
-    }
-
-    /// Returns the area of all surfaces; solids have that of their surface, and flat pieces one side.
-    #[must_use]
-    pub fn area(&self) -> f64 {
-        let area = |surface: &Surface| {
-            let solid = &surface.solid;
-            solid.signed_area() / if solid.dimension() < 3.0 { 2.0 } else { 1.0 }
-        };
-        self.surfaces.iter().map(area).sum()
     }
 }
 

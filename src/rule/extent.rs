@@ -44,6 +44,13 @@ impl<F: RuleFrame> Generator<F> {
     }
 
     fn cover(&self, element: &ListedElement, power: f64, moment: &[Interval; 4]) -> Extent {
+        if element.is_stretched() {
+            // Not bounded by its ends.
+            return Extent {
+                away: f64::INFINITY,
+                length: f64::INFINITY,
+            };
+        }
         let mut cover = Cover {
             generator: self,
             element,

@@ -134,6 +134,15 @@ impl RuleFrame for Frame3 {
             ListedAttitude::Face(numbers) => {
                 Attitude::Normal(newell(numbers.iter().map(|it| points[*it])))
             }
+            ListedAttitude::Corners {
+                points: corners,
+                third,
+                up,
+            } => {
+                let corners = corners.map(|it| points[it]);
+                let up = up.map(|it| points[it]);
+                return Self::stretched(corners, *third, up, element.direction);
+            }
         };
         Self::between(
             points[element.from],

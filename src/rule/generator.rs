@@ -7,7 +7,7 @@ use crate::expression::{Affine, Dependence, Evaluation, Program};
 use crate::geometry::{Direction, Frame2};
 use crate::written::WrittenPoint;
 
-use crate::draws::{Path, Variable};
+use crate::draws::{Corner, Path, Variable};
 
 use super::frame::{RuleFrame, evaluated};
 
@@ -111,7 +111,7 @@ impl Placement {
 }
 
 /// Turn of a listed element about itself; in the plane there is none.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum ListedAttitude {
     /// The frame is that of the least turn.
     #[default]
@@ -122,6 +122,16 @@ pub enum ListedAttitude {
     Roll(usize),
     /// The z axis of the frame lies on the side of the normal of the polygon with these points.
     Face(Vec<usize>),
+    /// The frame is that of the affine map that takes the first three corners of the base element to these points.
+    Corners {
+        /// Numbers of the points.
+        points: [usize; 3],
+        /// Coordinates x and y of the third corner of the base element; the first two are the ends of the unit element.
+        third: [f64; 2],
+        /// Number of the vector to which the map takes the z axis, among the points; the normal of the length of the
+        /// element if there is none.
+        up: Option<usize>,
+    },
 }
 
 /// Element as listed in an initiator or a generator.
@@ -135,6 +145,8 @@ pub struct ListedElement {
     pub direction: Direction,
     /// Turn about itself.
     pub attitude: ListedAttitude,
+    /// Origins of the first three corners of its surface, if draws belong to edges.
+    pub corners: Option<[Corner; 3]>,
     /// Whether the element is fertile: replaced in the next step.
     pub fertile: bool,
     /// Whether the element is drawn.
@@ -145,6 +157,13 @@ pub struct ListedElement {
     pub generator: Option<usize>,
     /// Number of its base element.
     pub base_element: usize,
+}
+
+impl ListedElement {
+    /// Returns whether its frame is an affine map, which need not be a similarity.
+    pub(crate) fn is_stretched(&self) -> bool {
+        matches!(self.attitude, ListedAttitude::Corners { .. })
+    }
 }
 
 /// List of elements with one placement: an initiator, or a part of a generator.

@@ -126,4 +126,12 @@ impl<F: RuleFrame> Rule<F> {
         matches!(self.selection, Selection::AtRandom(_)) && self.selection.candidates().len() > 1
             || self.generators.iter().any(Generator::is_random)
     }
+
+    /// Returns whether the frames of some elements are not similarities.
+    #[must_use]
+    pub fn is_affine(&self) -> bool {
+        let listed = self.generators.iter().flat_map(Generator::elements);
+        let mut all = listed.chain(&self.initiator.elements);
+        all.any(ListedElement::is_stretched)
+    }
 }

@@ -113,6 +113,7 @@ impl Rooted {
                 object = self.drawn(object, outline);
             }
             chain.instances.push(Instance {
+                corners: None,
                 frame,
                 length: frame.stretch(),
                 joined: found.joined || number > 0,

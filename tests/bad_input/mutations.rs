@@ -8,6 +8,7 @@ use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::grow::Growth;
 use kfrac::model::{DrawnError, Model};
+use kfrac::style::ColorBy;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -168,7 +169,7 @@ fn digest(text: &str) -> Result<(), Diagnostics> {
     let source = Source::new("mutated.yaml", text);
     let (model, _) = Document::read(&source, &catalogue)?.resolve(&[])?;
     let growth = Growth::steps(2).max_elements(10_000);
-    match model.drawn_in_space(Some(2), &growth, true) {
+    match model.drawn_in_space(Some(2), &growth, ColorBy::LastMap) {
         None => {}
         Some(Ok(drawn)) => {
             // Neither the limit nor a step of a set in space panics or hangs.

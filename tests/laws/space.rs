@@ -14,6 +14,7 @@ use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
 use kfrac::render::{MeshOptions, Options, write_mesh};
 use kfrac::rule::{Rule, RuleFrame};
+use kfrac::style::ColorBy;
 use proptest::prelude::*;
 
 use super::rules::{self, Features};
@@ -271,7 +272,7 @@ fn rules_of_the_library_in_space_have_their_dimensions_and_are_drawn() {
             );
         }
         let growth = Growth::steps(steps).seed(3);
-        let drawn = model.drawn_in_space(Some(steps), &growth, false);
+        let drawn = model.drawn_in_space(Some(steps), &growth, ColorBy::None);
         let drawn = drawn.unwrap().unwrap();
         assert!(drawn.graph.is_plain(), "{}", entry.name);
         let bounds = drawn.graph.bounds(drawn.steps.unwrap()).unwrap();
@@ -315,7 +316,7 @@ fn a_base_element_of_several_surfaces_is_one_element_and_several_shapes() {
         let elements = elements(&graph, steps, 0).len();
         assert_eq!(elements, 9 * 13_usize.pow(steps));
         let drawn = model
-            .drawn_in_space(Some(steps), &growth, false)
+            .drawn_in_space(Some(steps), &growth, ColorBy::None)
             .unwrap()
             .unwrap();
         let shapes = super::space::elements(&drawn.graph, steps, 0);
@@ -324,5 +325,126 @@ fn a_base_element_of_several_surfaces_is_one_element_and_several_shapes() {
             .filter(|(_, it)| drawn.graph.objects()[it.object].visible);
         assert_eq!(visible.count(), 2 * elements);
         assert!(drawn.graph.tints());
+    }
+}
+
+/// The middles of the cells of a curve, in its order: `middle` is that of the cell of the unit element.
+fn cells(name: &str, steps: u32, middle: DVec3) -> Vec<DVec3> {
+    let graph = of_library(name).graph_in_space(steps).unwrap().unwrap();
+    let all = elements(&graph, steps, 0);
+    let ends = all.iter().map(|(_, element)| element.frame.ends());
+    let ends: Vec<_> = ends.collect();
+    assert!(ends.windows(2).all(|pair| close(pair[0][1], pair[1][0])));
+    all.iter()
+        .map(|(_, element)| element.frame.map().transform_point3(middle))
+        .collect()
+}
+
+/// Hilbert 1891, in space: all 8ⁿ cells once, each in a face with the one before.
+#[test]
+fn the_hilbert_curve_goes_through_all_cells_of_a_cube() {
+    for steps in 0..=4 {
+        let middles = cells("hilbert-in-space", steps, DVec3::new(0.5, 0.5, -0.5));
+        let side = f64::from(1 << steps);
+        let mut found: Vec<[i64; 3]> = { middles.iter() }
+            .map(|middle| {
+                let at = *middle * side - DVec3::new(0.5, 0.5, -0.5);
+                assert!(at.distance(at.round()) < 1e-9, "{at}");
+                #[expect(clippy::cast_possible_truncation, reason = "cells are few")]
+                at.round().to_array().map(|it| it as i64)
+            })
+            .collect();
+        let is_step = |pair: &[[i64; 3]]| {
+            let apart = [0, 1, 2].map(|axis| (pair[1][axis] - pair[0][axis]).abs());
+            apart.iter().sum::<i64>() == 1
+        };
+        assert!(found.windows(2).all(is_step), "step {steps}");
+        found.sort_unstable();
+        found.dedup();
+        assert_eq!(found.len(), 8_usize.pow(steps));
+        let inside = |cell: &[i64; 3]| {
+            let [x, y, z] = cell.map(|it| it.unsigned_abs());
+            x.max(y).max(z) < 1 << steps && cell[0] >= 0 && cell[1] >= 0 && cell[2] <= 0
+        };
+        assert!(found.iter().all(inside), "step {steps}");
+    }
+}
+
+/// The arrowhead passes the tetrahedra of Sierpinski's, each once.
+#[test]
+fn the_arrowhead_goes_through_all_tetrahedra() {
+    let middle = DVec3::new(0.5, 3f64.sqrt() / 6.0, -6f64.sqrt() / 12.0);
+    for steps in 0..=5 {
+        let own = cells("arrowhead-in-space", steps, middle);
+        let model = model(&format!(
+            "space: 3\ninitiator: [{{face: [[0, 0, 0], [1, 0, 0], [1/2, 0, sqrt(3)/2]]}}]\ngenerator:\n{TETRIX}"
+        ));
+        let graph = model.graph_in_space(steps).unwrap().unwrap();
+        let tetrix = elements(&graph, steps, 0);
+        assert_eq!(own.len(), tetrix.len());
+        let mut names = [
+            own,
+            { tetrix.iter() }
+                .map(|(_, element)| element.frame.map().transform_point3(middle))
+                .collect(),
+        ];
+        let names = names.each_mut().map(|middles| {
+            #[expect(clippy::cast_possible_truncation, reason = "cells are few")]
+            let names = middles
+                .iter()
+                .map(|it| (*it * 1e6).round().to_array().map(|it| it as i64));
+            let mut names: Vec<[i64; 3]> = names.collect();
+            names.sort_unstable();
+            names
+        });
+        assert_eq!(names[0], names[1], "step {steps}");
+    }
+}
+
+const TETRIX: &str = "  connected: false
+  elements:
+    - {from: [0, 0, 0], to: [1/2, 0, 0]}
+    - {from: [1/2, 0, 0], to: [1, 0, 0]}
+    - {from: [1/4, sqrt(3)/4, 0], to: [3/4, sqrt(3)/4, 0]}
+    - {from: [1/4, sqrt(3)/12, -sqrt(6)/6], to: [3/4, sqrt(3)/12, -sqrt(6)/6]}
+";
+
+/// A draw by edge depends on the edge alone: not on the element that draws it, its order or its steps.
+#[test]
+fn draws_belong_to_edges() {
+    // Two triangles on both sides of an edge, which they list in opposite directions and in other places.
+    let rule = |others: &str| {
+        read_in_space(&format!(
+            "space: 3\ninitiator:\n  - {{corners: [[0, 0, 0], [1, 0, 0], [1/2, 1, 0]]}}\n  \
+             - {{corners: [[1/2, -1, 0], [1, 0, 0], [0, 0, 0]]}}\n{others}generator:\n  random:\n    \
+             lift: by_edge(uniform(-1, 1))\n    own: uniform(-1, 1)\n  elements:\n    \
+             - {{from: [0, 0, 0], to: [1/2, lift_01, own]}}\n    \
+             - {{from: [0, 0, 0], to: [1/2, lift_12, own]}}\n    - {{from: [0, 0, 0], to: [1/2, lift_20, own]}}\n\
+             base_element: triangle-tile\n"
+        ))
+    };
+    let drawn = |rule: &Arc<Rule<Frame3>>, seed: u64, element: usize| {
+        let graph = Graph::compile(rule, 1).unwrap();
+        let all = elements(&graph, 1, seed);
+        let frames = rule.initiator().elements.iter();
+        let parent = frames.map(|it| Frame3::placed(it, rule.initiator_points()));
+        let back = parent.collect::<Vec<_>>()[element].map().inverse();
+        [0, 1, 2].map(|edge: usize| {
+            let [_, to] = all[3 * element + edge].1.frame.ends();
+            back.transform_point3(to)
+                .to_array()
+                .map(|it| (it * 1e9).round())
+        })
+    };
+    for seed in 0..20 {
+        let plain = rule("");
+        let [above, below] = [0, 1].map(|element| drawn(&plain, seed, element));
+        // Edge 0 of the one is edge 1 of the other.
+        assert_eq!(above[0][1], below[1][1]);
+        assert_ne!(above[0][1], above[1][1]);
+        assert_ne!(above[0][2], below[1][2]);
+        // Further elements change nothing.
+        let more = rule("  - {corners: [[5, 0, 0], [6, 0, 0], [5, 1, 0]]}\n");
+        assert_eq!(drawn(&more, seed, 1), below);
     }
 }

@@ -253,7 +253,7 @@ fn surfaces_of_an_element_are_a_closed_mesh() {
                 {points: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], color: blue}]}}";
     let model = common::document_of(text).resolve(&[]).unwrap().0;
     let growth = kfrac::grow::Growth::steps(1);
-    let drawn = { model.drawn_in_space(Some(1), &growth, false) }
+    let drawn = { model.drawn_in_space(Some(1), &growth, ColorBy::None) }
         .unwrap()
         .unwrap();
     let steps = drawn.steps.unwrap();

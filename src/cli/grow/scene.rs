@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::render::{self, MeshOptions, Size, Unit, write_mesh, write_scene};
-use crate::style::{ColorBy, Named};
+use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::picture::named;
@@ -56,8 +56,9 @@ pub(super) fn write(
         let message = format!("a .{extension} holds the elements of a step: give --steps");
         return Err(Failure::Usage(message));
     };
-    let style = picture.style(metadata);
-    let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
+    let mut style = picture.style(metadata);
+    let drawn = loaded.drawn_in_space(Some(steps), style.color_by)?;
+    drawn.colour(&mut style);
     let graph = drawn.graph;
     let levels = drawn.steps.unwrap_or(steps);
     let own = [("steps", steps.to_string())];

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 
 use crate::grow::Progress;
+use crate::model::for_pixels;
 use crate::render::space::{SpacePicture, pixels_in_space};
 use crate::render::{self, Detail, Picture, Unit};
 use crate::style::Named;
@@ -43,7 +44,7 @@ pub(super) fn draw(
     let steps = arguments
         .steps
         .or(metadata.steps.filter(|_| arguments.detail.is_none()));
-    let options = render::Options {
+    let mut options = render::Options {
         format: render::Format::Png,
         style,
         view: arguments.picture.view(metadata),
@@ -64,7 +65,8 @@ pub(super) fn draw(
     let quiet = arguments.growth.quiet;
     let space = arguments.space.to_options(&loaded.model.space_view())?;
     let space = space.keeps_depths(arguments.depth.is_some());
-    let drawn = loaded.drawn_in_space(steps, false)?;
+    let drawn = loaded.drawn_in_space(steps, for_pixels(options.style.color_by))?;
+    drawn.colour(&mut options.style);
     let graph = drawn.graph;
     if let Some(game) = game {
         if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {

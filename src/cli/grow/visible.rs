@@ -6,7 +6,7 @@ use anyhow::anyhow;
 
 use crate::render::space::write_visible;
 use crate::render::{self, Format};
-use crate::style::{ColorBy, Named};
+use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
@@ -48,11 +48,12 @@ pub(super) fn draw(
         }
     }
     let metadata = loaded.model.metadata();
-    let style = picture.style_in(metadata, size.unit);
+    let mut style = picture.style_in(metadata, size.unit);
     let graph = loaded.in_space(arguments.steps)?;
     let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
     let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
-    let drawn = loaded.drawn_in_space(Some(steps), style.color_by == ColorBy::LastMap)?;
+    let drawn = loaded.drawn_in_space(Some(steps), style.color_by)?;
+    drawn.colour(&mut style);
     let (graph, levels) = (drawn.graph, drawn.steps.unwrap_or(steps));
     growth.check(levels, &graph, loaded)?;
     let space = arguments.space.to_options(&loaded.model.space_view())?;

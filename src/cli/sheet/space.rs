@@ -8,7 +8,7 @@ use anyhow::anyhow;
 use crate::figure::sheet::{SpaceCell, write_in_space};
 use crate::geometry::Frame3;
 use crate::graph::Graph;
-use crate::model::DrawnInSpace;
+use crate::model::{self, DrawnInSpace};
 use crate::render::{self, Format};
 use crate::style::Named;
 
@@ -38,8 +38,10 @@ impl Arguments {
                 (0..=last.min(steps::MAX_CELLS - 1)).map(Some).collect()
             }
         };
+        let mut options = self.options_in_space(family, &all);
+        let by = model::for_pixels(options.style.color_by);
         let drawn = { family.iter() }
-            .flat_map(|(_, loaded)| { all.iter() }.map(|step| loaded.drawn_in_space(*step, false)));
+            .flat_map(|(_, loaded)| { all.iter() }.map(|step| loaded.drawn_in_space(*step, by)));
         let drawn: Vec<DrawnInSpace> = drawn.collect::<Result<_, Failure>>()?;
         let mut cells = Vec::new();
         for (number, (member, graph)) in graphs.iter().enumerate() {
@@ -64,7 +66,7 @@ impl Arguments {
                 }
             }
         }
-        let options = self.options_in_space(family, &all);
+        { drawn.iter() }.for_each(|drawn| drawn.colour(&mut options.style));
         let default = self.rule.file("-sheet", "png");
         let path = self.output.as_ref().unwrap_or(&default);
         let (written, bytes) = output::write(path, self.growth.quiet, |mut out, _| {

@@ -215,6 +215,7 @@ impl Leveller<'_> {
         let paint = Paint::of(&self.effects.system, part.attributes, colour);
         let object = self.object(ObjectKey { of, paint })?;
         Ok(Instance {
+            corners: None,
             joined: part.joined,
             ..Instance::new(object, frame, part.position)
         })

@@ -66,6 +66,7 @@ impl Shape {
             };
             let [from, to] = link.ends;
             Some(Instance {
+                corners: None,
                 frame: Frame2::between(from, to, direction),
                 length: from.distance(to),
                 joined: link.joined,

@@ -67,6 +67,7 @@ impl Words {
             };
             let frame = part.pose.frame(effects.compass, steps, written.unit);
             production.body.instances.push(Instance {
+                corners: None,
                 joined: part.joined,
                 ..Instance::new(object, frame, part.position)
             });

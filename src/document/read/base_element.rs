@@ -33,7 +33,8 @@ mapping! {
         "In space, a solid by its name. Polyhedra have edges of length 1 and lie behind the face that runs from [0, 0, 0] \
          to [1, 0, 0], and round solids about the element.";
     width: Option<WrittenNumber> = Form::Positive,
-        "The width of a cylinder, a cone or a bar about the element.";
+        "The width of a cylinder, a cone or a bar about the element, or of the tubes that lines are; that of the style, if \
+         left out and relative to the element.";
     solids: Option<Vec<ShapeDocument>> = Form::List(&Form::Mapping(&SET), 1, None),
         "In space, sets: boxes, spheres, meshes and others.";
     from: Option<WrittenPoint> = Form::Place,
@@ -164,11 +165,12 @@ fn check(reader: &mut Reader, document: &BaseElementDocument, node: &Node) {
         reader.error_with_hint(&name.place, format!("'{}' is no solid", name.value), hint);
     }
     let is_thick = { document.solid.as_ref() }
-        .is_some_and(|name| ["cylinder", "cone", "bar"].contains(&name.value.as_str()));
+        .is_some_and(|name| ["cylinder", "cone", "bar"].contains(&name.value.as_str()))
+        || document.lines.is_some();
     if let Some(width) = &document.width
         && !is_thick
     {
-        let message = "only a cylinder, a cone and a bar have a width";
+        let message = "only lines, a cylinder, a cone and a bar have a width";
         reader.error_with_hint(&width.place, message, "{solid: bar, width: 0.1}");
     }
 }

@@ -24,6 +24,12 @@ mapping! {
         "In space, in place of `from`, `to` and `normal`: a polygon, counter-clockwise from outside. The element runs \
          from its first point to the second, with its normal; the polygon must be similar to the first surface of the \
          base element.";
+    corners: Option<Vec<WrittenPoint>> = Form::List(&Form::Place, 3, Some(3)),
+        "In space, in place of `face`: three points, to which an affine map takes the first three corners of the base \
+         element, or (0, 0, 0), (1, 0, 0) and (0, 1, 0). They may be any triangle.";
+    up: Option<WrittenPoint> = Form::Place,
+        "Beside `corners`: the vector to which the map takes [0, 0, 1]; across the corners and as long as their first \
+         side, if left out.";
     normal: Option<WrittenPoint> = Form::Place,
         "In space, the direction to which the front of the element's surface points, [0, 0, 1] in its own frame. If \
          left out, the frame is turned as little as possible from the x axis to the element.";
@@ -54,10 +60,14 @@ impl Listed {
     }
 }
 
-const ALTERNATIVES: [KeySet; 3] = [
-    alternative(&["to"], &["face", "roll"]),
-    alternative(&["to"], &["face", "normal"]),
-    alternative(&["face"], &["from", "to", "normal", "roll"]),
+const ALTERNATIVES: [KeySet; 4] = [
+    alternative(&["to"], &["face", "corners", "up", "roll"]),
+    alternative(&["to"], &["face", "corners", "up", "normal"]),
+    alternative(
+        &["face"],
+        &["from", "to", "corners", "up", "normal", "roll"],
+    ),
+    alternative(&["corners"], &["from", "to", "face", "normal", "roll"]),
 ];
 
 /// A list of elements.
@@ -154,10 +164,10 @@ fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
     }
 }
 
-/// Reads an element with attributes; its face, if there is one, becomes its ends.
+/// Reads an element with attributes; its face or its corners, if there are any, become its ends.
 fn read_listed(reader: &mut Reader, node: &Node) -> Option<Listed> {
     let mut listed = Listed::from_node(reader, node)?;
-    for key in ["face", "normal", "roll"] {
+    for key in ["face", "corners", "up", "normal", "roll"] {
         only_in_space(reader, node, key);
     }
     if let (Some(_), Some(roll)) = (&listed.normal, &listed.roll) {
@@ -168,30 +178,46 @@ fn read_listed(reader: &mut Reader, node: &Node) -> Option<Listed> {
             "either of them turns the frame about the element",
         );
     }
-    let Some(face) = &listed.face else {
-        if listed.to.is_none() {
-            let message = "this element has no end point";
-            reader.error_with_hint(&node.place.first_line(), message, ELEMENT.hint);
+    let (name, polygon) = match (&listed.face, &listed.corners) {
+        (Some(face), _) => ("face", face),
+        (None, Some(corners)) => ("corners", corners),
+        (None, None) => {
+            if listed.to.is_none() {
+                let message = "this element has no end point";
+                reader.error_with_hint(&node.place.first_line(), message, ELEMENT.hint);
+            }
+            if let Some(up) = &listed.up {
+                let message = "`up` goes with `corners`";
+                let hint = "the front of other elements is given by `normal`";
+                reader.error_with_hint(&up.place, message, hint);
+            }
+            return Some(listed);
         }
-        return Some(listed);
     };
-    for key in ["from", "to", "normal", "roll"] {
-        if let Some(node) = node.get(key) {
-            let message = format!("`{key}` does not go with `face`");
-            let hint = "a face has its own ends, its first two points, and its own normal";
+    for key in ["from", "to", "corners", "up", "normal", "roll"] {
+        if let Some(node) = node.get(key)
+            && (name == "face" || !matches!(key, "corners" | "up"))
+        {
+            let message = format!("`{key}` does not go with `{name}`");
+            let hint =
+                "its first two points are the ends of the element, and all say how it is turned";
             reader.error_with_hint(&node.place, message, hint);
         }
     }
-    match face.as_slice() {
-        [from, to, _, ..] => {
-            listed.from = Some(from.clone());
-            listed.to = Some(to.clone());
+    let place = || node.get(name).map_or(&node.place, |node| &node.place);
+    match polygon.as_slice() {
+        [from, to, _, more @ ..] if name == "face" || more.is_empty() => {
+            let ends = [from, to].map(Clone::clone);
+            [listed.from, listed.to] = ends.map(Some);
         }
         _ => {
-            let message = format!("a face has three points or more, not {}", face.len());
-            let hint = "face: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]";
-            let place = node.get("face").map_or(&node.place, |node| &node.place);
-            reader.error_with_hint(place, message, hint);
+            let (points, more) = match name {
+                "face" => ("a face has", " or more"),
+                _ => ("`corners` are", ""),
+            };
+            let message = format!("{points} three points{more}, not {}", polygon.len());
+            let hint = format!("{name}: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]");
+            reader.error_with_hint(place(), message, hint);
         }
     }
     Some(listed)

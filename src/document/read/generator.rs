@@ -25,7 +25,8 @@ pub(in crate::document) const GENERATOR: Shape = Shape {
              that seed.";
         random: Form::Names(&Form::Expression, 0),
             "Variables that are drawn anew for every element that is replaced: `uniform(a, b)`, \
-             `normal(mean, deviation)` or `choice(a, b, ...)`.";
+             `normal(mean, deviation)` or `choice(a, b, ...)`. In space, `NAME: by_edge(normal(0, 1))` is drawn for each \
+             edge, and neighbours draw the same: NAME_01, NAME_12, NAME_20.";
         move: Form::Either(&[Form::Mapping(&MOVE), Form::List(&Form::Mapping(&MOVE), 0, None)]),
             "Moves points of the generator: one move, or a list of moves that act one after the other.";
         connected: Form::Flag(true), "Whether elements join each other at all; beside `elements` only.";

@@ -2,13 +2,14 @@
 
 use crate::document::RuleDocument;
 use crate::draws::Path;
-use crate::geometry::{Bounds, DAffine2, DVec2, Frame2};
-use crate::rule::{ElementContext, Rule, Selection};
+use crate::geometry::{Bounds, DAffine2, DVec2, Point as _};
+use crate::rule::{ElementContext, ListedElement, Rule, Selection};
 
 use super::super::text::Font;
 use super::block::{Block, BlockItem, Outline};
 use super::page::{WORDS, shortened};
-use super::panel::{Common, Extent, Panel};
+use super::panel::{Common, Extent, Panel, Shape};
+use super::shown::ShownFrame;
 use super::{ink, lines, words};
 
 /// Width of text beside generators, in pixels.
@@ -20,17 +21,24 @@ const MAX_LINES: usize = 40;
 const DRAWS: u32 = 6;
 
 /// Returns the block of the initiator.
-pub(super) fn initiator(rule: &Rule, common: &Common<'_>) -> Block {
+pub(super) fn initiator<F: ShownFrame>(
+    rule: &Rule<F>,
+    common: &Common<'_>,
+    view: F::View,
+) -> Block {
+    let points = rule.initiator_points();
     let panel = Panel {
         parts: std::slice::from_ref(rule.initiator()),
-        points: rule.initiator_points().to_vec(),
+        points: points.iter().map(|it| F::seen(*it, view)).collect(),
+        shapes: shapes(rule, rule.initiator().elements.iter(), points, view),
         draws: Vec::new(),
         named: Vec::new(),
-        replaces: false,
+        replaced: None,
         common,
     };
     let mut bounds = Bounds::EMPTY;
-    panel.points.iter().for_each(|&point| bounds.add(point));
+    let ends = { rule.initiator().elements.iter() }.flat_map(|element| [element.from, element.to]);
+    ends.for_each(|end| bounds.add(panel.points[end]));
     panel.block(Extent {
         unit: 130.0 / bounds.size().max_element(),
         most: DVec2::splat(240.0),
@@ -38,7 +46,12 @@ pub(super) fn initiator(rule: &Rule, common: &Common<'_>) -> Block {
 }
 
 /// Returns the block of the generators, below each other, between the selection and their descriptions.
-pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'_>) -> Block {
+pub(super) fn generators<F: ShownFrame>(
+    rule: &Rule<F>,
+    document: &RuleDocument,
+    common: &Common<'_>,
+    view: F::View,
+) -> Block {
     let font = &common.font;
     let several = rule.generators().len() > 1;
     let mut panels = Vec::new();
@@ -52,14 +65,17 @@ pub(super) fn generators(rule: &Rule, document: &RuleDocument, common: &Common<'
             let (mut scratch, mut points) = (Vec::new(), Vec::new());
             let path = Path::of_seed(0).child(draw);
             generator.evaluate(&moment, path, &mut scratch, &mut points);
-            points
+            points.iter().map(|it| F::seen(*it, view)).collect()
         });
+        let points = generator.typical(&moment);
+        let side = [0.0, 1.0].map(|x| F::Point::of_coordinates([x, 0.0, 0.0]));
         let panel = Panel {
             parts: generator.parts(),
-            points: generator.typical(&moment),
+            points: points.iter().map(|it| F::seen(*it, view)).collect(),
+            shapes: shapes(rule, generator.elements(), &points, view),
             draws: draws.collect(),
             named: description.named,
-            replaces: true,
+            replaced: Some(side.map(|end| F::seen(end, view))),
             common,
         };
         let mut drawn = panel.block(Extent {
@@ -101,7 +117,7 @@ fn paragraphs(lines: &[String], font: &Font) -> Block {
 
 /// Returns the first moment at which a generator is selected and all of its points are finite, or else the
 /// first at which they are finite.
-fn moment(rule: &Rule, generator: usize) -> ElementContext {
+fn moment<F: ShownFrame>(rule: &Rule<F>, generator: usize) -> ElementContext {
     let at = |step: u32, index: u32| ElementContext {
         index: index.into(),
         age: step.into(),
@@ -122,11 +138,27 @@ fn moment(rule: &Rule, generator: usize) -> ElementContext {
     found.unwrap_or(at(0, 1))
 }
 
+/// Returns the base elements in the places of elements, as seen.
+fn shapes<'a, F: ShownFrame>(
+    rule: &Rule<F>,
+    elements: impl Iterator<Item = &'a ListedElement>,
+    points: &[F::Point],
+    view: F::View,
+) -> Vec<Shape> {
+    let turned = |element: &ListedElement| {
+        let base = &rule.base_elements()[element.base_element];
+        F::shape(element, points, base, view)
+    };
+    elements.map(turned).collect()
+}
+
 /// Returns the block of the base elements, each over the line between its ends.
-pub(super) fn base_elements(common: &Common<'_>) -> Block {
-    let blocks = common.base_elements.iter().map(|base| {
-        let mut bounds = Bounds::new(DVec2::ZERO, DVec2::X);
-        base.add_to(&mut bounds, &Frame2::UNIT, 0.0);
+pub(super) fn base_elements<F: ShownFrame>(rule: &Rule<F>, view: F::View) -> Block {
+    let side = [0.0, 1.0].map(|x| F::seen(F::Point::of_coordinates([x, 0.0, 0.0]), view));
+    let blocks = rule.base_elements().iter().map(|base| {
+        let shape = F::alone(base, view);
+        let mut bounds = shape.bounds;
+        { side.iter().chain(shape.normal.iter().flatten()) }.for_each(|&end| bounds.add(end));
         let unit = (110.0 / bounds.size().x)
             .min(140.0 / bounds.size().y)
             .min(96.0);
@@ -134,18 +166,26 @@ pub(super) fn base_elements(common: &Common<'_>) -> Block {
         let map = DAffine2::from_translation(pad)
             * DAffine2::from_scale(DVec2::new(unit, -unit))
             * DAffine2::from_translation(-DVec2::new(bounds.min().x, bounds.max().y));
-        let ends = [DVec2::ZERO, DVec2::X].map(|end| map.transform_point2(end));
-        let outline = lines::outline(base).transformed(&map);
-        let rings = ends.map(|end| Outline::circle(end, 4.6));
-        let mut items = vec![BlockItem::Path(
-            vec![outline],
-            ink::base_element(base.is_closed()),
-            None,
-        )];
-        if !base.is_line() {
+        let ends = side.map(|end| map.transform_point2(end));
+        let mut items = Vec::new();
+        if !F::is_line(base) {
             let side = Outline::line(ends[0], ends[1]);
-            items.insert(0, BlockItem::Path(vec![side], ink::side(), None));
+            items.push(BlockItem::Path(vec![side], ink::side(), None));
         }
+        for outline in &shape.outlines {
+            let paint = ink::base_element(outline.closed);
+            items.push(BlockItem::Path(
+                vec![outline.transformed(&map)],
+                paint,
+                None,
+            ));
+        }
+        if let Some(normal) = shape.normal {
+            let arrow = lines::arrow(normal.map(|end| map.transform_point2(end)));
+            let paint = ink::normal(ink::ElementRole::Fertile.colour());
+            items.push(BlockItem::Path(arrow.into(), paint, None));
+        }
+        let rings = ends.map(|end| Outline::circle(end, 4.6));
         items.push(BlockItem::Path(rings.into(), ink::side_end(), None));
         Block {
             size: bounds.size() * unit + 2.0 * pad,

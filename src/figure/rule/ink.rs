@@ -107,6 +107,11 @@ pub(super) fn hairline() -> Paint {
     stroke(of([140; 3], 170), pen)
 }
 
+/// Returns the line of the normal of an element.
+pub(super) fn normal(colour: Colour) -> Paint {
+    stroke(colour, Pen { width: 1.0, ..PEN })
+}
+
 /// Returns the strokes of an asterisk.
 pub(super) fn asterisk(colour: Colour, size: f64) -> Paint {
     let pen = Pen {

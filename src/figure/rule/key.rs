@@ -9,11 +9,17 @@ use super::block::{Block, BlockItem, Outline};
 use super::ink::{self, ElementRole};
 use super::page::SMALL;
 use super::panel::MAX_MARKS;
-use super::{marks, words};
+use super::shown::ShownFrame;
+use super::{lines, marks, words};
 
 /// Returns samples of the lines that occur, each with its meaning, for all components or for those of one
 /// shelf.
-pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) -> Block {
+pub(super) fn key<F: ShownFrame>(
+    rule: &Rule<F>,
+    alone: Option<Shelf>,
+    font: &Font,
+    width: f64,
+) -> Block {
     let (from, to) = (DVec2::new(1.0, 8.0), DVec2::new(31.0, 8.0));
     let line = || vec![Outline::line(from, to)];
     let mut entries: Vec<(Vec<BlockItem>, &str)> = Vec::new();
@@ -59,6 +65,14 @@ pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) ->
     } else if is_shown(Shelf::BaseElements) {
         entries.push((vec![side, ends], "the element that is drawn so"));
     }
+    if rule.base_elements().iter().any(F::has_front) {
+        let arrow = lines::arrow([from, to]);
+        let paint = ink::normal(ElementRole::Fertile.colour());
+        entries.push((
+            vec![BlockItem::Path(arrow.into(), paint, None)],
+            "normal of the front",
+        ));
+    }
     let blocks = entries.into_iter().map(|(items, meaning)| {
         let sample = Block {
             size: DVec2::new(34.0, 16.0),
@@ -71,7 +85,7 @@ pub(super) fn key(rule: &Rule, alone: Option<Shelf>, font: &Font, width: f64) ->
 }
 
 /// Returns the notes below the figure: directions, parameters, random functions, and missing marks.
-pub(super) fn notes(rule: &Rule) -> Vec<String> {
+pub(super) fn notes<F: ShownFrame>(rule: &Rule<F>) -> Vec<String> {
     let mut notes = Vec::new();
     let elements = rule.generators().iter().flat_map(|it| it.elements());
     let elements: Vec<_> = elements.chain(&rule.initiator().elements).collect();

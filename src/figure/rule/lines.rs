@@ -12,9 +12,9 @@ impl Panel<'_> {
     pub(super) fn lines(&self, drawn: &[PanelElement<'_>], map: &DAffine2) -> Vec<BlockItem> {
         let place = |point: DVec2| map.transform_point2(point);
         let mut items = Vec::new();
-        let covers = |it: &PanelElement<'_>| it.ends == [DVec2::ZERO, DVec2::X];
-        if self.replaces && !drawn.iter().any(covers) {
-            let side = Outline::line(place(DVec2::ZERO), place(DVec2::X));
+        let ends = self.replaced;
+        if let Some([from, to]) = ends.filter(|side| !drawn.iter().any(|it| it.ends == *side)) {
+            let side = Outline::line(place(from), place(to));
             items.push(BlockItem::Path(vec![side], ink::side(), None));
         }
         // The kinds and visibilities that occur, in order of first occurrence.
@@ -43,7 +43,7 @@ impl Panel<'_> {
         }
         for &style in &styles {
             for closed in [true, false] {
-                let outlines = of(style).filter_map(|element| self.outline(element));
+                let outlines = of(style).flat_map(|element| &element.shape.outlines);
                 let outlines = outlines.filter(|outline| outline.closed == closed);
                 let outlines: Vec<_> = outlines.map(|it| it.transformed(map)).collect();
                 if !outlines.is_empty() {
@@ -71,8 +71,17 @@ impl Panel<'_> {
             let paint = ink::dots(style.0.colour(), 4.6);
             items.push(BlockItem::Path(dots, paint, None));
         }
-        if self.replaces {
-            let rings = [DVec2::ZERO, DVec2::X].map(|end| Outline::circle(place(end), 4.6));
+        for &style in &styles {
+            let normals = of(style).filter_map(|element| element.shape.normal);
+            let arrows: Vec<_> = { normals }
+                .flat_map(|ends| arrow(ends.map(place)))
+                .collect();
+            if !arrows.is_empty() {
+                items.push(BlockItem::Path(arrows, ink::normal(style.0.colour()), None));
+            }
+        }
+        if let Some(side) = self.replaced {
+            let rings = side.map(|end| Outline::circle(place(end), 4.6));
             items.push(BlockItem::Path(rings.into(), ink::side_end(), None));
         }
         items
@@ -86,6 +95,20 @@ pub(super) fn outline(base: &BaseElement) -> Outline {
         pieces: base.pieces().to_vec(),
         closed: base.is_closed(),
     }
+}
+
+/// Returns an arrow from one point to another: its shaft and its head.
+pub(super) fn arrow([foot, tip]: [DVec2; 2]) -> [Outline; 2] {
+    const SIZE: f64 = 4.5;
+    let along = (tip - foot).normalize_or_zero();
+    let size = SIZE.min(foot.distance(tip) / 2.0);
+    let (back, aside) = (tip - along * size, along.perp() * 0.6 * size);
+    let head = Outline {
+        start: back + aside,
+        pieces: vec![Piece::Line(tip), Piece::Line(back - aside)],
+        closed: false,
+    };
+    [Outline::line(foot, tip), head]
 }
 
 /// Returns an open arrowhead behind the middle of an element; `None` if the element is too short.

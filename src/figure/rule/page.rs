@@ -8,6 +8,7 @@ use crate::rule::Rule;
 use super::super::text::Font;
 use super::block::{Block, BlockItem, Outline};
 use super::panel::{self, Common};
+use super::shown::ShownFrame;
 use super::{components, ink, key};
 
 /// Font size of the title, in pixels.
@@ -32,17 +33,18 @@ const MIN_COLUMN: f64 = 96.0;
 const MAX_CHARACTERS: usize = 600;
 
 /// Lays out a rule, or the components of one shelf, under a title.
-pub(super) fn page(
-    rule: &Rule,
+pub(super) fn page<F: ShownFrame>(
+    rule: &Rule<F>,
     document: &RuleDocument,
     alone: Option<Shelf>,
+    view: F::View,
     title: &str,
 ) -> Block {
     let lists = rule.generators().iter().map(|generator| generator.parts());
     let mut lists = lists.chain([std::slice::from_ref(rule.initiator())]);
     let common = Common {
         font: Font::new(),
-        base_elements: rule.base_elements(),
+        closed: rule.base_elements().iter().map(F::is_closed).collect(),
         names: rule.generators().iter().map(|it| it.name()).collect(),
         directions: lists.any(panel::has_directions),
     };
@@ -51,15 +53,16 @@ pub(super) fn page(
     let is_shown = |shelf| alone.is_none_or(|alone| alone == shelf);
     let mut columns = Vec::new();
     if is_shown(Shelf::Initiators) {
-        columns.push(("initiator", components::initiator(rule, &common)));
+        columns.push(("initiator", components::initiator(rule, &common, view)));
     }
     if is_shown(Shelf::Generators) {
         let heading = plural(generators, "generator", "generators");
-        columns.push((heading, components::generators(rule, document, &common)));
+        let generators = components::generators(rule, document, &common, view);
+        columns.push((heading, generators));
     }
     if is_shown(Shelf::BaseElements) {
         let heading = plural(bases, "base element", "base elements");
-        columns.push((heading, components::base_elements(&common)));
+        columns.push((heading, components::base_elements(rule, view)));
     }
     let source = rule.description().source.as_deref().unwrap_or_default();
     let key = |width| key::key(rule, alone, font, width);

@@ -1,12 +1,12 @@
 //! Panels: a list of elements in place, the initiator or a generator over the side that it replaces.
 
-use crate::geometry::{Bounds, DAffine2, DVec2, Direction, Frame2};
-use crate::rule::{BaseElement, ListedElement, Part};
+use crate::geometry::{Bounds, DAffine2, DVec2, Direction};
+use crate::rule::{ListedElement, Part};
 
 use super::super::text::Font;
 use super::block::{Block, Outline};
 use super::ink::ElementRole;
-use super::lines::{arrowhead, flattened, outline};
+use super::lines::{arrowhead, flattened};
 use super::marks::{self, Anchor, Mark, Obstacle};
 
 /// Limit of the number of elements that are drawn with marks.
@@ -15,23 +15,46 @@ pub(super) const MAX_MARKS: usize = 400;
 /// Limit of the coordinates that are drawn.
 const FARTHEST: f64 = 1e100;
 
+/// Base element in the place of an element, as seen.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// Outlines, from the back to the front; none for one that is just the element's line.
+    pub(super) outlines: Vec<Outline>,
+    pub(super) bounds: Bounds,
+    /// Foot and tip of an arrow along the normal of the front, in space.
+    pub(super) normal: Option<[DVec2; 2]>,
+}
+
+impl Shape {
+    /// Nothing beside the line of an element.
+    pub(super) const NONE: Self = Self {
+        outlines: Vec::new(),
+        bounds: Bounds::EMPTY,
+        normal: None,
+    };
+}
+
 /// Content of a panel, in the units of the rule.
 pub(super) struct Panel<'a> {
     pub(super) parts: &'a [Part],
+    /// Points as seen.
     pub(super) points: Vec<DVec2>,
+    /// Base elements in the places of the elements, in the order of listing across parts.
+    pub(super) shapes: Vec<Shape>,
     /// Points of other draws.
     pub(super) draws: Vec<Vec<DVec2>>,
     /// Indices of the points that are labelled with their numbers.
     pub(super) named: Vec<usize>,
-    /// Whether the side from (0, 0) to (1, 0), which a generator replaces, is drawn.
-    pub(super) replaces: bool,
+    /// Ends of the side that a generator replaces.
+    pub(super) replaced: Option<[DVec2; 2]>,
     pub(super) common: &'a Common<'a>,
 }
 
 /// Data that all panels of a figure share.
 pub(super) struct Common<'a> {
     pub(super) font: Font,
-    pub(super) base_elements: &'a [BaseElement],
+    /// Whether each base element is closed.
+    pub(super) closed: Vec<bool>,
     /// Names of the generators, for elements that name theirs.
     pub(super) names: Vec<&'a str>,
     /// Whether elements are labelled with their directions.
@@ -50,6 +73,7 @@ pub(super) struct Extent {
 /// A drawable element.
 pub(super) struct PanelElement<'a> {
     pub(super) element: &'a ListedElement,
+    pub(super) shape: &'a Shape,
     pub(super) kind: ElementRole,
     pub(super) ends: [DVec2; 2],
     /// Whether the element has an arrowhead.
@@ -72,7 +96,7 @@ const ATTEMPTS: [(f64, f64); 9] = [
 /// Factors where every attempt leaves marks that cover something.
 const LAST_ATTEMPT: (f64, f64) = (2.0, 0.6);
 
-impl<'a> Panel<'a> {
+impl Panel<'_> {
     /// Draws the panel.
     pub(super) fn block(&self, extent: Extent) -> Block {
         let drawn = self.drawn();
@@ -110,20 +134,22 @@ impl<'a> Panel<'a> {
     }
 
     /// Returns the elements whose ends can be drawn.
-    fn drawn(&self) -> Vec<PanelElement<'a>> {
+    fn drawn(&self) -> Vec<PanelElement<'_>> {
         let mut drawn = Vec::new();
+        let mut shapes = self.shapes.iter();
         for part in self.parts {
             let polygons = part
                 .elements
                 .iter()
-                .any(|element| self.base(element).is_closed());
+                .any(|element| self.common.closed[element.base_element]);
             let chain = part.elements.iter().skip(1).all(|element| element.joined);
             let all = self.common.directions || polygons || !chain;
-            for (number, element) in part.elements.iter().enumerate() {
+            for ((number, element), shape) in part.elements.iter().enumerate().zip(&mut shapes) {
                 let ends = [self.points[element.from], self.points[element.to]];
                 if ends.into_iter().all(can_be_drawn) {
                     drawn.push(PanelElement {
                         element,
+                        shape,
                         kind: ElementRole::of(element.fertile, part.placement.seeds()),
                         ends,
                         arrow: all || number == 0,
@@ -134,34 +160,17 @@ impl<'a> Panel<'a> {
         drawn
     }
 
-    fn base(&self, element: &ListedElement) -> &'a BaseElement {
-        &self.common.base_elements[element.base_element]
-    }
-
-    /// Returns the outline of a visible element's base element, unless it is just the element's line.
-    pub(super) fn outline(&self, drawn: &PanelElement<'_>) -> Option<Outline> {
-        let base = self.base(drawn.element);
-        if base.is_line() || !drawn.element.visible || drawn.ends[0] == drawn.ends[1] {
-            return None;
-        }
-        let [from, to] = drawn.ends;
-        let frame = Frame2::between(from, to, drawn.element.direction);
-        Some(outline(base).transformed(frame.map()))
-    }
-
     fn bounds(&self, drawn: &[PanelElement<'_>]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        if self.replaces || drawn.is_empty() {
-            bounds.add(DVec2::ZERO);
-            bounds.add(DVec2::X);
+        let side = self.replaced.unwrap_or([DVec2::ZERO, DVec2::X]);
+        if self.replaced.is_some() || drawn.is_empty() {
+            side.into_iter().for_each(|end| bounds.add(end));
         }
         for element in drawn {
             element.ends.iter().for_each(|&end| bounds.add(end));
-            let [from, to] = element.ends;
-            if self.outline(element).is_some() {
-                let frame = Frame2::between(from, to, element.element.direction);
-                self.base(element.element).add_to(&mut bounds, &frame, 0.0);
-            }
+            bounds.add_all(&element.shape.bounds);
+            let normal = element.shape.normal.iter().flatten();
+            normal.for_each(|&end| bounds.add(end));
         }
         for kind in ElementRole::ALL {
             for points in &self.draws {
@@ -252,9 +261,12 @@ impl<'a> Panel<'a> {
             let arrow = element.arrow.then(|| arrowhead([from, to])).flatten();
             let legs = arrow.iter().flat_map(flattened);
             obstacles.extend(legs.map(|[from, to]| Obstacle::element(from, to)));
-            if let Some(outline) = self.outline(element) {
+            for outline in &element.shape.outlines {
                 let lines = flattened(&outline.transformed(map));
                 obstacles.extend(lines.map(|ends| Obstacle { ends, cost: 12.0 }));
+            }
+            if let Some([foot, tip]) = element.shape.normal {
+                obstacles.push(Obstacle::element(place(foot), place(tip)));
             }
         }
         let draws = self.draws.iter();
@@ -263,8 +275,8 @@ impl<'a> Panel<'a> {
             ends: ends.map(place),
             cost: 3.0,
         }));
-        if self.replaces {
-            let ends = [place(DVec2::ZERO), place(DVec2::X)];
+        if let Some(side) = self.replaced {
+            let ends = side.map(place);
             obstacles.push(Obstacle { ends, cost: 25.0 });
         }
         obstacles

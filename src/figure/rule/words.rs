@@ -7,7 +7,7 @@ use crate::document::{
 };
 use crate::expression::{Dependence, Expression};
 use crate::metadata::Parameter;
-use crate::rule::{ElementContext, Generator, Placement};
+use crate::rule::{ElementContext, Generator, Placement, RuleFrame};
 
 /// Limit of the number of points that are described one by one.
 const MAX_POINTS: usize = 6;
@@ -44,7 +44,10 @@ pub(super) fn selection(document: &RuleDocument) -> Vec<String> {
 }
 
 /// Describes the shares of a selection by weight, line by line.
-pub(super) fn shares(generators: &[Generator], weights: &[(f64, usize)]) -> Vec<String> {
+pub(super) fn shares<F: RuleFrame>(
+    generators: &[Generator<F>],
+    weights: &[(f64, usize)],
+) -> Vec<String> {
     let total: f64 = weights.iter().map(|(weight, _)| weight).sum();
     let share = |&(weight, generator): &(f64, usize)| {
         let percent = number((1000.0 * weight / total).round() / 10.0);
@@ -65,8 +68,8 @@ pub(super) struct Description {
 }
 
 /// Describes a generator: its random function, the points that depend on the moment, and its seed parts.
-pub(super) fn generator(
-    generator: &Generator,
+pub(super) fn generator<F: RuleFrame>(
+    generator: &Generator<F>,
     document: &GeneratorDocument,
     moment: &ElementContext,
 ) -> Description {
@@ -77,14 +80,23 @@ pub(super) fn generator(
     }
     let slots = ElementContext::NAMES.len() + generator.variables.len();
     let varies = |&number: &usize| {
-        let mut programs = generator.points[number].iter();
+        let mut programs = generator.points[number].as_ref().iter();
         programs.any(|it| (0..slots).any(|slot| it.dependence(slot) != Dependence::None))
     };
-    let varying: Vec<_> = (0..generator.points.len()).filter(varies).collect();
+    // Vectors and angles follow the points.
+    let is_end = |number: &usize| {
+        let mut elements = generator.elements();
+        elements.any(|element| element.from == *number || element.to == *number)
+    };
+    let ends = (0..generator.points.len()).filter(is_end);
+    let varying: Vec<_> = ends.filter(varies).collect();
     for &number in varying.iter().take(MAX_POINTS) {
         let point = &generator.origin.points[number];
-        let (x, y) = (written(&point.x.place), written(&point.y.place));
-        description.lines.push(format!("p{number} = ({x}, {y})"));
+        let mut numbers = vec![&point.x, &point.y];
+        numbers.extend(point.z.as_deref());
+        let numbers: Vec<_> = { numbers.iter() }.map(|it| written(&it.place)).collect();
+        let numbers = numbers.join(", ");
+        description.lines.push(format!("p{number} = ({numbers})"));
         description.named.push(number);
     }
     if let Some(more @ 1..) = varying.len().checked_sub(MAX_POINTS) {
@@ -125,6 +137,7 @@ fn distribution(expression: &Expression) -> String {
         Some(("normal", [mean, deviation])) => {
             format!("normal with mean {mean}, deviation {deviation}")
         }
+        Some(("by_edge", [inner])) => format!("for each edge, {}", distribution(inner)),
         Some((_, values)) => {
             let values: Vec<_> = values.iter().map(ToString::to_string).collect();
             format!("one of {}", values.join(", "))
@@ -200,7 +213,7 @@ fn bound(expression: &Expression) -> String {
 }
 
 /// Describes the seed parts, line by line.
-fn seeds(generator: &Generator) -> Vec<String> {
+fn seeds<F: RuleFrame>(generator: &Generator<F>) -> Vec<String> {
     let parts = generator.parts();
     let mut lines = Vec::new();
     for placement in [Placement::Seeds, Placement::SeedsAsInitiator] {

@@ -11,7 +11,7 @@ use crate::geometry::{BEYOND, DAffine3, DVec3, Frame3, Linear, Mesh, Solid};
 use crate::graph::{Graph, Instance};
 use crate::grow::WalkError;
 use crate::instancing::Appearance;
-use crate::style::{Colour, Style};
+use crate::style::{ColorBy, Colour, Style};
 
 use super::super::colours::Colours;
 use super::super::error::RenderError;
@@ -102,6 +102,10 @@ impl<'g> Nested<'g> {
         cancel: Option<&AtomicBool>,
     ) -> Result<Self, RenderError> {
         refusal::check(graph, style, steps)?;
+        if style.color_by == ColorBy::Normal {
+            // Instances of one object have several.
+            return Err(SpaceError::ColorBy(style.color_by).into());
+        }
         let colours = Colours::of(style, graph, steps)?;
         let start = Aspect {
             // The initiator replaces a virtual object that has one more step.

@@ -205,7 +205,7 @@ impl Visitor<Frame3> for Collector<'_> {
         self.elements += 1;
         let map = element.frame.map();
         let is_mirrored = map.matrix3.determinant() < 0.0;
-        for face in &shape.mesh().faces {
+        for (number, face) in shape.mesh().faces.iter().enumerate() {
             let from = self.soup.corners.len();
             let images = face
                 .iter()
@@ -215,6 +215,7 @@ impl Visitor<Frame3> for Collector<'_> {
                 self.soup.corners[from..].reverse();
             }
             self.soup.sides.push(face.len());
+            let colour = self.walk.colour_of_face(shape, number, map, colour);
             self.soup.colours.push(colour);
         }
         Ok(())

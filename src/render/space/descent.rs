@@ -79,7 +79,7 @@ impl Roots<'_> {
         let class = match self.class_by {
             ClassBy::Step => u16::try_from(form.level).unwrap_or(MAX_CLASS),
             ClassBy::FirstMap => class(self.parts[form.object].origin),
-            ClassBy::LastMap | ClassBy::Nothing | ClassBy::Tint => outer,
+            ClassBy::LastMap | ClassBy::Nothing | ClassBy::Tint | ClassBy::Normal => outer,
         };
         class.min(MAX_CLASS)
     }
@@ -261,6 +261,10 @@ impl Descent {
                         tints.make_room(faces + view.cuts.len(), buffer);
                         let mut of = |normal| {
                             let level = lit.level(normal, FINE);
+                            let colour = match roots.class_by {
+                                ClassBy::Normal => lit.colour_of_normal(normal, roots.inks),
+                                _ => colour,
+                            };
                             tints.class(colour.dimmed(intensity(level, FINE)))
                         };
                         draw(buffer, Classes::OfNormals(&mut of));

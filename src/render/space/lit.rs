@@ -4,7 +4,7 @@
 //! colours, or, where colours are many, a colour of its own in the tile.
 
 use crate::geometry::DVec3;
-use crate::style::{Camera, CameraError, Light};
+use crate::style::{Camera, CameraError, Colour, Light};
 
 use super::buffer::MAX_CLASS;
 
@@ -19,6 +19,8 @@ pub(super) const FINE: u32 = 8;
 pub(super) struct Lit {
     /// Unit vector towards the light, in the coordinates of the projection.
     towards: DVec3,
+    /// Unit vector upwards.
+    up: DVec3,
     light: Light,
     /// Low bits of classes that are levels; `None` if colours are found tile by tile.
     bits: Option<u32>,
@@ -34,8 +36,10 @@ impl Lit {
         let flip = DVec3::new(1.0, -1.0, 1.0);
         let levels = colours.map(|colours| (usize::from(MAX_CLASS) + 1) / colours.max(1));
         let bits = levels.and_then(usize::checked_ilog2);
+        let rotation = camera.rotation()?;
         Ok(Self {
-            towards: camera.rotation()? * light.towards() * flip,
+            towards: rotation * light.towards() * flip,
+            up: rotation.y_axis * flip,
             light,
             bits: bits.filter(|bits| *bits >= LEAST),
         })
@@ -57,6 +61,19 @@ impl Lit {
         let cosine = normal.normalize_or_zero().dot(self.towards);
         let dark = 1.0 - self.light.intensity(cosine);
         (dark * f64::from((1_u32 << bits) - 1)).round() as u16
+    }
+
+    /// Returns the colour of a face, of as many as colours run from downwards to upwards.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "there are few colours"
+    )]
+    pub(super) fn colour_of_normal(&self, normal: DVec3, colours: &[Colour]) -> Colour {
+        let share = f64::midpoint(normal.normalize_or_zero().dot(self.up), 1.0);
+        let last = colours.len() - 1;
+        colours[((share * last as f64).round() as usize).min(last)]
     }
 
     /// Returns the class of a face: that of its colour, and its level.

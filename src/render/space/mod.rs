@@ -74,9 +74,10 @@ pub enum SpaceError {
     /// There is no room for the picture, or nothing to draw.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
-    /// Colours in space do not distinguish this property.
+    /// Colours in space, or those of a format, do not distinguish this property.
     #[error(
-        "colours by {} are for the plane: in space they are by first-map, last-map, step or tint, or none",
+        "colours by {} are not for this set in space: there, they are by step, tint, normal, the maps of a system, or, of a rule, by \
+         generator, direction, age, index or fractal",
         .0.name()
     )]
     ColorBy(ColorBy),
@@ -306,6 +307,9 @@ impl Tile<'_> {
     }
 }
 
+/// Number of colours by normal.
+const NORMALS: usize = 65;
+
 /// Draws the picture into memory.
 fn draw(
     graph: &Graph<Frame3>,
@@ -349,11 +353,18 @@ fn draw(
             graph.origins() + usize::from(scene::draws_unmade(graph))
         }
         ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
+        ClassBy::Normal => NORMALS,
     };
     let has_faces = scene::has_faces(graph, steps);
     let is_lit = has_faces && space.shade.unwrap_or_default().lights_faces();
-    let known = Some(classes).filter(|_| class_by != ClassBy::Tint);
-    let lit = is_lit.then(|| Lit::new(&space.camera, space.light, known));
+    let by_normal = class_by == ClassBy::Normal;
+    let known = Some(classes).filter(|_| class_by != ClassBy::Tint && !by_normal);
+    let light = match is_lit {
+        true => space.light,
+        // Faces of a colour each, of full intensity.
+        false => space.light.ambient(1.0),
+    };
+    let lit = (is_lit || by_normal).then(|| Lit::new(&space.camera, light, known));
     let lit = lit.transpose().map_err(SpaceError::from)?;
     let inks = shade::colours(style, class_by, classes);
     let pad = solid::pad(graph);

@@ -116,6 +116,8 @@ pub(super) enum ClassBy {
     LastMap,
     Step,
     Tint,
+    /// The normal of a face.
+    Normal,
 }
 
 impl ClassBy {
@@ -126,6 +128,7 @@ impl ClassBy {
             ColorBy::LastMap => Ok(Self::LastMap),
             ColorBy::Step => Ok(Self::Step),
             ColorBy::Tint => Ok(Self::Tint),
+            ColorBy::Normal => Ok(Self::Normal),
             other => Err(SpaceError::ColorBy(other)),
         }
     }
@@ -278,6 +281,7 @@ fn box_of(graph: &mut Graph<Frame3>, object: usize) -> Option<Bounds<DVec3>> {
 
 fn start_with(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
     let root = Instance {
+        corners: None,
         length: frame.stretch(),
         frame,
         joined: false,

@@ -391,19 +391,20 @@ impl Visitor<Frame3> for Projector<'_> {
         let mut colour = None;
         let before = self.shown.len() + self.lines.len();
         let colours = self.walk.colours;
+        let style = colours.style();
         let mut colour = || {
             let of_element = || colours.at(object, element.born, element.appearance);
             *colour.get_or_insert_with(of_element)
         };
         self.walk.viewer.faces(shape, map, |part| match part {
             Part::Line(ends) => self.lines.push((colour(), ends)),
-            Part::Face(polygon, intensity) => {
+            Part::Face(polygon, intensity, normal) => {
                 let visibility = { self.nearest }
                     .map_or(Visibility::Unknown, |nearest| nearest.visibility(&polygon));
                 if visibility != Visibility::Hidden {
                     let shown = Shown {
                         polygon,
-                        colour: colour(),
+                        colour: style.colour_of_normal(normal).unwrap_or_else(&mut colour),
                         intensity,
                     };
                     self.shown.push((shown, visibility));

@@ -40,6 +40,23 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                         self.error_with_hint(&written[*number].place, message, hint);
                     }
                 }
+                ListedAttitude::Corners { points, up, .. } => {
+                    let [from, to, other] = points.map(at);
+                    let normal = (to - from).cross(other - from);
+                    let size = along.length() * (other - from).length();
+                    if normal.length() <= PARALLEL * size {
+                        let hint = "the first three corners of the base element are a triangle, and so are these";
+                        let message = "these corners lie on a line";
+                        self.error_with_hint(&written[points[2]].place, message, hint);
+                    } else if let Some(up) = up
+                        && normal.dot(at(*up)).abs()
+                            <= PARALLEL * normal.length() * at(*up).length()
+                    {
+                        let message = "this vector lies in the plane of the corners";
+                        let hint = "`up` points away from the front";
+                        self.error_with_hint(&written[*up].place, message, hint);
+                    }
+                }
                 ListedAttitude::Face(numbers) => {
                     let face: Vec<DVec3> = numbers.iter().map(|number| at(*number)).collect();
                     // Too few corners were reported when the file was read.

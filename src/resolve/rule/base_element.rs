@@ -20,7 +20,8 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         }
         let made = F::base_element(self, document);
         // A valid placeholder prevents further reports at other uses.
-        let number = self.known_or_new(made.unwrap_or_else(F::line));
+        let tube = self.kind.tube;
+        let number = self.known_or_new(made.unwrap_or_else(|| F::line(tube)));
         self.kind
             .base_element_places
             .push((document.place.clone(), number));

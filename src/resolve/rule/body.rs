@@ -28,13 +28,18 @@ struct Pieces {
     faces: Vec<Vec<DVec3>>,
     has_lines: bool,
     is_closed: bool,
+    /// Width of the tubes that lines are, in the base element's own coordinates.
+    tube: Option<f64>,
 }
 
 impl Resolver<OfRule<Frame3>> {
     /// Resolves a base element in space. Reports mistakes and returns `None`.
     pub(super) fn body(&mut self, document: &BaseElementDocument) -> Option<Body> {
         let before = self.mistakes;
-        let mut pieces = Pieces::default();
+        let mut pieces = Pieces {
+            tube: self.tube(document),
+            ..Pieces::default()
+        };
         if document.pieces.is_some() {
             self.outline_in_space(document, &mut pieces);
         }
@@ -91,6 +96,18 @@ impl Resolver<OfRule<Frame3>> {
             self.error_with_hint(&document.place, "this base element has no extent", hint);
         }
         body
+    }
+
+    /// Returns the width of lines, in the base element's own coordinates: its own, or that of the style.
+    fn tube(&mut self, document: &BaseElementDocument) -> Option<f64> {
+        let own = self.optional(document.width.as_ref()).flatten();
+        if let Some(width) = own.filter(|_| document.lines.is_some()) {
+            return Some(width).filter(|width| *width > 0.0);
+        }
+        let width = self.kind.tube?;
+        let from = self.constant_in_space(document.from.as_ref(), DVec3::ZERO)?;
+        let to = self.constant_in_space(document.to.as_ref(), DVec3::X)?;
+        Some(width * from.distance(to))
     }
 
     /// Returns the frame that `from` and `to` define in the base element's own coordinates.
@@ -263,10 +280,14 @@ impl Resolver<OfRule<Frame3>> {
 
 impl Pieces {
     fn add_lines(&mut self, points: &[DVec3]) {
+        self.has_lines = true;
+        if let Some(width) = self.tube {
+            self.surfaces.extend(tube(points, width));
+            return;
+        }
         let pairs = points.windows(2).filter(|pair| pair[0] != pair[1]);
         self.surfaces
             .extend(pairs.map(|pair| Solid::hull(pair).into()));
-        self.has_lines = true;
     }
 
     fn add_polygon(
@@ -335,6 +356,26 @@ impl Pieces {
             self.surfaces = vec![hull.into()];
         }
     }
+}
+
+/// Returns a tube along a line: cylinders between its points, and balls about them.
+pub(super) fn tube(points: &[DVec3], width: f64) -> Vec<Surface> {
+    let half = width / 2.0;
+    let pairs = points.windows(2).filter(|pair| pair[0] != pair[1]);
+    let shafts = pairs.map(|pair| {
+        let along = pair[1] - pair[0];
+        let (right, front) = along.normalize().any_orthonormal_pair();
+        let linear = DMat3::from_cols(right * half, along, front * half);
+        Solid::round(
+            Round::Cylinder,
+            DAffine3::from_mat3_translation(linear, pair[0]),
+        )
+    });
+    let ball = DMat3::from_diagonal(DVec3::splat(half));
+    let balls = points
+        .iter()
+        .map(|point| Solid::round(Round::Ball, DAffine3::from_mat3_translation(ball, *point)));
+    shafts.chain(balls).map(Surface::from).collect()
 }
 
 /// Returns whether every edge of polygons is one of two of them, in opposite directions.

@@ -87,6 +87,11 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                 let numbers = [start.number, end.number].into_iter().chain(others);
                 element.attitude = ListedAttitude::Face(numbers.collect());
             }
+            if let Some([_, _, other]) = listed.and_then(|listed| listed.corners.as_deref())
+                && let ListedAttitude::Corners { points: all, .. } = &mut element.attitude
+            {
+                *all = [start.number, end.number, add(points, other).number];
+            }
             element.joined = connected && joined && listed.is_none_or(|listed| listed.connected);
             elements.push(element);
             last = Some(end);
@@ -112,6 +117,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             to: 0,
             direction: Direction::Normal,
             attitude: ListedAttitude::Least,
+            corners: None,
             fertile: true,
             visible: true,
             joined: false,
@@ -170,6 +176,18 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         if let Some(document) = &listed.base_element {
             element.base_element = self.base_element(document);
         }
+        if listed.corners.is_some() {
+            let up = listed.up.clone();
+            let face = F::face(&self.kind.base_elements[element.base_element]);
+            let third = face
+                .get(2)
+                .map_or([0.0, 1.0], |corner| [corner.x, corner.y]);
+            element.attitude = ListedAttitude::Corners {
+                points: [0; 3],
+                third,
+                up: up.map(|up| self.vector(up)),
+            };
+        }
         element
     }
 
@@ -185,8 +203,11 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         points: &mut Vec<WrittenPoint>,
     ) {
         for element in elements {
-            if let ListedAttitude::Normal(number) | ListedAttitude::Roll(number) =
-                &mut element.attitude
+            if let ListedAttitude::Normal(number)
+            | ListedAttitude::Roll(number)
+            | ListedAttitude::Corners {
+                up: Some(number), ..
+            } = &mut element.attitude
             {
                 *number += points.len();
             }
@@ -211,6 +232,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         let programs: Vec<_> = programs.collect();
         let points = values::<F>(&programs);
         self.check_attitudes(&elements, &points, &written);
+        self.find_corners(&mut elements, &programs, &[], true);
         for element in &elements {
             if points[element.from] == points[element.to] {
                 let place = &written[element.to].place.clone();

@@ -42,8 +42,8 @@ pub(in crate::resolve) trait ResolvedFrame: RuleFrame {
         scope: &Scope,
     ) -> Self::Turns;
 
-    /// Returns the base element of a rule that names none.
-    fn line() -> Self::BaseElement;
+    /// Returns the base element of a rule that names none; in space, a tube of a width if one is given.
+    fn line(width: Option<f64>) -> Self::BaseElement;
 
     /// Returns the corners of the polygon to which faces of elements must be similar; empty if there is none.
     fn face(base_element: &Self::BaseElement) -> &[DVec3];
@@ -97,7 +97,7 @@ impl ResolvedFrame for Frame2 {
         }
     }
 
-    fn line() -> BaseElement {
+    fn line(_: Option<f64>) -> BaseElement {
         BaseElement::line()
     }
 
@@ -165,8 +165,10 @@ impl ResolvedFrame for Frame3 {
         }
     }
 
-    fn line() -> Body {
-        Body::line()
+    fn line(width: Option<f64>) -> Body {
+        let tube = width.map(|width| super::body::tube(&[DVec3::ZERO, DVec3::X], width));
+        let tube = tube.and_then(|surfaces| Body::new(surfaces, Vec::new(), true));
+        tube.unwrap_or_else(Body::line)
     }
 
     fn face(body: &Body) -> &[DVec3] {

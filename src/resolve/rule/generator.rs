@@ -96,6 +96,9 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             let elements = parts.iter().flat_map(|part| part.elements.iter().cloned());
             self.check_attitudes(&elements.collect::<Vec<_>>(), &known, &written);
         }
+        for part in &mut parts {
+            self.find_corners(&mut part.elements, &points, &variables, false);
+        }
         self.doubt_growth(&parts, &points, &written);
         // Moves may separate points that coincide as written.
         if document.moves.is_empty() {

@@ -13,6 +13,9 @@ use crate::rule::{ElementContext, Move};
 /// Maximum number of moves of a generator: each takes time in every replacement.
 const MAX_MOVES: usize = 1000;
 
+/// Name of the distribution of a draw for each edge.
+pub(super) const BY_EDGE: &str = "by_edge";
+
 /// Lists of points that several moves share.
 struct MovedPoints {
     all: Arc<[usize]>,
@@ -34,13 +37,36 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                     message,
                     "a name has letters, digits and _, and begins with a letter",
                 );
-            } else if is_reserved(&name.value) || scope.contains(&name.value) {
-                let message = format!("'{}' already has a meaning here", name.value);
-                self.error_with_hint(&name.place, message, "give the variable another name");
             }
-            let distribution = self.distribution(number, scope);
-            scope.variable(&name.value, ElementContext::NAMES.len() + variables.len());
-            variables.push(Variable::new(&name.value, distribution));
+            let made = match number.value.as_call() {
+                Some((BY_EDGE, [inner])) => {
+                    if F::DIRECTIONS == 4 {
+                        let message = "draws belong to edges of surfaces, in space only";
+                        self.error_with_hint(&number.place, message, "write `space: 3` at the top");
+                    }
+                    let inner = WrittenNumber {
+                        value: inner.clone(),
+                        place: number.place.clone(),
+                    };
+                    let distribution = self.distribution(&inner, scope);
+                    Variable::by_edge(&name.value, &distribution).into()
+                }
+                _ => {
+                    let distribution = self.distribution(number, scope);
+                    vec![Variable::new(&name.value, distribution)]
+                }
+            };
+            for variable in made {
+                let name_of = variable.name();
+                if is_reserved(name_of) || scope.contains(name_of) {
+                    let message = format!("'{name_of}' already has a meaning here");
+                    let hint = "give the variable another name";
+                    self.error_with_hint(&name.place, message, hint);
+                }
+                let slot = ElementContext::NAMES.len() + variables.len();
+                scope.variable(name_of, slot);
+                variables.push(variable);
+            }
         }
         variables
     }

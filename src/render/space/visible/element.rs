@@ -114,8 +114,8 @@ pub(super) struct Viewer<'a> {
 
 /// Part of an element on the picture.
 pub(super) enum Part {
-    /// A face, and the intensity of its colour.
-    Face(Polygon, f64),
+    /// A face, the intensity of its colour, and its unit normal towards the viewer.
+    Face(Polygon, f64, DVec3),
     /// The section of a flat element.
     Line([DVec2; 2]),
 }
@@ -206,7 +206,8 @@ impl Viewer<'_> {
         } else {
             -1.0
         };
-        let intensity = self.intensity(&corners, outward * side);
+        let normal = (self.normals * outward * side).normalize_or_zero();
+        let intensity = self.intensity(&corners, normal);
         for corner in &mut corners {
             corner.at = self.seen(corner.at);
         }
@@ -214,7 +215,7 @@ impl Viewer<'_> {
             let (from, to) = (corners[0].at, corners[corners.len() / 2].at);
             give(Part::Line([from.truncate(), to.truncate()]));
         } else if let Some(polygon) = Polygon::new(corners) {
-            give(Part::Face(polygon, intensity));
+            give(Part::Face(polygon, intensity, normal));
         }
     }
 
@@ -250,7 +251,7 @@ impl Viewer<'_> {
     }
 
     /// Returns the intensity of a face, with the depth of the mean of its corners.
-    fn intensity(&self, corners: &[Corner], outward: DVec3) -> f64 {
+    fn intensity(&self, corners: &[Corner], normal: DVec3) -> f64 {
         let mut intensity = 1.0;
         if self.shade.cues_depth() {
             let [far, near] = self.placement.range;
@@ -262,7 +263,6 @@ impl Viewer<'_> {
             }
         }
         if self.shade.has_relief(false) {
-            let normal = (self.normals * outward).normalize_or_zero();
             intensity *= self.light.intensity(normal.dot(self.light.towards()));
         }
         intensity
