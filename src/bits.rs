@@ -98,6 +98,45 @@ impl Bits {
         self.words[row * self.width.div_ceil(64) + column / 64] >> (column % 64) & 1 == 1
     }
 
+    /// Sets a box. Returns `true` if it was not set before.
+    #[inline]
+    pub(crate) fn insert(&mut self, column: usize, row: usize) -> bool {
+        let word = &mut self.words[row * self.width.div_ceil(64) + column / 64];
+        let before = *word;
+        *word |= 1 << (column % 64);
+        *word != before
+    }
+
+    /// Empties all boxes.
+    pub(crate) fn clear(&mut self) {
+        self.words.fill(0);
+    }
+
+    /// Takes the boxes of a set of the same size.
+    pub(crate) fn copy(&mut self, other: &Self) {
+        self.words.copy_from_slice(&other.words);
+    }
+
+    /// Returns the words of all rows.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
+    /// Returns the words of all rows for changes; bits beyond the width must stay empty.
+    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words
+    }
+
+    /// Returns the number of words in a row.
+    pub(crate) fn stride(&self) -> usize {
+        self.width.div_ceil(64)
+    }
+
+    /// Returns the bits of the last word of a row that are within the width.
+    pub(crate) fn last_word(&self) -> u64 {
+        u64::MAX >> ((64 - self.width % 64) % 64)
+    }
+
     /// Returns the words of up to `count` rows from a row on.
     pub(crate) fn rows(&self, first: usize, count: usize) -> &[u64] {
         let stride = self.width.div_ceil(64);

@@ -36,6 +36,7 @@
 //! | mistakes in a file, with their places | [`Error::diagnostics`] |
 //! | the format of files, and their keys | [`document`] |
 //! | names in the library | [`catalogue`] |
+//! | a system whose attractor is a picture | [`fit`](fit()) |
 //! | rules made by a program | [`build`] |
 //!
 //! Everything that the front door does is done by the rooms behind it, which are public as far as programs
@@ -132,6 +133,7 @@ pub mod expression;
 pub mod extent;
 mod fast_hash;
 pub mod figure;
+pub mod fit;
 mod fractal;
 pub mod geometry;
 pub mod graph;
@@ -162,6 +164,7 @@ pub mod zoom;
 pub use bits::Bits;
 pub use count::Count;
 pub use draws::{Corner, Distribution, Path, Variable};
+pub use fit::fit;
 pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
 pub use grow::Element;
 pub use kind::Kind;

@@ -17,6 +17,7 @@ mod dimensions;
 mod estimates;
 mod exact;
 mod figures;
+mod fit;
 mod gallery;
 mod ifs_model;
 mod import;

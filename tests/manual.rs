@@ -47,6 +47,10 @@ fn examples_work() {
     for (name, text) in [("fractint.l", curve), ("other.ifs", maps)] {
         fs::write(folder.path().join(name), text).unwrap();
     }
+    for picture in ["leaf.png", "gasket.png"] {
+        let drawn = kfrac::Fractal::named("gasket").unwrap().png(24).unwrap();
+        fs::write(folder.path().join(picture), drawn).unwrap();
+    }
     let mut pages = vec![printed(&["--help"])];
     pages.extend(commands().iter().map(|name| printed(&[name, "--help"])));
     for page in &pages {

@@ -10,6 +10,7 @@ mod convert;
 mod count;
 mod dim;
 mod family;
+mod fit;
 mod format;
 mod goal;
 mod grow;
@@ -82,6 +83,7 @@ enum Command {
     Convert(convert::Arguments),
     Import(import::Arguments),
     Compare(compare::Arguments),
+    Fit(fit::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
     Schema(schema::Arguments),
@@ -207,6 +209,7 @@ pub fn run() -> ExitCode {
         Command::Convert(arguments) => convert::run(arguments, &catalogue),
         Command::Import(arguments) => import::run(arguments),
         Command::Compare(arguments) => compare::run(arguments, &catalogue),
+        Command::Fit(arguments) => fit::run(arguments),
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),

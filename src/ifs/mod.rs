@@ -52,6 +52,7 @@ pub use interpolation::{
 pub use map::{Map, about, axes, complex, complex_conjugate, toward};
 pub use measure::{MapMeasure, Measure};
 pub use moments::Moments;
+pub(crate) use norm::best_coordinates;
 pub use shape::Shape;
 pub(crate) use shrinking::{Shrinking, sum_of_products};
 pub use system::System;

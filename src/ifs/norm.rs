@@ -10,6 +10,19 @@ use crate::geometry::{DMat2, DVec2, Linear, stretch};
 /// are tried in directions that turn by the golden angle, which find the way out of an edge of the function.
 /// An imperfect minimum makes no bound wrong, only wider.
 pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
+    let coordinates = best(matrices);
+    let applied = matrices.iter().map(|&matrix| coordinates.applied(matrix));
+    applied.collect()
+}
+
+/// Returns the map to coordinates in which the largest stretch of the matrices is nearly minimal: see
+/// [`in_best_coordinates`].
+pub(crate) fn best_coordinates(matrices: &[DMat2]) -> DMat2 {
+    best(matrices).there()
+}
+
+/// Returns the coordinates in which the largest stretch of the matrices is nearly minimal.
+fn best(matrices: &[DMat2]) -> Coordinates {
     const DIRECTIONS: u32 = 8;
     const GOLDEN: f64 = 2.399_963_229_728_653;
     let least = matrices
@@ -36,10 +49,7 @@ pub(super) fn in_best_coordinates(matrices: &[DMat2]) -> Vec<DMat2> {
         }
         turn += GOLDEN;
     }
-    matrices
-        .iter()
-        .map(|&matrix| best.applied(matrix))
-        .collect()
+    best
 }
 
 /// Coordinates (x + shear · y, ratio · y).
@@ -68,10 +78,13 @@ impl Coordinates {
         !(1e-100..1e100).contains(&self.ratio) || self.shear.abs() > 1e100
     }
 
+    fn there(&self) -> DMat2 {
+        DMat2::from_cols(DVec2::X, DVec2::new(self.shear, self.ratio))
+    }
+
     fn applied(&self, matrix: DMat2) -> DMat2 {
-        let there = DMat2::from_cols(DVec2::X, DVec2::new(self.shear, self.ratio));
         let back = DVec2::new(-self.shear, 1.0) / self.ratio;
-        there * matrix * DMat2::from_cols(DVec2::X, back)
+        self.there() * matrix * DMat2::from_cols(DVec2::X, back)
     }
 
     fn stretch(&self, matrices: &[DMat2]) -> f64 {

@@ -1,0 +1,313 @@
+//! Collages: maps whose images of the shape cover the shape, as a start for the refinement on the attractor.
+
+mod copies;
+mod cover;
+mod ground;
+mod pairs;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::parallel::{self, is_cancelled};
+use crate::random::{GOLDEN, Pcg, mix};
+
+use self::copies::Copy;
+pub(super) use self::ground::Ground;
+pub(super) use self::pairs::{Form, clamped};
+use super::orbit::{Level, Orbit};
+use super::refine::{Refined, refine};
+use super::{Candidate, Disk, FitError, FitOptions, Shape};
+
+/// Cells of the long side at which copies are searched.
+const GROUND: usize = 96;
+/// Points of the shape by which covers are judged.
+const SAMPLE: usize = 768;
+/// Random starts of every list of copies.
+const STARTS: usize = 6;
+/// Starts from random maps.
+const RANDOM: usize = 16;
+
+/// Bits of a number, and of a cell that is off, in description lengths.
+const NUMBER: f64 = 10.0;
+const PIXEL: f64 = 6.0;
+
+/// Returns the number of numbers of a candidate.
+#[expect(clippy::cast_precision_loss, reason = "there are few maps")]
+fn numbers(found: &Refined) -> f64 {
+    let map = match found.form {
+        Form::Similar => 4,
+        Form::Affine => 6,
+    };
+    (map * found.candidate.maps.len() + 3 * found.candidate.disks.len()) as f64
+}
+
+/// A search for collages of a shape; what does not depend on the number of maps is done once.
+pub(super) struct Collage<'s> {
+    shape: &'s Shape,
+    options: &'s FitOptions,
+    ground: Ground,
+    copies: Vec<Copy>,
+    disks: Vec<Copy>,
+    coarse: Level,
+    fine: Level,
+    evaluations: AtomicUsize,
+}
+
+impl<'s> Collage<'s> {
+    pub(super) fn new(shape: &'s Shape, options: &'s FitOptions) -> Result<Self, FitError> {
+        let ground = Ground::new(shape, GROUND, SAMPLE).ok_or(FitError::Empty)?;
+        Ok(Self {
+            copies: copies::copies(&ground, options.threads.get()),
+            disks: copies::disks(&ground),
+            ground,
+            shape,
+            options,
+            coarse: Level::new(shape, 72),
+            fine: Level::new(shape, 160),
+            evaluations: AtomicUsize::new(0),
+        })
+    }
+
+    /// Returns the shape at the size at which candidates are refined last.
+    pub(super) fn fine(&self) -> &Level {
+        &self.fine
+    }
+
+    /// Returns the number of evaluations so far.
+    pub(super) fn evaluations(&self) -> usize {
+        self.evaluations.load(Ordering::Relaxed)
+    }
+
+    /// Returns the best candidate whose number of maps is in the range of the options, by the least description length:
+    /// that of the numbers of the candidate, and of the cells that are off.
+    pub(super) fn search(&self) -> Result<Refined, FitError> {
+        let mut orbit = Orbit::new(&self.fine);
+        let mut best: Option<(f64, Refined)> = None;
+        let mut worse = 0;
+        for count in self.options.maps.clone() {
+            let found = self.search_with(count, self.options.effort)?;
+            let misfit = orbit.misfit(&found.candidate, &self.fine);
+            let length = NUMBER * numbers(&found) + PIXEL * misfit;
+            worse += 1;
+            if best.as_ref().is_none_or(|best| length < best.0) {
+                best = Some((length, found));
+                worse = 0;
+            }
+            if misfit == 0.0 || worse == 3 {
+                break;
+            }
+        }
+        best.map(|(_, found)| found).ok_or(FitError::Cancelled)
+    }
+
+    /// Returns the best candidate with a number of maps.
+    fn search_with(&self, count: usize, effort: usize) -> Result<Refined, FitError> {
+        let mut starts = self.starts(count);
+        starts.truncate(12);
+        let stage = |starts: Vec<Refined>, level: &Level, share: usize, step: f64, stage: u64| {
+            self.stage(
+                starts,
+                level,
+                effort / share,
+                step,
+                mix(stage ^ (count as u64).wrapping_mul(GOLDEN)),
+            )
+        };
+        let mut kept = stage(starts, &self.coarse, 60, 2.0, 1)?;
+        kept.truncate(4);
+        let mut kept = stage(kept, &self.coarse, 16, 1.0, 2)?;
+        kept.truncate(2);
+        let kept = stage(kept, &self.fine, 10, 0.5, 3)?;
+        kept.into_iter().next().ok_or(FitError::Cancelled)
+    }
+
+    /// Refines candidates at a level, best first.
+    fn stage(
+        &self,
+        starts: Vec<Refined>,
+        level: &Level,
+        evaluations: usize,
+        step: f64,
+        seed: u64,
+    ) -> Result<Vec<Refined>, FitError> {
+        let threads = self.options.threads.get();
+        let cancel = self.options.cancel.as_deref();
+        let step = step / level.scale();
+        let refined = parallel::map(&starts, threads, |number, start| {
+            if is_cancelled(cancel) {
+                return Vec::new();
+            }
+            let random = || Pcg::new(self.options.seed ^ seed, number as u64 * 2 + 1);
+            let mut all = vec![refine(
+                self.shape,
+                level,
+                &start.candidate,
+                start.form,
+                step,
+                evaluations,
+                random(),
+            )];
+            if start.form == Form::Similar && !self.options.similar {
+                let affine = &start.candidate;
+                all.push(refine(
+                    self.shape,
+                    level,
+                    affine,
+                    Form::Affine,
+                    step,
+                    evaluations,
+                    random(),
+                ));
+            }
+            self.evaluations
+                .fetch_add(all.iter().map(|it| it.evaluations).sum(), Ordering::Relaxed);
+            all
+        });
+        if is_cancelled(cancel) {
+            return Err(FitError::Cancelled);
+        }
+        let mut refined = refined.concat();
+        // Fewer numbers are worth a little.
+        let cost = |it: &Refined| it.loss + if it.form == Form::Affine { 0.004 } else { 0.0 };
+        refined.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        Ok(refined)
+    }
+
+    /// Returns candidates with a number of maps, best first.
+    fn starts(&self, count: usize) -> Vec<Refined> {
+        let covers = self.covers(count);
+        let threads = self.options.threads.get();
+        // Random maps leave no room for disks.
+        let random = if self.options.disks == 0 {
+            RANDOM as u64
+        } else {
+            0
+        };
+        let numbers: Vec<u64> = (0..random).collect();
+        let random = parallel::map(&numbers, threads, |_, &number| self.random(count, number));
+        let all: Vec<Candidate> = covers.into_iter().chain(random).collect();
+        let starts = parallel::map(&all, threads, |_, candidate| {
+            let mut orbit = Orbit::new(&self.coarse);
+            let free = self.uncovered(candidate);
+            let mut best: Option<Refined> = None;
+            for (form, rounds) in [(Form::Similar, 0), (Form::Similar, 6), (Form::Affine, 10)] {
+                if form == Form::Affine && self.options.similar {
+                    continue;
+                }
+                let mut maps: Vec<DAffine2> = candidate
+                    .maps
+                    .iter()
+                    .map(|map| self.ground.inward(map))
+                    .collect();
+                pairs::improve(&self.ground, &free, &mut maps, form, rounds);
+                let maps = maps.iter().map(|map| self.ground.outward(map)).collect();
+                let candidate = Candidate {
+                    maps,
+                    disks: candidate.disks.clone(),
+                };
+                let loss = orbit.loss(&candidate, &self.coarse);
+                if best.as_ref().is_none_or(|best| loss < best.loss - 0.004) {
+                    best = Some(Refined {
+                        candidate,
+                        form,
+                        loss,
+                        evaluations: 1,
+                    });
+                }
+            }
+            best
+        });
+        let mut starts: Vec<Refined> = starts.into_iter().flatten().collect();
+        self.evaluations
+            .fetch_add(3 * starts.len(), Ordering::Relaxed);
+        starts.sort_by(|a, b| a.loss.total_cmp(&b.loss));
+        let mut kept: Vec<Refined> = Vec::new();
+        for start in starts {
+            let known = |other: &Refined| (other.loss - start.loss).abs() < 1e-9;
+            if !kept.iter().any(known) {
+                kept.push(start);
+            }
+        }
+        kept
+    }
+
+    /// Returns the candidates of covers by similar copies, of one ratio and of several.
+    fn covers(&self, count: usize) -> Vec<Candidate> {
+        let ratios = copies::ratios().len();
+        let disks: Vec<&Copy> = self.disks.iter().collect();
+        let lists: Vec<Option<usize>> = (0..ratios).map(Some).chain([None; 4]).collect();
+        let found = parallel::map(&lists, self.options.threads.get(), |number, ratio| {
+            let of_ratio = |copy: &&Copy| ratio.is_none_or(|ratio| copy.ratio == ratio);
+            let list: Vec<&Copy> = self.copies.iter().filter(of_ratio).collect();
+            let mut slots: Vec<&[&Copy]> = vec![&list; count];
+            slots.extend(vec![&disks[..]; self.options.disks]);
+            let seed = self.options.seed ^ mix(number as u64 + 1) ^ count as u64;
+            let mut random = Pcg::new(seed, 7);
+            let covers = (0..STARTS).filter_map(|_| {
+                let cover = cover::choose(&slots, self.ground.points().len(), &mut random)?;
+                let (maps, round) = cover.copies.split_at(count);
+                let maps = maps
+                    .iter()
+                    .map(|&copy| self.ground.outward(&list[copy].map));
+                let maps = maps.collect();
+                let round = round.iter().map(|&copy| self.disk(disks[copy]));
+                Some((
+                    cover.cost,
+                    Candidate {
+                        maps,
+                        disks: round.collect(),
+                    },
+                ))
+            });
+            covers.collect::<Vec<_>>()
+        });
+        let mut found: Vec<(f64, Candidate)> = found.into_iter().flatten().collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-9);
+        found.truncate(48);
+        found.into_iter().map(|(_, candidate)| candidate).collect()
+    }
+
+    /// Returns the disk that a copy of the unit disk is, in pixels.
+    fn disk(&self, copy: &Copy) -> Disk {
+        Disk {
+            centre: self.ground.back().transform_point2(copy.map.translation),
+            radius: copy.map.matrix2.x_axis.x / self.ground.scale(),
+        }
+    }
+
+    /// Returns the points of the ground that no disk of a candidate covers; all if there are hardly any.
+    fn uncovered(&self, candidate: &Candidate) -> Vec<DVec2> {
+        let all = self.ground.points();
+        let is_free = |point: &&DVec2| {
+            let point = self.ground.back().transform_point2(**point);
+            candidate
+                .disks
+                .iter()
+                .all(|disk| point.distance(disk.centre) > disk.radius)
+        };
+        let free: Vec<DVec2> = all.iter().filter(is_free).copied().collect();
+        if free.len() * 20 < all.len() {
+            all.to_vec()
+        } else {
+            free
+        }
+    }
+
+    /// Returns a candidate of random maps.
+    fn random(&self, count: usize, number: u64) -> Candidate {
+        let mut random = Pcg::new(self.options.seed ^ mix(number), count as u64 * 2 + 1);
+        let points = self.ground.points();
+        let maps = (0..count).map(|_| {
+            let ratio = 0.3 + 0.5 * random.unit();
+            let turned = ratio * DVec2::from_angle(std::f64::consts::TAU * random.unit());
+            let flip = if random.unit() < 0.3 { -1.0 } else { 1.0 };
+            let matrix = DMat2::from_cols(turned, flip * turned.perp());
+            let image = points[cover::pick(&mut random, points.len())];
+            let map =
+                DAffine2::from_mat2_translation(matrix, image - matrix * self.ground.middle());
+            self.ground.outward(&map)
+        });
+        Candidate::of_maps(maps.collect())
+    }
+}

@@ -1,0 +1,110 @@
+//! The shape of a picture that is to be fitted.
+
+use std::num::NonZero;
+
+use crate::Bits;
+use crate::geometry::{Bounds, DVec2};
+use crate::morphology::DistanceMap;
+
+use super::FitError;
+
+/// A picture as the set of its pixels that belong to the shape.
+///
+/// Coordinates are pixels, x to the right and y up, from the lower left corner of the picture: the centre of the
+/// pixel in column i and row j (from the top, both from 0) of a picture of height h lies at (i + 0.5, h − j − 0.5).
+///
+/// Guarantee: at least two pixels belong to the shape, and at least one does not.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    bits: Bits,
+    points: Vec<DVec2>,
+    bounds: Bounds,
+}
+
+/// Limit of the number of pixels of a picture.
+const MAX_PIXELS: usize = 1 << 26;
+/// Limit of the number of pixels of a side.
+const MAX_SIDE: usize = 1 << 15;
+
+impl Shape {
+    /// Creates the shape of the pixels that are set.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if no pixel is set, only one, or all, or if the picture has more than 2²⁶ pixels,
+    /// or more than 2¹⁵ on a side.
+    pub fn new(bits: Bits) -> Result<Self, FitError> {
+        let [width, height] = [bits.width(), bits.height()];
+        if width.saturating_mul(height) > MAX_PIXELS || width.max(height) > MAX_SIDE {
+            return Err(FitError::TooLarge { width, height });
+        }
+        let points: Vec<DVec2> = bits
+            .set_boxes()
+            .map(|place| centre(place, height))
+            .collect();
+        match points.len() {
+            0 => return Err(FitError::Empty),
+            1 => return Err(FitError::OnePixel),
+            count if count == width * height => return Err(FitError::Full),
+            _ => {}
+        }
+        let mut bounds = Bounds::EMPTY;
+        points.iter().for_each(|&point| bounds.add(point));
+        Ok(Self {
+            bits,
+            points,
+            bounds,
+        })
+    }
+
+    /// Returns the pixels, in rows from the top.
+    #[must_use]
+    pub fn bits(&self) -> &Bits {
+        &self.bits
+    }
+
+    /// Returns the centres of the pixels that belong to the shape, in rows from the top.
+    #[must_use]
+    pub fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// Returns the box of the centres.
+    #[must_use]
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Returns width and height of the picture in pixels.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.bits.width(), self.bits.height()]
+    }
+
+    /// Returns half the diagonal of the box of the centres.
+    pub(super) fn radius(&self) -> f64 {
+        self.bounds.size().length() / 2.0
+    }
+
+    /// Returns the middle of the box of the centres.
+    pub(super) fn middle(&self) -> DVec2 {
+        (self.bounds.min() + self.bounds.max()) / 2.0
+    }
+}
+
+/// Returns the distances to a set of pixels, with the pixel nearest to each; `None` for an empty set.
+pub(super) fn distances(bits: &Bits) -> Option<DistanceMap> {
+    DistanceMap::to(bits, NonZero::<usize>::MIN).ok()
+}
+
+/// Returns column and row of a pixel from its index along the rows.
+pub(super) fn place(index: u32, width: usize) -> [usize; 2] {
+    let index = index as usize;
+    [index % width, index / width]
+}
+
+/// Returns the centre of a pixel in a picture of a height.
+#[expect(clippy::cast_precision_loss, reason = "pictures are small")]
+pub(super) fn centre([column, row]: [usize; 2], height: usize) -> DVec2 {
+    DVec2::new(column as f64 + 0.5, height as f64 - row as f64 - 0.5)
+}
