@@ -1,6 +1,6 @@
 //! The chaos game in space: a picture of the nearest points.
 
-use crate::geometry::{DAffine3, DVec3};
+use crate::geometry::{DAffine3, DVec3, HalfSpace};
 
 use super::course::Course;
 use super::random::LANES;
@@ -11,7 +11,7 @@ use super::{ClassBy, Game, GameError, MAX_BINS, WeightedMaps, check, count};
 
 /// A view of space, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DepthWindow {
+pub struct DepthWindow<'a> {
     /// Map from space to the coordinates of the view: x to the right, y down, z towards the viewer.
     pub to_window: DAffine3,
     /// Projection of the coordinates of the view to pixels.
@@ -22,6 +22,8 @@ pub struct DepthWindow {
     pub steps: u32,
     /// Width and height in pixels, 1 to 2²² each.
     pub size: [u32; 2],
+    /// Half-spaces in the coordinates of the view, within all of which points are shown.
+    pub within: &'a [HalfSpace],
 }
 
 /// Projection of the coordinates of a view to pixels, from the upper left corner.
@@ -38,7 +40,7 @@ pub enum Seen {
     },
 }
 
-impl DepthWindow {
+impl DepthWindow<'_> {
     /// Returns the largest number of pixels a unit of the view.
     fn scale(&self) -> f64 {
         match self.seen {
@@ -100,7 +102,7 @@ impl DepthPicture {
 /// Returns an error if the window, its map or a start is out of range, or if the game is cancelled.
 pub fn play_in_space(
     system: &WeightedMaps<DAffine3>,
-    window: &DepthWindow,
+    window: &DepthWindow<'_>,
     counts: bool,
     game: &Game<'_, DVec3>,
 ) -> Result<DepthPicture, GameError> {
@@ -181,7 +183,7 @@ impl Counter for Nearest {
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 fn walk_single(
     course: &Course<'_, DAffine3>,
-    window: &DepthWindow,
+    window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
 ) -> Result<(), Cancelled> {
@@ -191,7 +193,7 @@ fn walk_single(
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 fn walk_double(
     course: &Course<'_, DAffine3>,
-    window: &DepthWindow,
+    window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
 ) -> Result<(), Cancelled> {
@@ -201,14 +203,19 @@ fn walk_double(
 #[inline(always)]
 fn walk_in<T: Real>(
     course: &Course<'_, DAffine3>,
-    window: &DepthWindow,
+    window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
 ) -> Result<(), Cancelled> {
     let is_free = !course.system.is_recurrent()
         && course.maps.iter().all(Option::is_some)
         && matches!(course.classes, ClassBy::One | ClassBy::Map { ago: 0 });
-    let lens = Lens::<T>::new(window);
+    let cuts = window.within.iter().map(|cut| {
+        let [x, y, z] = cut.normal.to_array();
+        [x, y, z, cut.distance].map(T::of)
+    });
+    let cuts: Vec<[T; 4]> = cuts.collect();
+    let lens = Lens::<T>::new(window, &cuts);
     if is_free {
         run(
             course,
@@ -233,7 +240,9 @@ struct Affine3<T>([[T; 4]; 4]);
 
 /// The pixels and depths of a view.
 #[derive(Clone, Copy)]
-struct Lens<T> {
+struct Lens<'a, T> {
+    /// Normals and distances of half-spaces.
+    cuts: &'a [[T; 4]],
     size: [T; 2],
     /// Number of pixels in a row, and of all pixels.
     row: u32,
@@ -246,13 +255,14 @@ struct Lens<T> {
     central: Option<(T, [T; 2])>,
 }
 
-impl<T: Real> Lens<T> {
-    fn new(window: &DepthWindow) -> Self {
+impl<'a, T: Real> Lens<'a, T> {
+    fn new(window: &DepthWindow<'_>, cuts: &'a [[T; 4]]) -> Self {
         let [width, height] = window.size;
         let [far, near] = window.range;
         let range = near - far;
         let steps = f64::from(window.steps);
         Self {
+            cuts,
             size: window.size.map(|side| T::of(side.into())),
             row: width,
             all: width * height,
@@ -295,7 +305,7 @@ impl<T: Real> Lens<T> {
     }
 }
 
-impl<T: Real> Screen<DAffine3> for Lens<T> {
+impl<T: Real> Screen<DAffine3> for Lens<'_, T> {
     type Counter = Nearest;
     type Matrix = Affine3<T>;
     /// Coordinates, each completed by a zero.
@@ -332,6 +342,14 @@ impl<T: Real> Screen<DAffine3> for Lens<T> {
                 seen[axis][lane] = places[lane][axis];
             }
         }
+        let mut is_cut_off = [false; LANES];
+        for [across, down, towards, distance] in self.cuts {
+            let [x, y, z] = &seen;
+            for lane in 0..LANES {
+                let along = *across * x[lane] + *down * y[lane] + *towards * z[lane];
+                is_cut_off[lane] |= along > *distance;
+            }
+        }
         if let Some((focus, middle)) = self.central {
             let [x, y, z] = &mut seen;
             for lane in 0..LANES {
@@ -343,7 +361,16 @@ impl<T: Real> Screen<DAffine3> for Lens<T> {
                 y[lane] = middle[1] + y[lane] * scale;
             }
         }
-        let [pixels, depths] = Self::spots(self, &seen);
+        let [mut pixels, depths] = Self::spots(self, &seen);
+        if !self.cuts.is_empty() {
+            for lane in 0..LANES {
+                pixels[lane] = if is_cut_off[lane] {
+                    self.all
+                } else {
+                    pixels[lane]
+                };
+            }
+        }
         for lane in 0..LANES {
             spots[lane] = Spot {
                 pixel: pixels[lane],

@@ -21,7 +21,7 @@ use super::scene::ClassBy;
 use super::shade::{self, Inks, class_colour, colours};
 use super::slice::Search;
 use super::solid::depth_of;
-use super::{SpaceError, SpaceOptions, SpacePicture, described, finish, place};
+use super::{SpaceError, SpaceOptions, SpacePicture, described, finish, place, scene, slice};
 
 /// Number of points from which the extent of the ways from given starts is estimated.
 const PILOT: usize = 20_000;
@@ -128,10 +128,9 @@ fn draw_with(
             points.map(|point| point.place).collect()
         }
     };
-    // Nothing is cut off, and the box of the limit set needs no search.
     let search = Search {
-        parts: &[],
-        start: &[],
+        parts: &scene::parts(graph, None),
+        start: &scene::start(graph),
         steps: None,
     };
     let placement = place::place_with(
@@ -139,7 +138,8 @@ fn draw_with(
         &search,
         &ways,
         &space.camera,
-        &[],
+        // A section has the depths of its plane.
+        &space.within(0.0),
         options.size,
         options.view.margin,
     )?;
@@ -148,7 +148,14 @@ fn draw_with(
     let style = &options.style;
     let by_hits = style.color_by == ColorBy::Hits;
     let fine = fineness(size, game.points).min(most);
-    let played = play_in_space(system, &window(&placement, fine), by_hits, game);
+    let mut window = window(&placement, fine);
+    #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+    let within = space.within(SAMPLES as f64 / placement.scale());
+    let within: Vec<_> = { within.iter() }
+        .map(|cut| slice::mapped(cut, &window.to_window))
+        .collect();
+    window.within = &within;
+    let played = play_in_space(system, &window, by_hits, game);
     let picture = played.map_err(SpaceError::from)?;
     let mut keys = picture.keys().to_vec();
     let inks = if by_hits {
@@ -209,7 +216,7 @@ fn fineness([width, height]: [u32; 2], points: u64) -> u32 {
 const INSIDE: f64 = 1.0 - 1e-6;
 
 /// Returns the window of a placement, in pixels or in `fine` samples along their sides.
-fn window(placement: &Placement, fine: u32) -> DepthWindow {
+fn window(placement: &Placement, fine: u32) -> DepthWindow<'static> {
     const { assert!(CLASS_BITS == DepthPicture::CLASS_BITS && EMPTY == DepthPicture::EMPTY) };
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let samples = SAMPLES as f64;
@@ -239,6 +246,7 @@ fn window(placement: &Placement, fine: u32) -> DepthWindow {
                 range: range.map(|z| z * scale),
                 steps,
                 size,
+                within: &[],
             }
         }
         Projection::Central { focus, middle } => DepthWindow {
@@ -250,6 +258,7 @@ fn window(placement: &Placement, fine: u32) -> DepthWindow {
             range,
             steps,
             size,
+            within: &[],
         },
     }
 }
@@ -280,6 +289,7 @@ mod tests {
     use crate::chaos::{ClassBy as Classes, Start};
     use crate::diagnostic::Source;
     use crate::document::Document;
+    use crate::geometry::HalfSpace;
     use crate::model::Model;
     use crate::render::Size;
     use crate::render::space::{Camera, Shade, pixels_in_space};
@@ -320,12 +330,25 @@ mod tests {
         const SIDE: u32 = 64;
         /// Size of the exact picture, whose pixels are means, relative to that of points.
         const FINE: usize = 8;
-        for (text, covered) in [(TETRAHEDRON, 0.97), (RECURRENT, 0.97), (FERN, 0.8)] {
+        let cut = |y: f64| HalfSpace {
+            normal: DVec3::new(0.2, 1.0, 0.4),
+            distance: y,
+        };
+        for (text, covered, cut) in [
+            (TETRAHEDRON, 0.97, cut(0.3)),
+            (RECURRENT, 0.97, cut(0.3)),
+            (FERN, 0.8, cut(6.0)),
+        ] {
             let (graph, system) = of(text);
-            for perspective in [None, Some(50.0)] {
+            for (perspective, cuts) in [
+                (None, vec![]),
+                (Some(50.0), vec![]),
+                (None, vec![cut]),
+                (Some(50.0), vec![cut]),
+            ] {
                 let coarse = options(SIDE, ColorBy::None);
                 let camera = Camera::default().perspective(perspective);
-                let space = SpaceOptions::default().camera(camera);
+                let space = SpaceOptions::default().camera(camera).cuts(cuts.clone());
                 let game = Game::default().points(400_000);
                 let points = draw_with(&graph, &system, &game, Tone::Log, &coarse, &space, 1);
                 let points = points.unwrap().0;
@@ -377,12 +400,12 @@ mod tests {
                 }
                 let share = f64::from(hits) / f64::from(ink);
                 assert!(
-                    ink > 500 && share > covered,
-                    "{text} {perspective:?}: {ink} {share}"
+                    ink > 500 && share > covered - 0.02 * cuts.len() as f64,
+                    "{text} {perspective:?} {cuts:?}: {ink} {share}"
                 );
                 assert!(
                     f64::from(far) < 0.05 * f64::from(ink),
-                    "{text}: {far} of {ink}"
+                    "{text} {cuts:?}: {far} of {ink}"
                 );
             }
         }

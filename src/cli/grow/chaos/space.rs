@@ -51,10 +51,6 @@ impl<'a> SpaceGame<'a> {
         progress: Option<&Progress>,
         path: &Path,
     ) -> Result<SpacePicture, Failure> {
-        if space.slice.is_some() || !space.cuts.is_empty() {
-            let message = "--slice and --cut apply to elements, and --method chaos draws points";
-            return Err(Failure::Usage(message.into()));
-        }
         if space.shadows {
             let message = "--shadows are those of elements, and --method chaos draws points";
             return Err(Failure::Usage(message.into()));
