@@ -9,7 +9,7 @@ use super::buffer::{SAMPLES, STEPS, TILE};
 use super::camera::{Placement, Projection};
 
 /// Depth of a pixel that shows nothing.
-const NOTHING: u32 = u32::MAX;
+pub(super) const NOTHING: u32 = u32::MAX;
 
 /// Depths of the pixels of a picture: those of the nearest point that each shows.
 #[derive(Clone, Debug)]
@@ -74,21 +74,35 @@ impl DepthMap {
         (depth != NOTHING).then_some(depth)
     }
 
+    /// Returns the depths of a row in steps, or [`NOTHING`].
+    pub(super) fn row(&self, y: usize) -> &[u32] {
+        let width = self.placement.size[0] as usize;
+        &self.depths[y * width..(y + 1) * width]
+    }
+
     /// Returns the point that a pixel shows, in view coordinates: x to the right, y upwards, z towards the viewer;
     /// `None` if it shows nothing.
-    #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
     pub(super) fn point(&self, x: usize, y: usize) -> Option<DVec3> {
         let depth = self.steps(x, y)?;
         let [far, near] = self.placement.range;
         let z = near - f64::from(depth) / STEPS * (near - far);
-        let [right, down] = [x, y].map(|at| (at as f64 + 0.5) * SAMPLES as f64);
+        let [right, down] = self.ray([x, y]);
         Some(match self.placement.projection {
             Projection::Parallel => DVec3::new(right, -down, z),
-            Projection::Central { focus, middle } => {
-                let across = [(right - middle[0]) / focus, (down - middle[1]) / focus];
-                DVec3::new(-z * across[0], z * across[1], z)
-            }
+            Projection::Central { .. } => DVec3::new(-z * right, z * down, z),
         })
+    }
+
+    /// Returns the place of a pixel to the right and downwards, in a picture in perspective at distance 1.
+    #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
+    pub(super) fn ray(&self, pixel: [usize; 2]) -> [f64; 2] {
+        let place = pixel.map(|at| (at as f64 + 0.5) * SAMPLES as f64);
+        match self.placement.projection {
+            Projection::Parallel => place,
+            Projection::Central { focus, middle } => {
+                [0, 1].map(|axis| (place[axis] - middle[axis]) / focus)
+            }
+        }
     }
 
     /// Returns the placement of the picture.

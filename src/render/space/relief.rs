@@ -48,20 +48,33 @@ pub(super) fn light(
     }
     if space.occlusion {
         let occlusion = Occlusion::new(depths);
-        dim(pixmap, threads, |x, y| occlusion.openness(x, y));
+        dim_rows(pixmap, threads, |y| {
+            occlusion.row(y).into_iter().map(f64::from)
+        });
     }
     Ok(())
 }
 
 /// Multiplies the colours of a picture by the intensities of its pixels.
 fn dim(pixmap: &mut Pixmap, threads: usize, intensity: impl Fn(usize, usize) -> f64 + Sync) {
+    let intensity = &intensity;
+    dim_rows(pixmap, threads, |y| {
+        (0..usize::MAX).map(move |x| intensity(x, y))
+    });
+}
+
+/// Multiplies the colours of a picture by the intensities of its pixels, which are given row by row.
+fn dim_rows<I: Iterator<Item = f64>>(
+    pixmap: &mut Pixmap,
+    threads: usize,
+    intensities: impl Fn(usize) -> I + Sync,
+) {
     let width = pixmap.width() as usize;
     let rows = pixmap.pixels_mut().chunks_mut(width.max(1)).enumerate();
     for_each(rows, threads, |(y, row)| {
-        for (x, pixel) in row.iter_mut().enumerate() {
+        for (pixel, intensity) in row.iter_mut().zip(intensities(y)) {
             if pixel.alpha() > 0 {
                 let [red, green, blue, alpha] = shade::parts(*pixel);
-                let intensity = intensity(x, y);
                 let lit = [red, green, blue].map(|part| part * intensity);
                 *pixel = shade::premultiplied([lit[0], lit[1], lit[2], alpha]);
             }
