@@ -97,6 +97,9 @@ impl<F: Bounded> Graph<F> {
                 return None;
             }
             *surely = surely.max(middle - radius);
+            if middle + radius <= *surely {
+                return Some(());
+            }
             let behaviour = self.objects()[instance.object].behaviour;
             // Negative zero is zero.
             let key = vector.coordinates().map(|it| (it + 0.0).to_bits());
