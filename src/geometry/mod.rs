@@ -34,6 +34,7 @@ pub use direction::Direction;
 pub use frame::{BEYOND, Corners, Frame, Outline};
 pub use frame2::Frame2;
 pub use frame3::{Attitude, Frame3};
+pub(crate) use glam::DQuat;
 pub use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 pub use homothety::Homothety;
 pub(crate) use linear::eigen;

@@ -115,6 +115,16 @@ impl Buffer {
         (upper < lower).then_some([first, upper, last, lower])
     }
 
+    /// Updates the pyramid after samples of a rectangle have been changed, which may reach into the margin: it is
+    /// counted from the corner of that.
+    pub(super) fn refresh_with_margin(&mut self, [left, top, right, bottom]: [usize; 4]) {
+        let [left, top, right, bottom] =
+            [left, top, right, bottom].map(|at| at.saturating_sub(MARGIN).min(SIDE));
+        if left < right && top < bottom {
+            self.refresh([left, top, right, bottom]);
+        }
+    }
+
     /// Updates the pyramid after samples of a rectangle have been changed.
     pub(super) fn refresh(&mut self, [left, top, right, bottom]: [usize; 4]) {
         const BLOCK: usize = 1 << BLOCKS[0];

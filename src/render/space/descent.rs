@@ -10,6 +10,7 @@ use super::scene::{ClassBy, End, Part, ends};
 use super::solid::{Pencil, View};
 use super::stamp::Stamp;
 use super::tints::Tints;
+use super::turned::Turned;
 use crate::style::Colour;
 
 /// Properties on which the colour of an instance depends.
@@ -65,6 +66,8 @@ pub(super) struct Roots<'a> {
     pub(super) pad: f64,
     /// Whether instances may lie in equal positions.
     pub(super) overlap: bool,
+    /// Stamps of turned instances, where there are any.
+    pub(super) turned: Option<&'a Turned>,
 }
 
 impl Roots<'_> {
@@ -117,7 +120,9 @@ impl Descent {
             }
             if let Some(form) = known {
                 self.visit_known(roots, view, buffer, form, &node);
-            } else if let Some(form) = own {
+            } else if let Some(form) = own
+                && !self.draws_turned(roots, view, buffer, &form, &node)
+            {
                 self.visit(roots, view, buffer, &form, &node);
             }
         }
@@ -143,6 +148,9 @@ impl Descent {
             self.deepest = self.deepest.max(stamp.deepest);
             return;
         }
+        if self.draws_turned(roots, view, buffer, form, node) {
+            return;
+        }
         let Some(steps) = roots.forms.steps(form) else {
             return self.visit(roots, view, buffer, form, node);
         };
@@ -157,6 +165,30 @@ impl Descent {
             self.stack
                 .extend(self::node(roots, view, buffer, inner, at, paint));
         }
+    }
+
+    /// Draws an instance as a turned stamp, if it may be one.
+    fn draws_turned(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        form: &Form,
+        node: &Node,
+    ) -> bool {
+        let Some(turned) = roots
+            .turned
+            .filter(|_| !view.cuts_through(node.at, form.half))
+        else {
+            return false;
+        };
+        let Some(stamp) = turned.draw(roots, view, buffer, (form, node.at, node.paint.class))
+        else {
+            return false;
+        };
+        self.drawn += stamp.elements;
+        self.deepest = self.deepest.max(form.level + stamp.deepest);
+        true
     }
 
     /// Visits an instance of a form the forms in which are not known.

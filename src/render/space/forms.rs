@@ -16,7 +16,7 @@ use super::stamp::{PHASES, PIECE, REACH, Stamp};
 use super::{buffer::MAX_CLASS, scene};
 
 /// Limit of the number of forms that are known before the descent.
-const MAX_FORMS: usize = 1 << 12;
+pub(super) const MAX_FORMS: usize = 1 << 12;
 
 /// Limit of the number of elements of a stamp.
 const MAX_ELEMENTS: u64 = 1 << 12;
@@ -36,7 +36,7 @@ pub(super) struct Form {
     pub(super) level: u32,
     pub(super) linear: DMat3,
     /// Upper bound of the stretch.
-    length: f64,
+    pub(super) length: f64,
     /// Middle of the box around the subtree, from the origin of the object.
     pub(super) middle: DVec3,
     /// Half sides of the box.
@@ -57,7 +57,13 @@ impl Form {
         Self::new(parts, placed, linear, self.length * child.length)
     }
 
-    fn new(parts: &[Part], (object, level): (usize, u32), linear: DMat3, length: f64) -> Self {
+    /// Creates the form of an object at a level under a linear map.
+    pub(super) fn new(
+        parts: &[Part],
+        (object, level): (usize, u32),
+        linear: DMat3,
+        length: f64,
+    ) -> Self {
         let (middle, half) = parts[object].hull.image(&linear);
         Self {
             object,

@@ -3,7 +3,7 @@
 //! The picture is divided into tiles, each of which is drawn from the whole graph, by any thread: instances that
 //! lie beside the tile or strictly behind what is drawn already are left out, and the nearest are drawn first.
 //! The cost is that of the visible part, at any number of steps. Instances that differ by a translation only are
-//! copies of one small picture in a parallel view. Elements smaller than a detail are not replaced,
+//! copies of one small picture in a parallel view; small ones that turn are copies within a pixel. Elements smaller than a detail are not replaced,
 //! and drawn as the convex solid that the graph has for them.
 //!
 //! A pixel has 4 × 4 samples, whose depths are multiples of 2⁻²² of the exact range of the set; the nearer wins,
@@ -18,6 +18,7 @@ mod eye;
 mod forms;
 mod lit;
 mod occlusion;
+mod options;
 mod place;
 mod points;
 mod relief;
@@ -29,10 +30,12 @@ mod slice;
 mod solid;
 mod stamp;
 mod tints;
+mod turned;
 mod visible;
 
 pub use depth_map::DepthMap;
 pub(in crate::render) use eye::Eye;
+pub use options::{SpaceError, SpaceOptions, SpacePicture};
 pub use points::{colours_of_maps, points_in_space};
 pub(super) use shade::ink;
 pub use visible::write_visible;
@@ -44,12 +47,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
-use crate::chaos::GameError;
 use crate::geometry::{Frame3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::parallel::with_team;
-use crate::style::{ColorBy, Colour, Named, SpaceView};
+use crate::style::{ColorBy, Colour};
 
 use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
 use self::camera::Placement;
@@ -61,135 +63,9 @@ use self::shade::Inks;
 use self::shadows::Shadows;
 use self::slice::Search;
 use self::solid::{Depths, View};
+use self::turned::Turned;
 use super::png::TooManyPixels;
-use super::{NoRoom, Options, Picture, Pixels, RenderError, Size};
-
-/// Error of drawing in space.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SpaceError {
-    /// The camera is not valid.
-    #[error(transparent)]
-    Camera(#[from] CameraError),
-    /// There is no room for the picture, or nothing to draw.
-    #[error(transparent)]
-    NoRoom(#[from] NoRoom),
-    /// Colours in space, or those of a format, do not distinguish this property.
-    #[error(
-        "colours by {} are not for this set in space: there, they are by step, tint, normal, the maps of a system, or, of a rule, by \
-         generator, direction, age, index or fractal",
-        .0.name()
-    )]
-    ColorBy(ColorBy),
-    /// The graph does not determine the extent of the set.
-    #[error("the extent of the set is not known: no bound is found by which its maps contract")]
-    NoBounds,
-    /// There are more faces than a format can count, or than are held in memory.
-    #[error("there are more than {limit} {what}")]
-    TooManyFaces {
-        /// Name of what is counted.
-        what: &'static str,
-        /// The limit.
-        limit: u64,
-    },
-    /// A file that meshes and nodes make would be too large.
-    #[error(
-        "the file would have some {:.0} MB, more than {} MB: fewer steps are smaller, and a .usda holds any number",
-        .bytes / 1e6, .limit / 1_000_000
-    )]
-    TooLarge {
-        /// Approximate size in bytes.
-        bytes: f64,
-        /// The limit.
-        limit: u64,
-    },
-    /// Slices and cuts leave nothing. The set lies between the two values along the first one's normal.
-    #[error(
-        "the slice or cut leaves nothing of the set, which lies between {:.6} and {:.6} along its normal",
-        .0[0], .0[1]
-    )]
-    NothingLeft([f64; 2]),
-    /// The chaos game cannot be played.
-    #[error(transparent)]
-    Game(#[from] GameError),
-}
-
-/// Options of pictures in space, beside those of all pictures.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct SpaceOptions {
-    /// Direction of view and projection.
-    pub camera: Camera,
-    /// Shading; depth cueing by default, and in vector formats depth cueing and light.
-    pub shade: Option<Shade>,
-    /// Light for relief.
-    pub light: Light,
-    /// Slab to which the picture is confined.
-    pub slice: Option<Slice>,
-    /// Half-spaces to which the picture is confined: what lies before their planes is cut off.
-    pub cuts: Vec<HalfSpace>,
-    /// Whether what is enclosed by its surroundings is darker: ambient occlusion, from the depths of the pixels.
-    pub occlusion: bool,
-    /// Whether the set throws shadows on itself.
-    pub shadows: bool,
-    /// Whether the depths of the pixels are kept, in [`SpacePicture::depths`].
-    pub keeps_depths: bool,
-}
-
-setters!(SpaceOptions {
-    camera: Camera,
-    shade: Option<Shade>,
-    light: Light,
-    slice: Option<Slice>,
-    cuts: Vec<HalfSpace>,
-    occlusion: bool,
-    shadows: bool,
-    keeps_depths: bool,
-});
-
-impl SpaceOptions {
-    /// Returns the half-spaces to which the picture is confined; `pixel` is the thickness of a section.
-    fn within(&self, pixel: f64) -> Vec<HalfSpace> {
-        let slice = self.slice.iter();
-        let slabs = slice.flat_map(|slice| slice.half_spaces(slice.thickness.unwrap_or(pixel)));
-        slabs.chain(self.cuts.iter().copied()).collect()
-    }
-
-    /// Returns whether the colours of pixels, or the caller, need depths.
-    fn needs_depths(&self, has_faces: bool) -> bool {
-        self.shade.unwrap_or_default().has_relief(has_faces)
-            || self.occlusion
-            || self.shadows
-            || self.keeps_depths
-    }
-}
-
-impl From<&SpaceView> for SpaceOptions {
-    fn from(view: &SpaceView) -> Self {
-        Self {
-            camera: view.camera(),
-            shade: view.shade,
-            light: view.light(),
-            slice: view.slice,
-            cuts: view.cuts.clone(),
-            occlusion: view.occlusion.unwrap_or_default(),
-            shadows: view.shadows.unwrap_or_default(),
-            keeps_depths: false,
-        }
-    }
-}
-
-/// A picture of a set in space.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct SpacePicture {
-    /// The pixels.
-    pub pixels: Pixels,
-    /// The depths of the pixels, if they are [kept](SpaceOptions::keeps_depths).
-    pub depths: Option<DepthMap>,
-    /// Description of the picture.
-    pub picture: Picture,
-}
+use super::{Options, Picture, Pixels, RenderError, Size};
 
 /// White: the paper of pictures whose style has no background.
 pub(crate) const PAPER: Colour = Colour::grey(255);
@@ -371,6 +247,10 @@ fn draw(
     // Stamps are shared by tiles.
     let has_stamps = class_by != ClassBy::Tint && lit.is_none_or(|lit| lit.bits().is_some());
     let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad, has_stamps);
+    let is_turned = lit.is_none() && scene::is_similar(graph);
+    let turned = { is_turned }
+        .then(|| Turned::of(&parts, &start, &forms, &end, class_by, &placement))
+        .flatten();
     let scene = Scene {
         roots: Roots {
             parts: &parts,
@@ -381,6 +261,7 @@ fn draw(
             inks: &inks,
             pad,
             overlap: copies::overlap(&parts),
+            turned: turned.as_ref(),
         },
         cuts: cuts.collect(),
         placement,

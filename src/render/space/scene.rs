@@ -182,6 +182,12 @@ pub(super) fn has_faces(graph: &Graph<Frame3>, steps: Option<u32>) -> bool {
     steps.is_some() || objects.any(|object| object.is_kept() && object.visible)
 }
 
+/// Returns whether all maps of a graph are similarities, those of the initiator included.
+pub(super) fn is_similar(graph: &Graph<Frame3>) -> bool {
+    let mut start = graph.initiator(0).instances.iter();
+    graph.is_similar() && start.all(|it| it.frame.is_similarity(it.length))
+}
+
 /// Returns the instances of the initiator.
 pub(super) fn start(graph: &Graph<Frame3>) -> Vec<Child> {
     let instances = &graph.initiator(0).instances;

@@ -235,7 +235,7 @@ impl Planes {
     /// Draws the solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
     /// are `LIT`, or else all have `class`.
     #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-    fn draw_row<const LIT: bool>(
+    pub(super) fn draw_row<const LIT: bool>(
         &self,
         row: &mut [u32],
         view: &View<'_>,

@@ -6,7 +6,7 @@
 
 use crate::geometry::{DAffine3, DVec3};
 
-use super::buffer::{Buffer, CLASS_BITS, MARGIN, SIDE, STEPS, STRIDE};
+use super::buffer::{Buffer, CLASS_BITS, MARGIN, STEPS, STRIDE};
 use super::descent::Roots;
 use super::forms::Form;
 use super::lit::Classes;
@@ -19,7 +19,7 @@ pub(super) const PHASES: usize = 4;
 const SPREAD: f64 = 0.5 / PHASES as f64;
 
 /// Samples along a side of a stamp.
-const WIDTH: usize = MARGIN;
+pub(super) const WIDTH: usize = MARGIN;
 
 /// Largest half side of a form that has stamps, in samples.
 pub(super) const REACH: f64 = WIDTH as f64 / 2.0 - 0.5 - SPREAD;
@@ -115,12 +115,8 @@ impl Stamp {
             let start = (corner[1] + top) * STRIDE + corner[0] + left / PIECE * PIECE;
             let keys = &mut buffer.with_margin()[start..];
             blit(keys, stamp.columns, &stamp.pieces, &copy);
-            let inside = |at: usize| at.saturating_sub(MARGIN).min(SIDE);
-            let [left, right] = [left, right].map(|at| inside(corner[0] + at));
-            let [top, bottom] = [top, bottom].map(|at| inside(corner[1] + at));
-            if left < right && top < bottom {
-                buffer.refresh([left, top, right, bottom]);
-            }
+            let [x, y] = corner;
+            buffer.refresh_with_margin([x + left, y + top, x + right, y + bottom]);
         }
         Some(stamp)
     }
