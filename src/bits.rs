@@ -1,6 +1,7 @@
 //! Sets of boxes as bits: the occupied boxes of one size, which can be folded to larger boxes.
 
 mod dilation;
+mod window;
 
 use crate::morton::gathered;
 use crate::saturating::ones;
@@ -85,6 +86,17 @@ impl Bits {
     #[inline]
     pub fn set(&mut self, column: usize, row: usize) {
         self.words[row * self.width.div_ceil(64) + column / 64] |= 1 << (column % 64);
+    }
+
+    /// Sets a box, or clears it.
+    ///
+    /// # Panics
+    ///
+    /// Panics, or changes another bit, if the place is outside.
+    #[inline]
+    pub fn assign(&mut self, column: usize, row: usize, is_set: bool) {
+        let word = &mut self.words[row * self.width.div_ceil(64) + column / 64];
+        *word = *word & !(1 << (column % 64)) | u64::from(is_set) << (column % 64);
     }
 
     /// Returns `true` if a box is set.

@@ -40,7 +40,8 @@
 //! | rules made by a program | [`build`] |
 //!
 //! Everything that the front door does is done by the rooms behind it, which are public as far as programs
-//! need them: to measure pictures and points ([`measure`]), to compute distances in pictures ([`morphology`]), to visit elements without an iterator ([`grow`]), or
+//! need them: to measure pictures and points ([`measure`]), to compute distances and
+//! skeletons in pictures ([`morphology`]), to visit elements without an iterator ([`grow`]), or
 //! to draw into memory with all options ([`render`]).
 //!
 //! # Features
@@ -102,6 +103,7 @@
 //! the elements about a point, as a graph of its own that is drawn like any other.
 //!
 //! Each stage builds on the ones above it. `render`, `export` and `measure` do not depend on each other;
+//! [`morphology`] erodes and dilates pictures of bits and computes their skeletons, and stands beside the stages.
 //! [`import`] reads pictures and tables of points to be measured, and files of other programs, which become
 //! files of kfrac. Figures are drawn on the surfaces of `render`, and have all its formats. A model that a
 //! program [`build`]s is written as a file and read as such. The [`catalogue`] resolves names, mistakes in

@@ -36,6 +36,7 @@ mod readme;
 mod reference;
 mod schema;
 mod sheets;
+mod skeletons;
 mod snapshots;
 mod surroundings;
 mod systems;

@@ -32,20 +32,8 @@ impl Bits {
         if (left, right, rows.len()) == (0, self.width, self.height) {
             return Cow::Borrowed(self);
         }
-        let mut cropped = Self::new(right - left, rows.len());
-        let stride = cropped.width.div_ceil(64);
-        for (words, row) in cropped.words.chunks_exact_mut(stride).zip(rows) {
-            let row = &self.row(row)[left / 64..];
-            for (number, word) in words.iter_mut().enumerate() {
-                let next = row.get(number + 1).copied().unwrap_or_default();
-                *word = match left % 64 {
-                    0 => row[number],
-                    shift => row[number] >> shift | next << (64 - shift),
-                };
-            }
-        }
-        // There is nothing beyond the right side, so no bit beyond the width is set.
-        Cow::Owned(cropped)
+        let corner = [left, above].map(usize::cast_signed);
+        Cow::Owned(self.window(corner, right - left, rows.len()))
     }
 
     /// Returns bands of rows, evenly spread and separated by empty rows, if there are more than 2¹⁸ words;

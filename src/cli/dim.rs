@@ -8,7 +8,6 @@ use std::num::NonZero;
 use std::path::{Path, PathBuf};
 
 use clap::ValueHint;
-use clap::builder::PossibleValue;
 
 use crate::catalogue::Catalogue;
 use crate::figure::dimension;
@@ -20,6 +19,7 @@ use crate::render::{self, Labels};
 pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::family::{Assignment, assignment};
+use super::pixels::PixelArguments;
 use super::rule::RuleArguments;
 use super::{Failure, format, growth, help, number, output, space, text};
 
@@ -44,7 +44,7 @@ use super::{Failure, format, growth, help, number, output, space, text};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Rule (a file or a name in the library), picture (PNG, JPEG), points (CSV, PLY), or - for any of them on
+    /// Rule (a file or a name in the library), picture (PNG, JPEG, PBM, PGM, PPM), points (CSV, PLY), or - for any of them on
     /// standard input
     #[arg(value_name = "RULE|IMAGE|POINTS")]
     rule: PathBuf,
@@ -95,18 +95,8 @@ pub(super) struct Arguments {
     /// Number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = growth::threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
-    /// Property of a pixel that decides whether it belongs to the set [default: opacity, if any pixel is
-    /// transparent, or else darkness]
-    #[arg(long, help_heading = "Pictures", value_parser = channel())]
-    channel: Option<crate::import::Channel>,
-    /// Least darkness or opacity, from 1 to 255, of a pixel of the set [default: the best separation of the
-    /// pixels (Otsu 1979)]
-    #[arg(long, value_name = "T", help_heading = "Pictures")]
-    #[arg(value_parser = clap::value_parser!(u8).range(1..))]
-    threshold: Option<u8>,
-    /// Measures the light or transparent pixels instead
-    #[arg(long, help_heading = "Pictures")]
-    invert: bool,
+    #[command(flatten)]
+    pixels: PixelArguments,
     /// Columns of a table that hold the two or three coordinates, by name or number
     #[arg(long, value_name = "X,Y[,Z]", help_heading = "Tables", value_parser = columns)]
     columns: Option<Columns>,
@@ -240,16 +230,4 @@ fn columns(text: &str) -> Result<Columns, String> {
         2 | 3 => Ok(Columns(columns)),
         _ => Err("write the names or numbers of two or three columns: X,Y or X,Y,Z".into()),
     }
-}
-
-fn channel() -> impl clap::builder::TypedValueParser<Value = crate::import::Channel> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    let values = [
-        PossibleValue::new("darkness").help("The darkness of the pixel on white"),
-        PossibleValue::new("alpha").help("The opacity of the pixel"),
-    ];
-    PossibleValuesParser::new(values).map(|name| match name.as_str() {
-        "alpha" => crate::import::Channel::Alpha,
-        _ => crate::import::Channel::Darkness,
-    })
 }

@@ -24,16 +24,19 @@ mod length;
 mod light;
 mod list;
 mod man;
+mod morph;
 mod new;
 mod number;
 mod output;
 mod picture;
+mod pixels;
 mod progress;
 mod readable;
 mod rule;
 mod schema;
 mod sheet;
 mod show;
+mod skeleton;
 mod space;
 mod steps;
 mod stop;
@@ -76,6 +79,8 @@ enum Command {
     Info(info::Arguments),
     Count(count::Arguments),
     Dim(dim::Arguments),
+    Morph(morph::Arguments),
+    Skeleton(skeleton::Arguments),
     New(new::Arguments),
     Cat(cat::Arguments),
     List(list::Arguments),
@@ -202,6 +207,8 @@ pub fn run() -> ExitCode {
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Count(arguments) => count::run(arguments, &catalogue),
         Command::Dim(arguments) => dim::run(arguments, &catalogue),
+        Command::Morph(arguments) => morph::run(arguments),
+        Command::Skeleton(arguments) => skeleton::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Cat(arguments) => cat::run(arguments, &catalogue),
         Command::List(arguments) => list::run(arguments, &catalogue),

@@ -1,10 +1,12 @@
 //! Elements and points as tables, for other programs.
 
+mod bits;
 mod listed;
 mod ply;
 mod points;
 mod table;
 
+pub use bits::write_bits;
 pub use listed::Listed;
 pub use ply::{Surface, write_ply};
 pub use points::write_points;

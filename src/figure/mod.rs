@@ -4,6 +4,7 @@ pub mod difference;
 pub mod dimension;
 pub mod rule;
 pub mod sheet;
+pub mod skeleton;
 mod text;
 
 use crate::style::Colour;

@@ -1,4 +1,6 @@
-//! Pictures (PNG and JPEG) as one value a pixel, and thresholds that separate the set from its background.
+//! Pictures (PNG, JPEG, PBM, PGM and PPM) as one value a pixel, and thresholds that separate the set from its background.
+
+mod pnm;
 
 use std::io::Cursor;
 
@@ -15,8 +17,8 @@ const MAX_PIXELS: u64 = 1 << 30;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// The file is neither PNG nor JPEG.
-    #[error("the picture is neither PNG nor JPEG")]
+    /// The file has none of the known formats.
+    #[error("the picture is neither PNG, JPEG, PBM, PGM nor PPM")]
     Unknown,
     /// The PNG cannot be read.
     #[error("the PNG cannot be read")]
@@ -24,6 +26,9 @@ pub enum PictureError {
     /// The JPEG cannot be read.
     #[error("the JPEG cannot be read: {0}")]
     Jpeg(String),
+    /// The PBM, PGM or PPM cannot be read.
+    #[error("the PBM, PGM or PPM cannot be read: {0}")]
+    Pnm(String),
     /// The picture has too many pixels.
     #[error("the picture has {width} x {height} pixels, more than {MAX_PIXELS}")]
     TooLarge {
@@ -60,26 +65,28 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Returns whether bytes start with the signature of a PNG or a JPEG.
+    /// Returns whether bytes start with the signature of a PNG, JPEG, PBM, PGM or PPM.
     #[must_use]
     pub fn is_picture(bytes: &[u8]) -> bool {
-        is_png(bytes) || is_jpeg(bytes)
+        is_png(bytes) || is_jpeg(bytes) || pnm::is_pnm(bytes)
     }
 
-    /// Reads a PNG or JPEG.
+    /// Reads a PNG, JPEG, PBM, PGM or PPM.
     ///
     /// With `None`, the channel is the opacity if the picture has transparent pixels, or else the darkness.
     /// The darkness of a transparent pixel is that on a white background.
     ///
     /// # Errors
     ///
-    /// Returns an error if the bytes are neither format or are damaged, or if the picture is empty or too
+    /// Returns an error if the bytes have none of these formats or are damaged, or if the picture is empty or too
     /// large.
     pub fn read(bytes: &[u8], channel: Option<Channel>) -> Result<Self, PictureError> {
         let (width, height, values, channel) = if is_png(bytes) {
             png(bytes, channel)?
         } else if is_jpeg(bytes) {
             jpeg(bytes, channel)?
+        } else if pnm::is_pnm(bytes) {
+            pnm::read(bytes, channel)?
         } else {
             return Err(PictureError::Unknown);
         };

@@ -8,11 +8,11 @@ use std::num::NonZero;
 use crate::bits::Bits;
 use crate::parallel::for_each;
 
-use columns::Columns;
-use envelope::Envelope;
+pub(super) use columns::Columns;
+pub(super) use envelope::Envelope;
 
 /// Number of rows that one thread transforms at once.
-const BAND: usize = 64;
+pub(super) const BAND: usize = 64;
 
 /// Largest sum of the squared sides of a picture: squared distances are numbers of 32 bits.
 const MAX_DIAGONAL: u64 = u32::MAX as u64;

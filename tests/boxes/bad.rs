@@ -104,7 +104,7 @@ fn bad_input_is_refused_with_a_reason() {
         (
             "text.png",
             b"not a picture",
-            "the picture is neither PNG nor JPEG",
+            "the picture is neither PNG, JPEG, PBM, PGM nor PPM",
         ),
         (
             "cut.jpg",

@@ -13,15 +13,16 @@ use crate::geometry::{DAffine2, DAffine3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::ifs::{AffineMap, Ifs};
-use crate::import::{Channel, PlyError, Raster, Table, TableError, read_ply, read_points};
+use crate::import::{PlyError, Raster, Table, TableError, read_ply, read_points};
 use crate::measure::exact::{GraphDimensions, Spectrum, dimensions_of_graph};
 use crate::measure::{
-    Bits, BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Points, Space, grown,
+    BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Points, Space, grown,
 };
 use crate::model::Model;
 
 use super::super::Failure;
 use super::super::input;
+use super::super::pixels::MAX_BYTES;
 use super::super::rule::Loaded;
 use super::{Arguments, Measured};
 
@@ -44,9 +45,6 @@ pub(super) fn exact(loaded: &Loaded) -> Result<GraphDimensions, Failure> {
         None => dimensions_of_graph(&compiled(loaded)?.0),
     })
 }
-
-/// Largest size of a picture file in bytes.
-const MAX_BYTES: u64 = 1 << 31;
 
 pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Measured, Failure> {
     let path = &arguments.rule;
@@ -82,7 +80,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     match kind {
         InputKind::Picture => {
             let bytes = read(&mut whole, MAX_BYTES)?;
-            let picture = Raster::read(&bytes, arguments.channel);
+            let picture = Raster::read(&bytes, arguments.pixels.channel);
             drop(bytes);
             of_picture(arguments, &name, picture.with_context(|| name.clone())?)
         }
@@ -137,7 +135,7 @@ impl InputKind {
             _ if Raster::is_picture(head) => Self::Picture,
             _ if head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n") => Self::Ply,
             Some("ply") => Self::Ply,
-            Some("png" | "jpg" | "jpeg") => Self::Picture,
+            Some("png" | "jpg" | "jpeg" | "pbm" | "pgm" | "ppm" | "pnm") => Self::Picture,
             Some("csv" | "txt") => Self::Table,
             Some("yaml" | "yml" | "json") => Self::Rule,
             _ => {
@@ -298,33 +296,8 @@ fn of_growth(
 
 fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Measured, Failure> {
     only_in_space(arguments)?;
-    let picture = if arguments.invert {
-        picture.inverted()
-    } else {
-        picture
-    };
-    let threshold = arguments.threshold.unwrap_or_else(|| picture.otsu());
-    let pixels = Bits::of_bytes(&picture.values, picture.width, picture.height, threshold);
-    let (set, all) = (pixels.count(), picture.values.len() as u64);
-    let quality = match (picture.channel, arguments.invert) {
-        (Channel::Darkness, false) => "dark",
-        (Channel::Darkness, true) => "light",
-        (Channel::Alpha, false) => "opaque",
-        (Channel::Alpha, true) => "transparent",
-    };
-    if set == 0 {
-        let message = format!(
-            "{name}: no pixel is {quality} (threshold {threshold}): try --invert or --threshold"
-        );
-        return Err(anyhow::anyhow!(message).into());
-    }
-    let mut warnings = Vec::new();
-    if set > all / 2 && arguments.threshold.is_none() {
-        warnings.push(format!(
-            "{:.0} % of all pixels are {quality}: with --invert, the others are measured",
-            part(set, all)
-        ));
-    }
+    let set = arguments.pixels.decide(name.into(), picture)?;
+    let pixels = set.bits;
     let base = arguments.base.map(|base| whole(Some(base), "pictures"));
     let base = base.transpose()?;
     let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
@@ -332,14 +305,11 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Meas
     let mut measured = Measured {
         name: name.into(),
         title: name.into(),
-        set: format!(
-            "{set} {quality} pixels of {} x {} (threshold {threshold})",
-            picture.width, picture.height
-        ),
+        set: set.description,
         unit: Some("pixels"),
         counting,
         lacunarity: Masses::of_pixels(&pixels, [0; 2]).lacunarity(),
-        warnings,
+        warnings: set.warning.into_iter().collect(),
         ..Measured::default()
     };
     let orders = &arguments.orders;
@@ -347,11 +317,6 @@ fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Meas
     let spectrum = Generalised::of_pixels(&pixels, counted, orders, &grids, threads);
     measured.report(spectrum);
     Ok(measured)
-}
-
-#[expect(clippy::cast_precision_loss, reason = "two digits are shown")]
-fn part(some: u64, all: u64) -> f64 {
-    100.0 * some as f64 / all as f64
 }
 
 /// Returns the base as a whole number, which boxes that are merged need.

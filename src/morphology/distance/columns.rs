@@ -7,12 +7,12 @@ use crate::saturating::ones;
 pub(super) const NONE: u32 = u32::MAX;
 
 /// The rows of the set pixels that are next in each column.
-pub(super) struct Columns(Vec<u32>);
+pub(in crate::morphology) struct Columns(Vec<u32>);
 
 impl Columns {
     /// Fills rows from `first` on with the row of the nearest set pixel of each column, the upper one of two, or
     /// [`NONE`].
-    pub(super) fn fill(set: &Bits, first: usize, nearest: &mut [u32]) {
+    pub(in crate::morphology) fn fill(set: &Bits, first: usize, nearest: &mut [u32]) {
         let width = set.width();
         let rows = nearest.len() / width;
         let mut above = Self::next(set, (0..first).rev());

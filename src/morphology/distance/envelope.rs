@@ -9,14 +9,13 @@
 
 use super::columns::NONE;
 
-/// A pixel of the row whose column holds the nearest pixel of the set for pixels from `from` on.
+/// A place whose parabola is the lowest from `from` on.
 #[derive(Clone, Copy)]
 struct Site {
     column: i64,
-    /// Squared distance to the set in the column.
+    /// Least value of the parabola.
     height: i64,
-    /// Row of the pixel of the set.
-    row: u32,
+    owner: u32,
     from: i64,
 }
 
@@ -34,9 +33,9 @@ impl Site {
     }
 }
 
-/// Sites of a part of a row, from left to right.
+/// The parabolas (x − column)² + height that are the lowest in a part of a row, from left to right.
 #[derive(Default)]
-pub(super) struct Envelope(Vec<Site>);
+pub(in crate::morphology) struct Envelope(Vec<Site>);
 
 impl Envelope {
     /// Replaces the rows of the nearest pixels in each column by the indices of the nearest pixels, and fills in
@@ -60,21 +59,36 @@ impl Envelope {
             }
             for (column, &row) in (from..=to).zip(&nearest[from..]) {
                 if row != NONE {
-                    self.add(from, column, row.abs_diff(here), row);
+                    self.add(from, column, squared_away(row, here), row);
                 }
             }
-            self.write(from..to, squared, nearest);
+            self.values(from..to, |column, value, site, row| {
+                squared[column] = value as u32;
+                nearest[column] = index(width, row, site);
+            });
             from = to;
         }
     }
 
-    /// Adds the site of the next column of a gap, and drops those that it hides.
-    fn add(&mut self, gap: usize, column: usize, away: u32, row: u32) {
+    /// Drops all parabolas.
+    pub(in crate::morphology) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Adds the parabola of a column, to the right of all others, and drops those that it hides from column `from`
+    /// on, where the part of the row begins.
+    pub(in crate::morphology) fn add(
+        &mut self,
+        from: usize,
+        column: usize,
+        height: i64,
+        owner: u32,
+    ) {
         let mut site = Site {
             column: column as i64,
-            height: i64::from(away) * i64::from(away),
-            row,
-            from: gap as i64,
+            height,
+            owner,
+            from: from as i64,
         };
         while let Some(last) = self.0.last() {
             if last.at(last.from) <= site.at(last.from) {
@@ -86,20 +100,32 @@ impl Envelope {
         self.0.push(site);
     }
 
-    /// Writes the columns of a gap from right to left.
-    fn write(&mut self, gap: std::ops::Range<usize>, squared: &mut [u32], nearest: &mut [u32]) {
-        let width = nearest.len();
-        let mut column = gap.end;
+    /// Passes the columns of the part from right to left, each with the value of the envelope, and with the column
+    /// and the owner of the parabola that is the lowest.
+    pub(in crate::morphology) fn values(
+        &mut self,
+        part: std::ops::Range<usize>,
+        mut pass: impl FnMut(usize, i64, usize, u32),
+    ) {
+        let mut column = part.end;
         while let Some(site) = self.0.pop() {
             let from = site.from as usize;
-            let own = index(width, site.row, site.column as usize);
             while column > from {
                 column -= 1;
-                squared[column] = site.at(column as i64) as u32;
-                nearest[column] = own;
+                pass(
+                    column,
+                    site.at(column as i64),
+                    site.column as usize,
+                    site.owner,
+                );
             }
         }
     }
+}
+
+fn squared_away(row: u32, here: u32) -> i64 {
+    let away = i64::from(row) - i64::from(here);
+    away * away
 }
 
 /// Returns the index of a pixel.
