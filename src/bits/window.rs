@@ -90,11 +90,6 @@ impl Bits {
             words[last] |= tail;
         }
     }
-
-    /// Returns the words of all rows; no bit beyond the width may be set.
-    pub(crate) fn words_mut(&mut self) -> &mut [u64] {
-        &mut self.words
-    }
 }
 
 /// Returns the 64 bits of a row from a column on, which may be outside.
