@@ -149,6 +149,12 @@ impl Catalogue {
         Self { folders }
     }
 
+    /// Returns the folder that is searched first, which need not exist.
+    #[cfg(feature = "studio")]
+    pub(crate) fn first_folder(&self) -> Option<&Path> {
+        self.folders.first().map(PathBuf::as_path)
+    }
+
     /// Reads a complete fractal by path or by name. An existing file takes precedence over a name in
     /// the library.
     ///

@@ -48,7 +48,8 @@
 //!
 //! | feature | by default | purpose |
 //! |---|---|---|
-//! | `cli` | yes | the command line; enables all other features |
+//! | `cli` | yes | the command line; enables all features below |
+//! | `studio` | yes | the studio, a page in the browser; enables `cli` |
 //! | `jpeg` | with `cli` | JPEG, besides PNG, among the pictures that are measured |
 //! | `meshes` | with `cli` | meshes from files as sets in space |
 //! | `simd` | with `cli` | random iteration with AVX2 where the processor has it: the same points, sooner |
@@ -159,6 +160,8 @@ pub mod render;
 mod resolve;
 pub mod rule;
 mod saturating;
+#[cfg(feature = "studio")]
+pub mod studio;
 pub mod style;
 mod written;
 pub mod zoom;

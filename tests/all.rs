@@ -38,6 +38,7 @@ mod schema;
 mod sheets;
 mod skeletons;
 mod snapshots;
+mod studio;
 mod surroundings;
 mod systems;
 mod terminal;

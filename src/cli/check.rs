@@ -1,12 +1,14 @@
 //! `kfrac check`: reports all errors in rule files.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 use crate::document::Document;
+use crate::model::Model;
 
 use super::component::Component;
 use super::{Failure, help, output, rule, text};
@@ -86,7 +88,19 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
         Some(component) => component.in_a_rule(),
         None => rule::open(file, catalogue)?,
     };
-    let document = Document::read(&source, catalogue)?;
+    Ok(checked(&source, catalogue)?.2)
+}
+
+/// Reads, resolves and compiles a rule; returns it with its mistakes that are not of syntax or meaning.
+///
+/// # Errors
+///
+/// If the rule cannot be resolved: all mistakes.
+pub(crate) fn checked(
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+) -> Result<(Document, Model, Diagnostics), Diagnostics> {
+    let document = Document::read(source, catalogue)?;
     let (model, mut diagnostics) = document.resolve(&[])?;
     let steps = model.metadata().steps.unwrap_or(1).min(16);
     // Some mistakes show only where elements are replaced.
@@ -97,7 +111,7 @@ fn check(file: &Path, catalogue: &Catalogue) -> Result<Diagnostics, Failure> {
     if let Err(error) = compiled {
         diagnostics.push(model.diagnostic(&error));
     }
-    Ok(diagnostics)
+    Ok((document, model, diagnostics))
 }
 
 pub(super) fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> DiagnosticRow<'a> {

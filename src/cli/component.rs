@@ -11,7 +11,7 @@ use crate::document::node::{Node, Value};
 use super::Failure;
 
 /// Component that the command line names.
-pub(super) struct Component {
+pub(crate) struct Component {
     entry: LibraryFile,
     source: Arc<Source>,
 }
@@ -26,6 +26,12 @@ impl Component {
         Ok(Some(Self { entry, source }))
     }
 
+    /// Returns the component of an entry that has been read.
+    #[cfg(feature = "studio")]
+    pub(crate) fn of(entry: LibraryFile, source: Arc<Source>) -> Self {
+        Self { entry, source }
+    }
+
     /// Returns the kind of the component.
     pub(super) fn shelf(&self) -> Shelf {
         self.entry.shelf
@@ -38,7 +44,7 @@ impl Component {
 
     /// Returns a minimal rule that uses the component, with its title, description and source: components are
     /// drawn and checked in a rule.
-    pub(super) fn in_a_rule(&self) -> Arc<Source> {
+    pub(crate) fn in_a_rule(&self) -> Arc<Source> {
         let chain =
             |ends: &[f64]| sequence(ends.iter().map(|&x| sequence([x, 0.0].map(Value::Number))));
         let (line, halves) = (chain(&[0.0, 1.0]), chain(&[0.0, 0.5, 1.0]));

@@ -110,7 +110,7 @@ fn complex(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
     PARTS.into_iter().zip(sides).map(part).collect()
 }
 
-fn value(text: &str) -> Result<f64, String> {
+pub(crate) fn value(text: &str) -> Result<f64, String> {
     let program = Expression::parse(text)
         .and_then(|expression| expression.compile(&Scope::new()))
         .map_err(|error| match error.hint {

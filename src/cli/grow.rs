@@ -8,14 +8,21 @@ mod scene;
 mod space;
 mod svg;
 mod visible;
+mod watching;
 mod zoom;
 
 use std::path::{Path, PathBuf};
+#[cfg(feature = "studio")]
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::ValueHint;
+#[cfg(feature = "studio")]
+use clap::{Args, FromArgMatches};
 
 use crate::catalogue::Catalogue;
+#[cfg(feature = "studio")]
+use crate::diagnostic::Source;
 use crate::export;
 use crate::fractal::Goal;
 use crate::graph::Graph;
@@ -24,6 +31,8 @@ use crate::style::Named;
 
 use super::camera::{self, SpaceArguments};
 use super::growth::GrowthArguments;
+#[cfg(feature = "studio")]
+use super::held::Held;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
@@ -68,6 +77,12 @@ pub(super) struct Arguments {
     format: Option<Format>,
     #[command(flatten)]
     growth: GrowthArguments,
+    /// Writes the output again whenever the rule, or a file that it uses, changes; Ctrl-C ends it
+    #[arg(long)]
+    watch: bool,
+    /// Opens the output in the program that the system has for such files
+    #[arg(long)]
+    open: bool,
     /// Long side of the picture in pixels or millimetres, or WIDTHxHEIGHT
     ///
     /// The other side follows from the shape. If both sides are given, the shape is fitted into them. A PNG
@@ -130,6 +145,8 @@ Examples:
       Writes outlines for a cutter; for paper, write a .pdf
   kfrac grow koch --steps 200 --svg instanced -o koch.svg
       Writes 4^200 elements as a small file of nested instances
+  kfrac grow mine.yaml --watch --open
+      Opens the picture, and draws it again whenever the file is saved
   kfrac grow koch --steps 4 --format csv -o - | head
       Lists the first elements as CSV
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
@@ -149,58 +166,44 @@ Examples:
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
-    let start = Instant::now();
     let plan = Plan::of(arguments)?;
-    let loaded = arguments.rule.load(catalogue, arguments.growth.quiet)?;
-    if loaded.model.is_in_space() {
-        let loaded = loaded.grown(&arguments.growth);
-        let (path, summary, bytes) = match plan {
-            Plan::Scene(format) => scene::write(arguments, &loaded, format)?,
-            Plan::Picture { format, .. } if arguments.draws_faces(format) => {
-                visible::draw(arguments, &loaded, format)?
-            }
-            plan => space::draw(arguments, &loaded, &plan)?,
-        };
-        arguments.report(&path, &summary, bytes, start);
-        return Ok(());
+    let is_file = arguments.output.as_deref() != Some(Path::new("-"));
+    if !is_file && (arguments.watch || arguments.open) {
+        let message = "--watch and --open are for files, and the output is standard output";
+        return Err(Failure::Usage(message.into()));
     }
-    arguments.space.refuse_in_plane(&loaded)?;
-    if arguments.depth.is_some() {
-        return Err(camera::in_plane("depth", &loaded));
+    if arguments.watch {
+        return watching::run(arguments, &plan, catalogue);
     }
-    let default = arguments.rule.file("", plan.extension());
-    let path = arguments.output.as_ref().unwrap_or(&default);
-    let (summary, bytes) = match plan {
-        Plan::Table(format) => arguments.list(&loaded.grown(&arguments.growth), format, path)?,
-        Plan::Picture {
-            format,
-            shown,
-            is_light,
-        } => Drawing::new(arguments, loaded, format, shown, path)?.write(is_light)?,
-        Plan::Chaos(table) => {
-            let game = chaos::PlaneGame::new(arguments, &loaded)?;
-            output::write(path, arguments.growth.quiet, |out, progress| match table {
-                Some(format) => game.list(format, progress, out, path),
-                None => game.draw(progress, out, path),
-            })?
-        }
-        Plan::Scene(format) => {
-            let message = format!(
-                "a .{} holds elements in space, and {} lies in the plane: write a .svg, .png, .pdf or .dxf",
-                Format::Scene(format).name(),
-                loaded.name
-            );
-            return Err(Failure::Usage(message));
-        }
-        Plan::Cloud => {
-            return Err(Failure::Usage(format!(
-                "a .ply holds points in space, and {} lies in the plane: write a .csv of its points",
-                loaded.name
-            )));
-        }
-    };
-    arguments.report(path, &summary, bytes, start);
+    let path = arguments.run_once(&plan, catalogue, &mut Vec::new())?;
+    if arguments.open {
+        watching::open(&path)?;
+    }
     Ok(())
+}
+
+/// Runs the command with the given arguments and the text of its rule, and returns a summary of one line. Standard
+/// output and messages go to `held`.
+///
+/// # Errors
+///
+/// As for the command.
+#[cfg(feature = "studio")]
+pub(crate) fn hold(
+    arguments: &[String],
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+    held: Arc<Held>,
+) -> Result<String, Failure> {
+    let command = Arguments::augment_args(clap::Command::new("grow").no_binary_name(true));
+    let usage = |error: clap::Error| Failure::usage(&error);
+    let matches = command.try_get_matches_from(arguments).map_err(usage)?;
+    let mut arguments = Arguments::from_arg_matches(&matches).map_err(usage)?;
+    arguments.growth.held = Some(held);
+    let plan = Plan::of(&arguments)?;
+    let loaded = arguments.rule.load_from(source, catalogue, true)?;
+    let (_, summary, _) = arguments.grow(&plan, loaded)?;
+    Ok(summary)
 }
 
 impl Arguments {
@@ -224,6 +227,81 @@ impl Arguments {
     /// Returns whether random iteration is requested: for a PLY file, also by a number of points.
     fn draws_points(&self) -> bool {
         self.chaos.is_asked() || (self.chaos.has_points() && self.is_ply())
+    }
+
+    /// Reads the rule and writes the output once; returns its path. `files` become those that the rule consists of.
+    fn run_once(
+        &self,
+        plan: &Plan,
+        catalogue: &Catalogue,
+        files: &mut Vec<PathBuf>,
+    ) -> Result<PathBuf, Failure> {
+        let start = Instant::now();
+        let loaded = self.rule.load(catalogue, self.growth.quiet)?;
+        *files = { loaded.document.paths().into_iter() }
+            .map(Path::to_path_buf)
+            .collect();
+        let (path, summary, bytes) = self.grow(plan, loaded)?;
+        self.report(&path, &summary, bytes, start);
+        Ok(path)
+    }
+
+    /// Writes what the plan asks for; returns the path, a summary and the number of bytes.
+    fn grow(&self, plan: &Plan, loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+        if loaded.model.is_in_space() {
+            let loaded = loaded.grown(&self.growth);
+            return match *plan {
+                Plan::Scene(format) => scene::write(self, &loaded, format),
+                Plan::Picture { format, .. } if self.draws_faces(format) => {
+                    visible::draw(self, &loaded, format)
+                }
+                _ => space::draw(self, &loaded, plan),
+            };
+        }
+        self.space.refuse_in_plane(&loaded)?;
+        if self.depth.is_some() {
+            return Err(camera::in_plane("depth", &loaded));
+        }
+        let default = self.rule.file("", plan.extension());
+        let path = self.output.as_ref().unwrap_or(&default);
+        let (summary, bytes) = self.grow_in_plane(plan, loaded, path)?;
+        Ok((path.clone(), summary, bytes))
+    }
+
+    /// Writes what the plan asks for of a set in the plane; returns a summary and the number of bytes.
+    fn grow_in_plane(
+        &self,
+        plan: &Plan,
+        loaded: Loaded,
+        path: &Path,
+    ) -> Result<(String, u64), Failure> {
+        match plan {
+            Plan::Table(format) => self.list(&loaded.grown(&self.growth), *format, path),
+            Plan::Picture {
+                format,
+                shown,
+                is_light,
+            } => Drawing::new(self, loaded, *format, shown, path)?.write(*is_light),
+            Plan::Chaos(table) => {
+                let game = chaos::PlaneGame::new(self, &loaded)?;
+                self.growth.write(path, |out, progress| match table {
+                    Some(format) => game.list(*format, progress, out, path),
+                    None => game.draw(progress, out, path),
+                })
+            }
+            Plan::Scene(format) => {
+                let message = format!(
+                    "a .{} holds elements in space, and {} lies in the plane: write a .svg, .png, .pdf or .dxf",
+                    Format::Scene(*format).name(),
+                    loaded.name
+                );
+                Err(Failure::Usage(message))
+            }
+            Plan::Cloud => Err(Failure::Usage(format!(
+                "a .ply holds points in space, and {} lies in the plane: write a .csv of its points",
+                loaded.name
+            ))),
+        }
     }
 
     /// Prints what has been written, unless messages are suppressed.
@@ -266,7 +344,7 @@ impl Arguments {
         format: export::TableFormat,
         path: &Path,
     ) -> Result<(String, u64), Failure> {
-        let (walked, bytes) = output::write(path, self.growth.quiet, |out, progress| {
+        let (walked, bytes) = self.growth.write(path, |out, progress| {
             let growth = self.growth.to(steps, progress);
             export::write(graph, &growth, format, self.growth.threads(), out)
                 .map_err(|error| self.growth.explain(RenderError::from(error), loaded, path))

@@ -2,6 +2,8 @@
 
 use std::num::NonZero;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use anyhow::anyhow;
 
@@ -14,11 +16,13 @@ use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError};
 use crate::model::Model;
 use crate::parallel::all_cores;
-use crate::render::{self, RenderError, Size};
+use crate::render::{self, PngEncoding, RenderError, Size};
 use crate::rule::Placement;
 
+use super::held::Held;
+use super::output::{Counted, Output};
 use super::rule::Loaded;
-use super::{Failure, number, output};
+use super::{Failure, number, output, text};
 use crate::fractal::Goal;
 
 /// Default limit of the number of elements, where a detail in pixels bounds them: at most as many are drawn
@@ -50,6 +54,9 @@ pub(super) struct GrowthArguments {
     /// Suppresses all messages except errors
     #[arg(long, short)]
     pub(super) quiet: bool,
+    /// Destination of a command that runs within the program.
+    #[arg(skip)]
+    pub(super) held: Option<Arc<Held>>,
 }
 
 /// Parses a number of threads.
@@ -62,6 +69,44 @@ impl GrowthArguments {
     /// Returns the number of threads.
     pub(super) fn threads(&self) -> NonZero<usize> {
         self.threads.unwrap_or_else(all_cores)
+    }
+
+    /// Writes a file completely or not at all, and returns its size in bytes. Standard output is held in memory if the
+    /// command runs within the program.
+    pub(super) fn write<T>(
+        &self,
+        path: &Path,
+        content: impl FnOnce(&mut Counted<Output>, Option<&Progress>) -> Result<T, Failure>,
+    ) -> Result<(T, u64), Failure> {
+        match &self.held {
+            Some(held) if path == Path::new("-") => {
+                let (written, bytes) = output::write_held(held.most, content)?;
+                let count = bytes.len() as u64;
+                held.done().bytes = bytes;
+                Ok((written, count))
+            }
+            held => output::write(path, self.quiet || held.is_some(), content),
+        }
+    }
+
+    /// Prints a message, unless messages are suppressed. A command within the program keeps it.
+    pub(super) fn note(&self, line: &str) {
+        match &self.held {
+            Some(held) => held.done().notes.push(line.to_owned()),
+            None if self.quiet => {}
+            None => text::print_message(line),
+        }
+    }
+
+    /// Returns the flag that cancels a command within the program.
+    pub(super) fn cancel(&self) -> Option<&AtomicBool> {
+        self.held.as_ref().map(|held| &held.cancel)
+    }
+
+    /// Returns the encoding of PNGs.
+    pub(super) fn png_encoding(&self) -> PngEncoding {
+        let is_fast = self.held.as_ref().is_some_and(|held| held.is_fast);
+        PngEncoding::default().fast(is_fast)
     }
 
     /// Returns whether the limit of the number of elements is given.
@@ -147,19 +192,19 @@ impl GrowthArguments {
     }
 
     /// Returns the parameters of growth by a number of steps.
-    pub(super) fn to<'a>(&self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
+    pub(super) fn to<'a>(&'a self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
         Growth {
             steps,
             seed: self.seed,
             max_elements: self.max_elements(),
-            cancel: None,
+            cancel: self.cancel(),
             progress,
         }
     }
 
     /// Returns the parameters of growth for a picture.
     pub(super) fn drawn_as<'a>(
-        &self,
+        &'a self,
         picture: &render::Options,
         steps: u32,
         progress: Option<&'a Progress>,

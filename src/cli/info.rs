@@ -1,5 +1,7 @@
 //! `kfrac info`: describes a rule and forecasts the sizes of its steps.
 
+#[cfg(feature = "studio")]
+mod held;
 mod numbers;
 
 use std::fmt::Write as _;
@@ -25,6 +27,8 @@ use super::rule::{Loaded, RuleArguments};
 use super::structure::StructureInfo;
 use super::system::SystemInfo;
 use super::{Failure, help, output, steps};
+#[cfg(feature = "studio")]
+pub(crate) use held::{Described, hold};
 
 /// Describes a rule: parameters, sizes of its steps, bounds, dimension
 ///

@@ -80,7 +80,7 @@ fn command(
 }
 
 /// Quotes a word for a shell, on one line.
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.,=%".contains(c);
     if word.chars().all(plain) {
         return word.into();

@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::render::RenderError;
 
-use super::{Failure, text};
+use super::Failure;
 use crate::fractal::Goal;
 
 /// Largest number of elements of a light SVG, or of all approximants of a sheet together.
@@ -130,13 +130,13 @@ pub(super) fn first_that_is_light<T>(
     Ok(lightest)
 }
 
-/// Reports the lighter picture that is drawn, and the option for the heavier one.
-pub(super) fn note(drawn: &str, more: &str) {
-    text::print_message(&format!(
+/// Returns a note about the lighter picture that is drawn, with the option for the heavier one.
+pub(super) fn note(drawn: &str, more: &str) -> String {
+    format!(
         "note: {drawn}, to limit the SVG to {} elements and {}; {more}",
         grouped(&MAX_ELEMENTS.into()),
         bytes(MAX_BYTES),
-    ));
+    )
 }
 
 impl Goal {
@@ -155,8 +155,8 @@ impl Goal {
         }
     }
 
-    /// Prints a note about the lighter goal that is drawn instead.
-    pub(super) fn note_lighter(self, lighter: Self) {
+    /// Returns a note about the lighter goal that is drawn instead.
+    pub(super) fn note_of_lighter(self, lighter: Self) -> String {
         let drawn = match (self, lighter) {
             (Self::Steps(own, _), Self::Steps(steps, None)) => {
                 format!("step {steps} is drawn instead of {own}")
@@ -170,6 +170,6 @@ impl Goal {
             Self::Steps(steps, _) => format!("--steps {steps} draws the whole step"),
             Self::Detail(pixels) => format!("--detail {pixels} draws everything that is visible"),
         };
-        note(&drawn, &format!("{more}, as does a .png"));
+        note(&drawn, &format!("{more}, as does a .png"))
     }
 }

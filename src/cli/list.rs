@@ -30,9 +30,10 @@ Examples:
       Lists the library with the files of a folder, as JSON
 ";
 
-#[derive(Serialize)]
-struct ListRow {
-    name: String,
+/// Entry of the library, as it is listed.
+#[derive(Clone, Serialize)]
+pub(crate) struct ListRow {
+    pub(crate) name: String,
     kind: &'static str,
     title: Option<String>,
     tags: Vec<String>,
@@ -88,7 +89,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 
 /// Returns the row of an entry. A file that cannot be read has its name only; `kfrac check` reports its
 /// errors.
-fn row(entry: &LibraryFile, catalogue: &Catalogue) -> ListRow {
+pub(crate) fn row(entry: &LibraryFile, catalogue: &Catalogue) -> ListRow {
     let node = catalogue
         .open(entry)
         .ok()

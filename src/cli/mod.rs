@@ -2,27 +2,28 @@
 
 mod camera;
 mod cat;
-mod check;
+pub(crate) mod check;
 mod compare;
 mod completions;
-mod component;
+pub(crate) mod component;
 mod convert;
 mod count;
 mod dim;
-mod family;
+pub(crate) mod family;
 mod fit;
 mod format;
 mod goal;
-mod grow;
+pub(crate) mod grow;
 mod growth;
+pub(crate) mod held;
 mod help;
 mod import;
-mod info;
+pub(crate) mod info;
 mod input;
-mod labels;
+pub(crate) mod labels;
 mod length;
 mod light;
-mod list;
+pub(crate) mod list;
 mod man;
 mod morph;
 mod new;
@@ -31,7 +32,7 @@ mod output;
 mod picture;
 mod pixels;
 mod progress;
-mod readable;
+pub(crate) mod readable;
 mod rule;
 mod schema;
 mod sheet;
@@ -41,8 +42,11 @@ mod space;
 mod steps;
 mod stop;
 mod structure;
+#[cfg(feature = "studio")]
+mod studio;
 mod system;
 mod text;
+pub(crate) mod watch;
 
 use std::io;
 use std::path::PathBuf;
@@ -92,6 +96,8 @@ enum Command {
     Completions(completions::Arguments),
     Man(man::Arguments),
     Schema(schema::Arguments),
+    #[cfg(feature = "studio")]
+    Studio(studio::Arguments),
 }
 
 /// Returns the definition of the command line, for manual pages and completions.
@@ -139,7 +145,7 @@ the folder is %APPDATA%\\kfrac
 
 /// Reason for which the program ends without a result.
 #[derive(Debug)]
-enum Failure {
+pub(crate) enum Failure {
     /// Errors in a file.
     File(Diagnostics),
     /// Another error in the input, or a limit that was reached.
@@ -148,6 +154,29 @@ enum Failure {
     Usage(String),
     /// Failure that has been reported already.
     Reported,
+}
+
+#[cfg(feature = "studio")]
+impl Failure {
+    /// Returns the failure of reading arguments, without the usage that follows its message.
+    fn usage(error: &clap::Error) -> Self {
+        let text = error.to_string();
+        let first = text.lines().next().unwrap_or_default();
+        Self::Usage(first.strip_prefix("error: ").unwrap_or(first).to_owned())
+    }
+
+    /// Returns the message.
+    pub(crate) fn message(&self) -> String {
+        match self {
+            Self::File(diagnostics) => {
+                let messages = diagnostics.iter().map(|it| it.message());
+                messages.collect::<Vec<_>>().join("; ")
+            }
+            Self::Input(error) => format!("{error:#}"),
+            Self::Usage(message) => message.clone(),
+            Self::Reported => String::new(),
+        }
+    }
 }
 
 impl From<Diagnostics> for Failure {
@@ -220,6 +249,8 @@ pub fn run() -> ExitCode {
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
+        #[cfg(feature = "studio")]
+        Command::Studio(arguments) => studio::run(arguments, catalogue.clone()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -10,6 +10,7 @@ use crate::grow::Progress;
 use crate::output_file::{BUFFER, OutputFile, WriteError, behind_links};
 use crate::render::{Remedy, RenderError};
 
+use super::held::Memory;
 use super::{Failure, input, progress};
 
 /// Destination of the output of a command.
@@ -17,6 +18,7 @@ pub(super) enum Output {
     /// Standard output, which may be left incomplete.
     Standard(BufWriter<io::StdoutLock<'static>>),
     File(OutputFile),
+    Memory(Memory),
 }
 
 /// Message for a failure to write to standard output.
@@ -45,6 +47,7 @@ impl Output {
         match self {
             Self::Standard(mut out) => Ok(out.flush().context(NO_STANDARD_OUTPUT)?),
             Self::File(file) => Ok(file.finish()?),
+            Self::Memory(_) => Ok(()),
         }
     }
 }
@@ -63,6 +66,7 @@ impl Write for Output {
         match self {
             Self::Standard(out) => out.write(bytes),
             Self::File(file) => file.write(bytes),
+            Self::Memory(memory) => memory.write(bytes),
         }
     }
 
@@ -70,6 +74,7 @@ impl Write for Output {
         match self {
             Self::Standard(out) => out.flush(),
             Self::File(file) => file.flush(),
+            Self::Memory(memory) => memory.flush(),
         }
     }
 }
@@ -89,6 +94,22 @@ pub(super) fn write<T>(
     let written = progress::watched(shows_progress, |progress| content(&mut out, progress))?;
     out.inner.finish()?;
     Ok((written, out.bytes))
+}
+
+/// Writes to memory, at most `most` bytes, and returns them.
+pub(super) fn write_held<T>(
+    most: usize,
+    content: impl FnOnce(&mut Counted<Output>, Option<&Progress>) -> Result<T, Failure>,
+) -> Result<(T, Vec<u8>), Failure> {
+    let mut out = Counted {
+        inner: Output::Memory(Memory::new(most)),
+        bytes: 0,
+    };
+    let written = content(&mut out, None)?;
+    let Output::Memory(Memory { bytes, .. }) = out.inner else {
+        unreachable!("the output is memory");
+    };
+    Ok((written, bytes))
 }
 
 /// Creates a folder and its missing parents.

@@ -58,7 +58,7 @@ pub(super) fn bytes(count: u64) -> String {
 }
 
 /// Formats an estimated number of bytes to two digits.
-pub(super) fn rough_bytes(count: f64) -> String {
+pub(crate) fn rough_bytes(count: f64) -> String {
     let (value, unit) = in_bytes(two_digits(count));
     if value >= 1e6 {
         format!("{value:.0e} {unit}")
@@ -90,7 +90,7 @@ pub(super) fn two_digits(value: f64) -> f64 {
 }
 
 /// Formats a time in the largest suitable unit, to at most two significant digits.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     const UNITS: [(f64, &str); 5] = [
         (365.25 * 24.0 * 3600.0, "years"),
         (24.0 * 3600.0, "days"),

@@ -128,13 +128,13 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     };
     let drawn = arguments.draw(&loaded, last, format, sheet_to)?;
     if drawn.step != last && !growth.quiet {
-        light::note(
+        text::print_message(&light::note(
             &format!(
                 "steps {} are drawn instead of {steps}",
                 Several::up_to(drawn.step)
             ),
             &format!("--steps {steps} draws them"),
-        );
+        ));
     }
     let count = readable::counted(&drawn.cells.into(), "approximant");
     arguments.report(&drawn, &format!("{count} of {}", loaded.name), start);
@@ -153,7 +153,7 @@ impl Sheet {
     /// Returns the pictures. `most` replaces the limit on the number of elements of each.
     fn cells<'a>(
         &'a self,
-        growth: &GrowthArguments,
+        growth: &'a GrowthArguments,
         most: Option<u64>,
         progress: Option<&'a Progress>,
     ) -> Vec<sheet::Cell<'a>> {
@@ -310,10 +310,10 @@ impl Arguments {
         let drawn = self.draw(loaded, last, format, sheet_to)?;
         let step = drawn.step;
         if step != last && !self.growth.quiet {
-            light::note(
+            text::print_message(&light::note(
                 &format!("step {step} is drawn instead of {last}"),
                 &format!("--steps {last} draws it"),
-            );
+            ));
         }
         let count = readable::counted(&drawn.cells.into(), "value");
         self.report(&drawn, &format!("{count} of {names} at step {step}"), start);

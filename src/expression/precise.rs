@@ -90,6 +90,24 @@ impl Precision {
         self.context = Context::new(bits.min(self.bits) + GUARD);
     }
 
+    /// Returns the number that a decimal of any length stands for.
+    pub(crate) fn digits(&self, text: &str) -> Precise {
+        let near = text.parse().unwrap_or(0.0);
+        self.of_digits(near, text)
+    }
+
+    fn of_digits(&self, near: f64, text: &str) -> Precise {
+        let precision = self.context.precision();
+        let exact = DBig::from_str(text).map(|decimal| {
+            let binary = decimal.with_base_and_precision::<2>(precision).value();
+            binary.with_rounding::<HalfEven>()
+        });
+        match exact {
+            Ok(exact) if near.is_finite() => Precise { near, exact },
+            _ => Precise::of(near),
+        }
+    }
+
     /// Returns the original precision in bits.
     pub(crate) fn bits(&self) -> usize {
         self.bits
@@ -143,16 +161,7 @@ impl Arithmetic for Precision {
 
     /// Interprets a double as the shortest decimal that rounds to it: 0.1 is exactly one tenth.
     fn decimal(&mut self, near: f64) -> Precise {
-        let decimal = DBig::from_str(&near.to_string());
-        let precision = self.context.precision();
-        let exact = decimal.map(|decimal| {
-            let binary = decimal.with_base_and_precision::<2>(precision).value();
-            binary.with_rounding::<HalfEven>()
-        });
-        match exact {
-            Ok(exact) if near.is_finite() => Precise { near, exact },
-            _ => Precise::of(near),
-        }
+        self.of_digits(near, &near.to_string())
     }
 
     fn one(&mut self, operation: One, x: &Precise) -> Precise {

@@ -74,6 +74,14 @@ impl<P: Point> Homothety<P> {
 }
 
 impl Homothety {
+    /// Returns the image of a window: lower left corner, width and height.
+    #[must_use]
+    pub fn window(&self, [x, y, width, height]: [f64; 4]) -> [f64; 4] {
+        let corner = self.point(DVec2::new(x, y));
+        let size = DVec2::new(width, height) * self.ratio();
+        [corner.x, corner.y, size.x, size.y]
+    }
+
     /// Returns the preimage of a window: lower left corner, width and height.
     #[must_use]
     pub fn origin_of_window(&self, [x, y, width, height]: [f64; 4]) -> [f64; 4] {

@@ -216,6 +216,14 @@ impl Canvas {
         self.scale
     }
 
+    /// Returns the part of the plane that is shown: lower left corner, width, height.
+    #[must_use]
+    pub fn window(&self) -> [f64; 4] {
+        let shown = self.shown(0.0);
+        let ([x, y], [width, height]) = (shown.min().into(), shown.size().into());
+        [x, y, width, height]
+    }
+
     /// Returns the position of a point of the plane, in pixels from the upper left corner, y down.
     #[inline]
     #[must_use]

@@ -81,6 +81,7 @@ pub(super) fn write(
     Ok(Picture {
         is_limit: false,
         size: canvas.size(),
+        window: Some(canvas.window()),
         steps,
         elements: prepass.elements,
         fractals: prepass.fractals,

@@ -57,6 +57,7 @@ impl<'a> Layout<'a> {
         let prepass = &self.prepass;
         Picture {
             size: self.canvas.size(),
+            window: Some(self.canvas.window()),
             steps: self.growth.steps,
             elements: prepass.elements,
             fractals: prepass.fractals,

@@ -8,6 +8,9 @@ use super::plot::Plotted;
 pub struct Picture {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Part of the plane that is shown, in the coordinates of the graph: lower left corner, width, height. `None` in
+    /// space, and where doubles do not hold it.
+    pub window: Option<[f64; 4]>,
     /// Number of steps: that of the growth, or the one that a detail took.
     pub steps: u32,
     /// Number of elements, without those outside a window that were not visited; of a limit set, that of the

@@ -88,15 +88,29 @@ pub fn write_zoomed(
     };
     let growth = Growth { steps, ..*growth };
     let mut picture = super::write(&found.graph, &growth, &options, out)?;
-    if let (Some(empty), true, Address::Point(middle)) = (&mut picture.empty, to_limit, &target.at)
-    {
+    picture.window = shown(&canvas, target);
+    if let (Some(empty), true, Some(middle)) = (&mut picture.empty, to_limit, target.at.near()) {
         let half = f64::from(canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
-        empty.nearest = zoom::distance(graph, *middle).map(|distance| NearestPoint {
+        empty.nearest = zoom::distance(graph, middle).map(|distance| NearestPoint {
             distance,
             factor: half / (distance * canvas.scale()),
         });
     }
     Ok(picture)
+}
+
+/// Returns the window about a point, where doubles hold it.
+fn shown(canvas: &Canvas, look: &ZoomTarget) -> Option<[f64; 4]> {
+    let middle = look.at.near()?;
+    let scale = canvas.scale() * libm::exp2(look.factor.log2());
+    let [width, height] = canvas.size().map(|side| f64::from(side) / scale);
+    let window = [
+        middle.x - width / 2.0,
+        middle.y - height / 2.0,
+        width,
+        height,
+    ];
+    window.iter().all(|it| it.is_finite()).then_some(window)
 }
 
 /// Returns the canvas of the whole set: of the limit set if its bounding box is known, otherwise of an

@@ -19,7 +19,40 @@ pub enum Address {
     },
     /// Point of the plane, in the model's units.
     Point(DVec2),
+    /// Point of the plane whose coordinates have more digits than doubles.
+    LongPoint([LongDecimal; 2]),
 }
+
+/// Decimal without an exponent, of more digits than a double.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LongDecimal(String);
+
+impl LongDecimal {
+    /// Largest number of digits.
+    const MAX_DIGITS: usize = 20_000;
+
+    /// Parses a decimal; `None` if it has an exponent, or too many digits.
+    fn parse(text: &str) -> Option<Self> {
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        let is_plain = digits.chars().all(|c| c.is_ascii_digit() || c == '.');
+        (is_plain && text.len() <= Self::MAX_DIGITS).then(|| Self(text.to_owned()))
+    }
+
+    /// Returns the digits as written.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Returns the nearest double.
+    #[must_use]
+    pub fn near(&self) -> f64 {
+        self.0.parse().unwrap_or(0.0)
+    }
+}
+
+/// Number of characters up to which decimals are read as doubles, whose shortest notation has 17 digits.
+const SHORT: usize = 20;
 
 /// Error: a text is not an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -43,6 +76,17 @@ pub enum AddressError {
 
 const MAX_POSITIONS: usize = 1_000_000;
 
+impl Address {
+    /// Returns the point in doubles; `None` for a sequence of positions.
+    pub(crate) fn near(&self) -> Option<DVec2> {
+        match self {
+            Self::Path { .. } => None,
+            Self::Point(point) => Some(*point),
+            Self::LongPoint([x, y]) => Some(DVec2::new(x.near(), y.near())),
+        }
+    }
+}
+
 impl FromStr for Address {
     type Err = AddressError;
 
@@ -53,7 +97,12 @@ impl FromStr for Address {
                 Ok(number) if number.is_finite() => Ok(number),
                 _ => Err(AddressError::Unreadable),
             };
-            return Ok(Self::Point(DVec2::new(number(x)?, number(y)?)));
+            let point = DVec2::new(number(x)?, number(y)?);
+            let long = [x, y].map(|text| LongDecimal::parse(text.trim()));
+            return Ok(match long {
+                [Some(x), Some(y)] if x.0.len().max(y.0.len()) > SHORT => Self::LongPoint([x, y]),
+                _ => Self::Point(point),
+            });
         }
         let Some((first, repeated)) = text.split_once('(') else {
             positions(text)?;
@@ -86,6 +135,7 @@ impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (first, repeated) = match self {
             Self::Point(point) => return write!(f, "{},{}", point.x, point.y),
+            Self::LongPoint([x, y]) => return write!(f, "{},{}", x.0, y.0),
             Self::Path { first, repeated } => (first, repeated),
         };
         let joined = |positions: &[u32]| {
@@ -105,7 +155,13 @@ mod tests {
 
     #[test]
     fn addresses_are_printed_as_they_are_written() {
-        for text in ["0.2.(1)", "(0)", "3.(0.12.7)", "0.5,-2"] {
+        for text in [
+            "0.2.(1)",
+            "(0)",
+            "3.(0.12.7)",
+            "0.5,-2",
+            "0.1234567890123456789012345678901234567890,-2",
+        ] {
             assert_eq!(text.parse::<Address>().unwrap().to_string(), text);
         }
         assert_eq!("0(1)".parse::<Address>(), "0.(1)".parse());

@@ -25,6 +25,7 @@ pub(super) fn centre(
 ) -> Result<Vector, ZoomError> {
     let (first, repeated) = match &window.at {
         Address::Point(point) => return Ok([point.x, point.y].map(|it| constants.written(it))),
+        Address::LongPoint([x, y]) => return Ok([x, y].map(|it| constants.digits(it.as_str()))),
         Address::Path { first, repeated } => (first, repeated),
     };
     let address = || window.at.clone();

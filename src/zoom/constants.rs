@@ -116,6 +116,11 @@ impl<'a> Constants<'a> {
         self.precision.decimal(number).fixed(self.bits())
     }
 
+    /// Returns a decimal without an exponent, in multiples of 2^-`bits`.
+    pub(super) fn digits(&mut self, text: &str) -> IBig {
+        self.precision.digits(text).fixed(self.bits())
+    }
+
     /// Returns the map of an instance in the initiator.
     pub(super) fn root(&mut self, instance: &Instance) -> Arc<Fixed> {
         if let Kind::Rule(OfRule { rule, points, .. }) = &self.kind {

@@ -46,7 +46,7 @@ mod merge;
 mod nearest;
 mod roots;
 
-pub use address::{Address, AddressError};
+pub use address::{Address, AddressError, LongDecimal};
 pub use factor::{Factor, FactorError};
 
 pub(crate) use nearest::distance;

@@ -281,7 +281,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
     }
 
     /// Returns the game of a picture.
-    fn game<'p>(&self, progress: Option<&'p Progress>) -> Game<'p, PointOf<M>> {
+    fn game<'p>(&'p self, progress: Option<&'p Progress>) -> Game<'p, PointOf<M>> {
         let growth = &self.arguments.growth;
         Game {
             points: self.points(DRAWN),
@@ -289,7 +289,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
             start: self.start.clone(),
             classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
-            cancel: None,
+            cancel: growth.cancel(),
             progress,
         }
     }
@@ -320,8 +320,14 @@ impl<'a, M: Walked> Iteration<'a, M> {
             place: self.place.point(point.place),
             ..point
         });
-        export::write_points(all, format, None, progress, &mut out)
-            .map_err(|error| self.explain(error.into(), path))?;
+        export::write_points(
+            all,
+            format,
+            self.arguments.growth.cancel(),
+            progress,
+            &mut out,
+        )
+        .map_err(|error| self.explain(error.into(), path))?;
         Ok(self.listed(points))
     }
 

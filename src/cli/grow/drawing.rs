@@ -14,7 +14,7 @@ use crate::zoom::check_model;
 use super::super::labels::labels;
 use super::super::length::Paper;
 use super::super::rule::Loaded;
-use super::super::{Failure, growth, length, light, output, readable, text};
+use super::super::{Failure, growth, length, light, output, readable};
 use super::plan::ShownPart;
 use super::{Arguments, plot, svg, zoom};
 
@@ -26,7 +26,7 @@ pub(super) struct Drawing<'a> {
     arguments: &'a Arguments,
     loaded: Loaded,
     format: Format,
-    shown: ShownPart,
+    shown: &'a ShownPart,
     goal: Goal,
     path: &'a Path,
 }
@@ -37,7 +37,7 @@ impl<'a> Drawing<'a> {
         arguments: &'a Arguments,
         loaded: Loaded,
         format: Format,
-        shown: ShownPart,
+        shown: &'a ShownPart,
         path: &'a Path,
     ) -> Result<Self, Failure> {
         let loaded = loaded.grown(&arguments.growth);
@@ -79,7 +79,6 @@ impl<'a> Drawing<'a> {
             path,
             ..
         } = self;
-        let quiet = arguments.growth.quiet;
         let graph = loaded.compile_for(goal.steps(), self.style().color_by)?;
         let options = self.options(*goal, graph.place());
         if let Goal::Steps(steps, None) = *goal
@@ -89,10 +88,9 @@ impl<'a> Drawing<'a> {
         {
             (arguments.growth).check_picture(steps, &graph, loaded, &options)?;
         }
-        if !quiet {
-            self.note_beforehand(&graph, &options);
-        }
-        let ((picture, drawn), bytes) = output::write(path, quiet, |out, progress| {
+        self.note_beforehand(&graph, &options);
+        let place = *graph.place();
+        let ((picture, drawn), bytes) = arguments.growth.write(path, |out, progress| {
             let explain = |error| arguments.growth.explain(error, loaded, path);
             if is_light {
                 return self.draw_light(graph, progress, out);
@@ -100,19 +98,17 @@ impl<'a> Drawing<'a> {
             let picture = self.draw(*goal, graph, None, progress, out);
             Ok((picture.map_err(explain)?, *goal))
         })?;
-        if !quiet {
-            if let Some(instanced) = &picture.instanced {
-                svg::warn(instanced);
-            }
-            if let Some(plotted) = &picture.plotted {
-                arguments.plot.note_pens(plotted);
-            }
-            if let Some(empty) = &picture.empty {
-                text::print_message(&zoom::nothing(&loaded.name, empty));
-            }
-            if drawn != *goal {
-                goal.note_lighter(drawn);
-            }
+        let growth = &arguments.growth;
+        let warning = picture.instanced.as_ref().and_then(svg::warning);
+        let pens =
+            { picture.plotted.as_ref() }.and_then(|plotted| arguments.plot.note_of_pens(plotted));
+        let empty = { picture.empty.as_ref() }.map(|empty| zoom::nothing(&loaded.name, empty));
+        let lighter = (drawn != *goal).then(|| goal.note_of_lighter(drawn));
+        for note in [warning, pens, empty, lighter].into_iter().flatten() {
+            growth.note(&note);
+        }
+        if let Some(held) = &growth.held {
+            held.note_picture(&picture, Some(&place));
         }
         let reached = drawn.reached(&loaded.name, picture.steps);
         let summary = summary(&picture, arguments.size.unit);
@@ -210,7 +206,7 @@ impl<'a> Drawing<'a> {
     /// options without effect.
     fn note_beforehand(&self, graph: &Graph, options: &render::Options) {
         if self.lacks_numbers(&self.full_style()) {
-            text::print_message(
+            self.arguments.growth.note(
                 "note: drawn in one colour, because elements far from the window are not counted",
             );
         }
@@ -225,7 +221,7 @@ impl<'a> Drawing<'a> {
             || drawn.any(|object| !is_filled(object));
         let mut asked = self.arguments.picture.of_lines().into_iter();
         if asked.any(|(_, is_asked)| is_asked) && !has_lines {
-            text::print_message(&format!(
+            self.arguments.growth.note(&format!(
                 "note: {} is drawn as filled shapes, and --stroke-width, --cap and --join apply to lines \
                  only; --stroke and --fill together outline the shapes",
                 self.loaded.name
@@ -256,7 +252,7 @@ impl<'a> Drawing<'a> {
                     format!(", to about {}", readable::rough_bytes(bytes))
                 });
             let pixels = f64::from(width) * f64::from(height);
-            text::print_message(&format!(
+            self.arguments.growth.note(&format!(
                 "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
                 readable::duration(pixels * SECONDS_A_PIXEL)
             ));
@@ -297,6 +293,7 @@ impl<'a> Drawing<'a> {
             pens: plot.pens(picture),
             instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),
+            png: growth.png_encoding(),
             detail: goal.detail_in(unit),
             labels: labels(&self.loaded, &goal.described(), "grow", options),
             ..render::Options::default()

@@ -5,7 +5,7 @@ use std::num::NonZero;
 use crate::render::{Pens, Plotted};
 
 use super::super::picture::PictureArguments;
-use super::super::{readable, text};
+use super::super::readable;
 
 /// Options of plots.
 #[derive(clap::Args)]
@@ -53,15 +53,16 @@ impl PlotArguments {
         plot.into_iter().chain(pens).collect()
     }
 
-    /// Prints a note if colours share a pen by default.
-    pub(super) fn note_pens(&self, plotted: &Plotted) {
-        if self.pens.is_none() && plotted.colours > plotted.layers.max(Pens::FEW as u64) {
-            text::print_message(&format!(
+    /// Returns a note if colours share a pen by default.
+    pub(super) fn note_of_pens(&self, plotted: &Plotted) -> Option<String> {
+        let shares = self.pens.is_none() && plotted.colours > plotted.layers.max(Pens::FEW as u64);
+        shares.then(|| {
+            format!(
                 "note: one pen for all {} colours: --pens {} gives that many, --color-by one for each colour",
                 plotted.colours,
                 Pens::FEW
-            ));
-        }
+            )
+        })
     }
 }
 

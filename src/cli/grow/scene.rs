@@ -94,9 +94,17 @@ pub(super) fn write(
                 growth.check_or(levels, &graph, loaded, &otherwise)?;
             }
             let space = arguments.space.to_options(&loaded.model.space_view())?;
-            let (scene, bytes) = output::write(path, growth.quiet, |mut out, _| {
-                write_scene(&graph, levels, &options, &space, format, None, &mut out)
-                    .map_err(|error| output::explain(error, path))
+            let (scene, bytes) = growth.write(path, |mut out, _| {
+                write_scene(
+                    &graph,
+                    levels,
+                    &options,
+                    &space,
+                    format,
+                    growth.cancel(),
+                    &mut out,
+                )
+                .map_err(|error| output::explain(error, path))
             })?;
             let objects = readable::counted(&scene.symbols.into(), "object");
             (format!("{step}, {objects} in nested instances"), bytes)
@@ -106,7 +114,7 @@ pub(super) fn write(
             let mesh = MeshOptions::default()
                 .format(format)
                 .shell(arguments.scene.mesh == Some(Faces::Shell));
-            let (mesh, bytes) = output::write(path, growth.quiet, |mut out, progress| {
+            let (mesh, bytes) = growth.write(path, |mut out, progress| {
                 let growth = growth.to(levels, progress);
                 write_mesh(&graph, &growth, &options, mesh, &mut out)
                     .map_err(|error| output::explain(error, path))

@@ -54,6 +54,7 @@ pub(super) fn draw(
             decides_steps: steps.is_none(),
         }),
         threads: arguments.growth.threads(),
+        png: arguments.growth.png_encoding(),
         labels: labels(
             loaded,
             &{ game.as_ref() }.map_or_else(|| described(arguments, steps), SpaceGame::described),
@@ -62,7 +63,6 @@ pub(super) fn draw(
         ),
         ..render::Options::default()
     };
-    let quiet = arguments.growth.quiet;
     let space = arguments.space.to_options(&loaded.model.space_view())?;
     let space = space.keeps_depths(arguments.depth.is_some());
     let drawn = loaded.drawn_in_space(steps, for_pixels(options.style.color_by))?;
@@ -70,7 +70,7 @@ pub(super) fn draw(
     let graph = drawn.graph;
     if let Some(game) = game {
         if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {
-            let (summary, bytes) = output::write(path, quiet, |out, progress| match *plan {
+            let (summary, bytes) = arguments.growth.write(path, |out, progress| match *plan {
                 Plan::Chaos(Some(format)) => game.list(format, progress, out, path),
                 _ => game.write_ply(&graph, &options.style, progress, out, path),
             })?;
@@ -85,9 +85,18 @@ pub(super) fn draw(
         return Ok((path.clone(), summary, bytes));
     }
     let (picture, bytes) = write(arguments, path, &options, |_| {
-        pixels_in_space(&graph, drawn.steps, &options, &space, None)
-            .map_err(|error| output::explain(error, path))
+        pixels_in_space(
+            &graph,
+            drawn.steps,
+            &options,
+            &space,
+            arguments.growth.cancel(),
+        )
+        .map_err(|error| output::explain(error, path))
     })?;
+    if let Some(held) = &arguments.growth.held {
+        held.note_picture(&picture, None);
+    }
     let reached = match steps {
         Some(steps) => format!("step {steps} of {}", loaded.name),
         None => format!(
@@ -110,9 +119,8 @@ fn write(
     options: &render::Options,
     draw: impl FnOnce(Option<&Progress>) -> Result<SpacePicture, Failure>,
 ) -> Result<(Picture, u64), Failure> {
-    let quiet = arguments.growth.quiet;
     let write = || {
-        let ((picture, depths), bytes) = output::write(path, quiet, |out, progress| {
+        let ((picture, depths), bytes) = arguments.growth.write(path, |out, progress| {
             let SpacePicture {
                 pixels,
                 depths,

@@ -4,7 +4,7 @@ use crate::render::Instanced;
 use crate::style::Named;
 
 use super::super::picture::named;
-use super::super::{readable, text};
+use super::super::readable;
 
 /// Option of SVG files.
 #[derive(clap::Args)]
@@ -51,19 +51,19 @@ impl SvgArguments {
 const MANY: f64 = 1e5;
 const TOO_MANY: f64 = 1e6;
 
-/// Warns that browsers may not be able to show the picture.
-pub(super) fn warn(instanced: &Instanced) {
-    if instanced.expanded > MANY {
+/// Returns a warning if browsers may not be able to show the picture.
+pub(super) fn warning(instanced: &Instanced) -> Option<String> {
+    (instanced.expanded > MANY).then(|| {
         let outcome = if instanced.expanded > TOO_MANY {
             "and give up on millions"
         } else {
             "which takes a long time"
         };
-        text::print_message(&format!(
+        format!(
             "warning: browsers expand every instance, {} of them, {outcome}",
             count(instanced.expanded)
-        ));
-    }
+        )
+    })
 }
 
 /// Formats the numbers of symbols and instances.

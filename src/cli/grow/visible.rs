@@ -80,7 +80,7 @@ pub(super) fn draw(
     };
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let (drawn, bytes) = output::write(path, growth.quiet, |mut out, progress| {
+    let (drawn, bytes) = growth.write(path, |mut out, progress| {
         write_visible(
             &graph,
             &growth.to(levels, progress),
@@ -94,8 +94,8 @@ pub(super) fn draw(
     let size = length::described(drawn.size, size.unit);
     let mut summary = format!("step {steps} of {name}, {elements}, {size}");
     if let Some(plotted) = &drawn.plotted {
-        if !growth.quiet {
-            plot.note_pens(plotted);
+        if let Some(note) = plot.note_of_pens(plotted) {
+            growth.note(&note);
         }
         summary.push_str(&format!(", {}", plot::described(plotted)));
     }

@@ -18,7 +18,7 @@ pub(super) struct ZoomArguments {
     /// that it takes.
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     zoom: Option<Factor>,
-    /// Centre of the zoom: an address (a list of positions) such as 0.2.(1), or a point X,Y
+    /// Centre of the zoom: an address (a list of positions) such as 0.2.(1), or a point X,Y with any number of digits
     ///
     /// The first position is that of an element in the initiator or of an object in a scene; for a system of
     /// maps, it is 0. Each further position is that of an element in the generator (in the order of the file,

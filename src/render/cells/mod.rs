@@ -235,6 +235,7 @@ impl<'a> Cells<'a> {
     pub(super) fn picture(&self) -> Picture {
         Picture {
             size: self.canvas.size(),
+            window: Some(self.canvas.window()),
             steps: self.steps,
             elements: self.count,
             fractals: 1,

@@ -379,6 +379,7 @@ fn finish(
 fn described(size: [u32; 2], steps: u32, elements: u64) -> Picture {
     Picture {
         size,
+        window: None,
         steps,
         elements,
         is_limit: false,

@@ -70,6 +70,7 @@ pub fn write_visible(
     let plotted = write_in(&visible, options, growth.cancel, out)?;
     Ok(Picture {
         size,
+        window: None,
         steps: growth.steps,
         elements,
         is_limit: false,

@@ -141,6 +141,9 @@ impl<'a> PlaneGame<'a> {
             inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
         };
         let [width, height] = canvas.size();
+        if let Some(held) = &self.iteration.arguments.growth.held {
+            held.note_window(&canvas, &self.iteration.place);
+        }
         Ok(format!(
             "{}, {described}{inside}, {width} x {height} pixels",
             self.iteration.loaded.name

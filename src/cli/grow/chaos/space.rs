@@ -103,8 +103,16 @@ impl<'a> SpaceGame<'a> {
             });
         }
         let colour = |point: &RandomPoint<DVec3>| colours[past.add(point) % colours.len()];
-        export::write_ply(all, points, &surface, colour, None, progress, &mut out)
-            .map_err(|error| self.explain(error.into(), path))?;
+        export::write_ply(
+            all,
+            points,
+            &surface,
+            colour,
+            self.arguments.growth.cancel(),
+            progress,
+            &mut out,
+        )
+        .map_err(|error| self.explain(error.into(), path))?;
         Ok(self.listed(points))
     }
 }

@@ -1,0 +1,101 @@
+//! Commands that run within the program: their output is held in memory, and they can be cancelled.
+
+use std::io::{self, Write};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::geometry::Homothety;
+use crate::render::{Canvas, Picture};
+
+/// Destination of a command that runs within the program, in place of standard output and standard error.
+#[derive(Debug, Default)]
+pub(crate) struct Held {
+    /// Flag that ends the command soon after it is set.
+    pub(crate) cancel: AtomicBool,
+    /// Whether PNGs are encoded fast, to the same pixels in more bytes.
+    pub(crate) is_fast: bool,
+    /// Largest number of bytes of standard output.
+    pub(crate) most: usize,
+    done: Mutex<Done>,
+}
+
+/// Results of a command beside its files.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Done {
+    /// Content of standard output.
+    pub(crate) bytes: Vec<u8>,
+    /// Messages, one line each.
+    pub(crate) notes: Vec<String>,
+    /// Number of elements of a picture that were visited.
+    pub(crate) elements: Option<u64>,
+    /// Number of steps of a picture.
+    pub(crate) steps: Option<u32>,
+    /// Part of the plane that a picture shows, in the units of its file: lower left corner, width, height.
+    pub(crate) window: Option<[f64; 4]>,
+    /// Width and height of a picture.
+    pub(crate) size: [u32; 2],
+}
+
+impl Held {
+    /// Returns a destination of `most` bytes.
+    pub(crate) fn new(most: usize, is_fast: bool) -> Self {
+        Self {
+            most,
+            is_fast,
+            ..Self::default()
+        }
+    }
+
+    /// Takes the results of the command that has ended.
+    pub(crate) fn take(&self) -> Done {
+        std::mem::take(&mut *self.done())
+    }
+
+    pub(super) fn done(&self) -> MutexGuard<'_, Done> {
+        self.done.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Records the window of a picture. `place` maps its coordinates to those of the file.
+    pub(super) fn note_window(&self, canvas: &Canvas, place: &Homothety) {
+        let mut done = self.done();
+        done.size = canvas.size();
+        done.window = Some(place.window(canvas.window()));
+    }
+
+    /// Records the numbers of a picture. `place` maps the coordinates of its graph to those of the file.
+    pub(super) fn note_picture(&self, picture: &Picture, place: Option<&Homothety>) {
+        let mut done = self.done();
+        done.elements = Some(picture.elements);
+        done.steps = Some(picture.steps);
+        done.size = picture.size;
+        done.window = { picture.window.zip(place) }.map(|(window, place)| place.window(window));
+    }
+}
+
+/// Standard output of a command that runs within the program, of limited size.
+#[derive(Debug)]
+pub(super) struct Memory {
+    pub(super) bytes: Vec<u8>,
+    most: usize,
+}
+
+impl Memory {
+    pub(super) fn new(most: usize) -> Self {
+        let bytes = Vec::new();
+        Self { bytes, most }
+    }
+}
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.bytes.len() + bytes.len() > self.most {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        self.bytes.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,959 @@
+// The page of the studio: a screen and a hand. Whatever is decided is decided by the server.
+
+const $ = (id) => document.getElementById(id);
+const key = location.hash.slice(1) || sessionStorage.getItem("key") || "";
+const tab = Math.random().toString(36).slice(2, 10);
+if (location.hash) {
+  sessionStorage.setItem("key", key);
+}
+let state = {}; // as the server has it
+let look = {}; // steps, seed, parameters, style and view
+let choices = {};
+let numbers = null; // forecast and dimension
+let drawn = null; // numbers of the last picture
+
+/** Calls the server; returns the answer, or throws its message. */
+async function call(method, path, body, kind = "application/json") {
+  const answer = await fetch(path, {
+    method,
+    headers: { "x-kfrac-key": key, ...(body === undefined ? {} : { "content-type": kind }) },
+    body: body === undefined || typeof body === "string" ? body : JSON.stringify(body),
+  });
+  if (answer.ok) {
+    return answer;
+  }
+  const { error } = await answer.json().catch(() => ({ error: answer.statusText }));
+  throw Object.assign(new Error(error), { status: answer.status });
+}
+const json = async (...all) => (await call(...all)).json();
+
+/** Makes an element with properties and children. */
+function make(name, properties = {}, ...children) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else if (key in element && key !== "list") element[key] = value;
+    else if (value !== null && value !== undefined) element.setAttribute(key, value);
+  }
+  element.append(...children.filter((it) => it !== null && it !== undefined));
+  return element;
+}
+
+// Pictures: one request at a time; what changes in between goes with the next one.
+
+const canvas = $("picture");
+const plane = canvas.getContext("2d");
+let bitmap = null;
+let bitmapSize = [1, 1];
+const still = () => ({ by: 1, t: [0, 0] });
+let shown = still(); // movement of the view since the bitmap was drawn
+let pending = still(); // the part of it that the server does not know
+let isBusy = false;
+let isStale = false; // whether the look has changed since the last request
+let again = null;
+let calm = 0;
+let slow = false; // whether the last picture took longer than a frame
+
+const after = (a, b) => ({ by: a.by * b.by, t: [0, 1].map((i) => b.by * a.t[i] + b.t[i]) });
+const moves = (it) => it.by !== 1 || it.t[0] !== 0 || it.t[1] !== 0;
+
+function paint() {
+  const { width, height } = canvas;
+  plane.setTransform(1, 0, 0, 1, 0, 0);
+  plane.clearRect(0, 0, width, height);
+  if (!bitmap) return;
+  const w = width * shown.by;
+  const h = (width * bitmapSize[1] / bitmapSize[0]) * shown.by;
+  const x = width / 2 + shown.t[0] * width - w / 2;
+  const y = height / 2 - shown.t[1] * width - h / 2;
+  plane.imageSmoothingEnabled = shown.by < 4;
+  plane.drawImage(bitmap, x, y, w, h);
+}
+
+/** Asks for a picture: fast while a hand moves, and in full once it rests. */
+function draw(fast = false) {
+  clearTimeout(calm);
+  if (fast) calm = setTimeout(() => draw(false), 80);
+  if (isBusy) again = again === false ? false : fast;
+  else request(fast);
+}
+
+async function request(fast) {
+  if (!state.hasGood || !canvas.width) return;
+  isBusy = true;
+  const sent = pending;
+  pending = still();
+  const scale = fast && slow ? 0.5 : 1;
+  const size = [canvas.width, canvas.height].map((side) => Math.max(1, Math.round(side * scale)));
+  const wanted = { tab, width: size[0], height: size[1], fast };
+  if (isStale) wanted.look = look;
+  if (moves(sent) && !state.isInSpace) wanted.gesture = { by: sent.by, about: [0, 0], shift: sent.t };
+  isStale = false;
+  const start = performance.now();
+  try {
+    const answer = await call("POST", "/picture", wanted);
+    const found = JSON.parse(answer.headers.get("x-kfrac-picture"));
+    const blob = await answer.blob();
+    const next = await createImageBitmap(blob);
+    bitmap?.close();
+    [bitmap, bitmapSize, shown] = [next, size, pending];
+    slow = performance.now() - start > (slow ? 6 : 12);
+    drawn = { ...found, size, bytes: blob.size };
+    if (!isStale) look = found.session.look;
+    else look.view = found.session.look.view;
+    $("factor").value = factor(found.session.factor);
+    say("");
+    paint();
+    window.dispatchEvent(new CustomEvent("picture", { detail: performance.now() - start }));
+    if (!fast) tell();
+  } catch (error) {
+    if (error.status !== 410) say(error.message, error.status === 422);
+    shown = pending;
+    if (moves(sent)) await refresh();
+    paint();
+  }
+  isBusy = false;
+  if (again !== null) {
+    const next = again;
+    again = null;
+    request(next);
+  }
+}
+
+const factor = (value) => (!value || Math.abs(value - 1) < 1e-9 ? "" : `× ${value >= 1e6 || value < 0.01 ? value.toExponential(2).replace("e+", "e") : +value.toPrecision(4)}`);
+
+function say(message, offers = false) {
+  $("message").hidden = !message;
+  $("message").firstElementChild.textContent = message;
+  $("to-pixel").hidden = !(offers && look.detail == null && look.steps != null);
+}
+
+/** Fills the status line, which is read aloud. */
+function tell() {
+  if (!drawn) return;
+  const parts = [];
+  const count = drawn.elements;
+  if (drawn.steps != null) parts.push(`Step ${drawn.steps}`);
+  if (count != null) parts.push(`${count.toLocaleString("en")} elements${look.view || state.isInSpace ? " drawn" : ""}`);
+  parts.push(`${drawn.size[0]} × ${drawn.size[1]}`, bytes(drawn.bytes), time(drawn.seconds));
+  $("status").textContent = parts.join("  ·  ") + (drawn.notes.length ? `  ·  ${drawn.notes.join("  ·  ")}` : "");
+  $("command").textContent = drawn.command;
+  $("command").title = drawn.command;
+  if (state.isInSpace) placeSteps();
+  canvas.setAttribute("aria-label", `Picture of ${title()}: ${parts.slice(0, 2).join(", ")}`);
+}
+const bytes = (n) => (n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${(n / 1e6).toFixed(1)} MB`);
+const time = (s) => (s < 1 ? `${Math.max(1, Math.round(s * 1000))} ms` : `${s.toFixed(1)} s`);
+const title = () => state.about?.title || state.name;
+
+function resize() {
+  const { width, height } = canvas.getBoundingClientRect();
+  const dense = Math.min(devicePixelRatio || 1, 3);
+  const size = [width, height].map((it) => Math.min(8192, Math.max(16, Math.round(it * dense))));
+  if (size[0] === canvas.width && size[1] === canvas.height) return;
+  [canvas.width, canvas.height] = size;
+  paint();
+  draw();
+}
+new ResizeObserver(resize).observe($("paper"));
+
+// The view: pan and zoom in the plane, turn in space.
+
+function move(by, about, shift = [0, 0]) {
+  if (state.isInSpace) return;
+  const step = { by, t: [0, 1].map((i) => -about[i] * (by - 1) + shift[i]) };
+  shown = after(shown, step);
+  pending = after(pending, step);
+  requestAnimationFrame(paint);
+  draw(true);
+}
+function turn(by, option = "from") {
+  const now = angles(option);
+  const next = [now[0] + by[0], Math.max(-90, Math.min(90, now[1] + by[1]))];
+  set(option, next.map((it) => +it.toFixed(2)).join(","), true);
+  placeAngles(option);
+}
+const angles = (option) => (look.options?.[option]?.split(",").map(Number) ?? state.style?.[option] ?? [0, 0]);
+const place = (event) => {
+  const box = canvas.getBoundingClientRect();
+  return [(event.clientX - box.left) / box.width - 0.5, -((event.clientY - box.top) / box.width - box.height / box.width / 2)];
+};
+canvas.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  const lines = event.deltaMode === 1 ? 16 : 1;
+  const by = Math.exp(-Math.max(-240, Math.min(240, event.deltaY * lines)) * 0.0022);
+  if (!state.isInSpace) move(by, place(event));
+}, { passive: false });
+const pointers = new Map();
+canvas.addEventListener("pointerdown", (event) => {
+  canvas.setPointerCapture(event.pointerId);
+  pointers.set(event.pointerId, place(event));
+});
+canvas.addEventListener("pointermove", (event) => {
+  const before = pointers.get(event.pointerId);
+  if (!before) return;
+  const now = place(event);
+  pointers.set(event.pointerId, now);
+  const delta = [now[0] - before[0], now[1] - before[1]];
+  if (state.isInSpace) {
+    const isLight = event.shiftKey;
+    turn([(isLight ? 220 : -220) * delta[0], (isLight ? 140 : -140) * delta[1]], isLight ? "light" : "from");
+  } else if (pointers.size === 1) move(1, [0, 0], delta);
+  else {
+    const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+    const apart = (at) => Math.hypot(at[0] - other[0], at[1] - other[1]) || 1e-6;
+    move(Math.max(0.2, Math.min(5, apart(now) / apart(before))), other);
+  }
+});
+for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
+canvas.addEventListener("keydown", (event) => {
+  const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+  if (!step || event.ctrlKey || event.metaKey) return;
+  event.preventDefault();
+  if (state.isInSpace) turn([-5 * step[0], -5 * step[1]], event.shiftKey ? "light" : "from");
+  else move(1, [0, 0], step.map((it) => it * 0.08));
+});
+function whole() {
+  if (state.isInSpace) {
+    delete look.options.from;
+    placeAngles("from");
+  }
+  look.view = null;
+  pending = still();
+  changed();
+}
+$("zoom-in").onclick = () => move(1.5, [0, 0]);
+$("zoom-out").onclick = () => move(1 / 1.5, [0, 0]);
+$("whole").onclick = whole;
+
+/** Draws the look that has changed. */
+function changed(fast = false) {
+  isStale = true;
+  draw(fast);
+}
+function set(option, value, fast = false) {
+  if (value === "" || value == null) delete look.options[option];
+  else look.options[option] = value;
+  changed(fast);
+}
+
+// Generation: steps and seeds.
+
+// Sets in space without a number of steps are drawn to the pixel.
+const stepNow = () => look.steps ?? (state.isInSpace ? drawn?.steps : null) ?? numbers?.proposed ?? 0;
+function goTo(step) {
+  look.steps = Math.max(0, step);
+  look.detail = null;
+  placeSteps();
+  changed();
+}
+function placeSteps() {
+  const range = $("step");
+  const last = Math.max(numbers?.last ?? 12, 1);
+  range.max = last;
+  range.value = stepNow();
+  const steps = numbers?.steps ?? [];
+  const ticks = $("ticks");
+  if (ticks.childElementCount !== last + 1) {
+    ticks.replaceChildren(...Array.from({ length: last + 1 }, (_, at) => make("i", { onclick: () => goTo(at) })));
+  }
+  [...ticks.children].forEach((tick, at) => {
+    const size = steps[at] ? Math.log10(Math.max(1, count(steps[at].elements))) : 0;
+    tick.style.setProperty("--tall", `${Math.min(24, 3 + size * 2.6)}px`);
+    tick.className = (steps[at] && !steps[at].fits ? "beyond" : "") + (at === stepNow() ? " now" : "");
+    tick.title = describe(at);
+  });
+  const now = steps[stepNow()];
+  const isLimit = look.detail != null && look.steps == null;
+  $("limit").checked = look.detail != null;
+  $("forecast").className = now && !now.fits ? "beyond" : "";
+  const [head, ...rest] = describe(stepNow()).split(" · ");
+  $("forecast").replaceChildren(make("b", {}, isLimit ? "To the pixel" : head), rest.join(" · "));
+  range.setAttribute("aria-valuetext", describe(stepNow()) + (now && !now.fits ? ", beyond what is grown here" : ""));
+  $("back").disabled = stepNow() === 0;
+}
+const count = (text) => (text.includes("^") ? 10 ** +text.split("^")[1] : +text.replaceAll(",", ""));
+function describe(at) {
+  const step = numbers?.steps[at];
+  if (!step) return `Step ${at}`;
+  return [`Step ${at}`, `${step.elements} elements`, step.bytes && `${step.bytes} of SVG`, step.seconds].filter(Boolean).join(" · ");
+}
+$("step").oninput = () => goTo(+$("step").value);
+$("back").onclick = () => goTo(stepNow() - 1);
+$("forward").onclick = () => goTo(stepNow() + 1);
+$("limit").onchange = () => {
+  look.detail = $("limit").checked ? 1 : null;
+  look.steps = null;
+  placeSteps();
+  changed();
+};
+$("to-pixel").onclick = () => {
+  look.detail = 0.5;
+  placeSteps();
+  changed();
+};
+$("follow").onchange = () => {
+  look.follows = $("follow").checked;
+  changed();
+};
+$("seed").onchange = () => sow($("seed").value.trim() || "0");
+function sow(seed) {
+  if (!/^\d{1,20}$/.test(seed)) return say("a seed is a whole number from 0");
+  look.seed = seed;
+  $("seed").value = seed;
+  changed();
+}
+const another = () => sow(String(Math.floor(Math.random() * 1e6)));
+$("another").onclick = another;
+
+// Choosing from small pictures: six seeds, members near the present one, thumbnails.
+
+const waiting = [];
+let fetching = 0;
+/** Shows a picture in an image, a few at a time. */
+function fill(image, get) {
+  waiting.push([image, get]);
+  pump();
+}
+async function pump() {
+  if (fetching >= 3 || !waiting.length) return;
+  const [image, get] = waiting.shift();
+  if (!image.isConnected) return pump();
+  fetching += 1;
+  try {
+    const url = URL.createObjectURL(await (await get()).blob());
+    image.onload = () => URL.revokeObjectURL(url);
+    image.src = url;
+  } catch (error) {
+    image.alt = error.message;
+  }
+  fetching -= 1;
+  pump();
+}
+function choose(heading, items, take, more) {
+  const grid = make("div", { className: "grid" });
+  const offer = (items) => grid.replaceChildren(...items.map((item, at) => {
+    const image = make("img", { alt: "" });
+    setTimeout(() => fill(image, () => call("POST", "/preview", { tab: `preview ${tab} ${at}`, width: 340, height: 255, ...item.picture })));
+    return make("button", { type: "button", title: item.about, "aria-label": item.about, "aria-pressed": String(!!item.isNow), onclick: () => { $("ask").close(); take(item); } }, image, make("span", {}, item.label));
+  }));
+  offer(items);
+  ask(heading, [grid], more ? { go: more.label, act: async () => { offer(await more.next()); return false; } } : {});
+}
+$("six").onclick = () => {
+  const six = () => {
+    const first = Math.floor(Math.random() * 1e6);
+    const seeds = [look.seed, ...Array.from({ length: 5 }, (_, at) => String(first + at))];
+    return seeds.map((seed, at) => ({ seed, isNow: at === 0, label: `seed ${seed}`, about: `Seed ${seed}`, picture: { look: { ...look, seed } } }));
+  };
+  choose("Six seeds", six(), (item) => sow(item.seed), { label: "Five others", next: async () => six() });
+};
+$("vary").onclick = async () => {
+  const next = async () => {
+    const { variants } = await json("POST", "/vary", { seed: Math.floor(Math.random() * 4e9) });
+    const items = variants.map((it, at) => ({ at, label: it.changes.slice(0, 2).join(", "), about: it.changes.join(", "), picture: { look, variant: at } }));
+    items.splice(4, 0, { label: "as it is", about: "As it is", isNow: true, picture: { look } });
+    return items;
+  };
+  try {
+    choose("Members near this one", await next(), async (item) => {
+      if (item.isNow) return;
+      take(await json("POST", "/take", { tab, variant: item.at }));
+    }, { label: "Others", next });
+  } catch (error) {
+    say(error.message);
+  }
+};
+
+// Family: a slider for a parameter, a pad for a complex one.
+
+const valueOf = (it) => (look.set[it.name] !== undefined ? look.set[it.name] : String(it.value));
+const limits = (it) => {
+  const wide = Math.max(1, Math.abs(it.value));
+  return [it.min ?? (it.max != null ? it.max - 2 * wide : it.value - wide), it.max ?? (it.min != null ? it.min + 2 * wide : it.value + wide)];
+};
+function family() {
+  const all = state.parameters ?? [];
+  const box = $("parameters");
+  $("no-parameters").hidden = all.length > 0;
+  $("about").textContent = state.about?.about ?? "";
+  $("about").hidden = !state.about?.about;
+  $("source").textContent = state.about?.source ? `From: ${state.about.source}` : "";
+  const parts = Map.groupBy ? Map.groupBy(all, (it) => it.whole ?? it.name) : all.reduce((map, it) => map.set(it.whole ?? it.name, [...(map.get(it.whole ?? it.name) ?? []), it]), new Map());
+  box.replaceChildren(...[...parts].map(([name, list]) => (list.length === 2 ? pad(name, list) : slider(list[0]))));
+}
+function heading(name, about, input) {
+  const reset = make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${name} as in the file`, onclick: () => { delete look.set[name]; family(); changed(); recount(); } }, "↺");
+  return [make("div", { className: "row" }, make("label", { htmlFor: `value-${name}` }, name), make("span", { className: "row" }, reset, input)), about ? make("p", { className: "quiet" }, about) : null];
+}
+function slider(it) {
+  const [min, max] = limits(it);
+  const typed = make("input", { type: "text", id: `value-${it.name}`, value: valueOf(it), autocomplete: "off" });
+  const range = make("input", { type: "range", min, max, step: "any", value: valueOf(it), "aria-label": `${it.name}, from ${min} to ${max}` });
+  range.oninput = () => {
+    const digits = Math.max(0, 3 - Math.floor(Math.log10((max - min) || 1)));
+    const value = String(+(+range.value).toFixed(Math.min(12, digits)));
+    look.set[it.name] = typed.value = value;
+    changed(true);
+  };
+  range.onchange = recount;
+  typed.onchange = () => {
+    look.set[it.name] = typed.value.trim();
+    if (!typed.value.trim()) delete look.set[it.name];
+    if (Number.isFinite(+typed.value)) range.value = typed.value;
+    changed();
+    recount();
+  };
+  range.onkeydown = (event) => {
+    const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
+    if (!by) return;
+    event.preventDefault();
+    range.value = +range.value + by * (max - min) / (event.shiftKey ? 1000 : 100);
+    range.dispatchEvent(new Event("input"));
+    range.dispatchEvent(new Event("change"));
+  };
+  return make("div", { className: "parameter" }, ...heading(it.name, it.about, typed), range);
+}
+function pad(name, parts) {
+  const read = () => (look.set[name] ?? `[${parts.map((it) => it.value)}]`).replace(/[[\]\s]/g, "").split(",").map(Number);
+  const span = parts.map(limits);
+  const typed = make("input", { type: "text", id: `value-${name}`, value: `[${read()}]`, autocomplete: "off" });
+  const knob = make("i");
+  const area = make("div", { className: "pad", tabIndex: 0, role: "application", "aria-label": `${name}: arrow keys move it in the complex plane` }, knob);
+  const share = (at, value) => (value - span[at][0]) / (span[at][1] - span[at][0]);
+  area.style.setProperty("--zero-x", `${share(0, 0) * 100}%`);
+  area.style.setProperty("--zero-y", `${100 - share(1, 0) * 100}%`);
+  const put = (value, fast = true) => {
+    const inside = value.map((it, at) => +Math.max(span[at][0], Math.min(span[at][1], it)).toFixed(4));
+    look.set[name] = typed.value = `[${inside}]`;
+    mark();
+    changed(fast);
+  };
+  const mark = () => {
+    const [x, y] = read();
+    knob.style.setProperty("--x", `${share(0, x) * 100}%`);
+    knob.style.setProperty("--y", `${100 - share(1, y) * 100}%`);
+  };
+  const drag = (event) => {
+    if (!event.buttons) return;
+    area.setPointerCapture(event.pointerId);
+    const box = area.getBoundingClientRect();
+    const at = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
+    put(at.map((it, i) => span[i][0] + it * (span[i][1] - span[i][0])));
+  };
+  area.onpointerdown = area.onpointermove = drag;
+  area.onpointerup = recount;
+  area.onkeydown = (event) => {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    put(read().map((it, i) => it + step[i] * (span[i][1] - span[i][0]) / (event.shiftKey ? 1000 : 100)));
+    recount();
+  };
+  typed.onchange = () => {
+    look.set[name] = typed.value.trim();
+    mark();
+    changed();
+    recount();
+  };
+  mark();
+  return make("div", { className: "parameter" }, ...heading(name, parts[0].about, typed), area);
+}
+
+// Style: each control is an option of `kfrac grow`.
+
+function style() {
+  const box = $("style");
+  const own = state.style ?? {};
+  const rows = [];
+  const head = (text) => rows.push(make("h3", {}, text));
+  const row = (option, label, ...controls) => {
+    const id = `style-${option}`;
+    controls.find((it) => !it.id && it.matches("input:not([type=color]), select"))?.setAttribute("id", id);
+    const reset = make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${label} as in the file`, onclick: () => { set(option, null); style(); } }, "↺");
+    rows.push(make("label", { htmlFor: id }, label), make("div", { className: "row" }, ...controls), reset);
+  };
+  const now = (option) => look.options[option] ?? own[option] ?? "";
+  const text = (option, label, hint = "") => {
+    const input = make("input", { type: "text", value: now(option), placeholder: hint, autocomplete: "off", onchange: () => set(option, input.value.trim()) });
+    row(option, label, input);
+  };
+  const colour = (option, label) => {
+    const input = make("input", { type: "text", value: now(option) || "none", autocomplete: "off" });
+    const well = make("input", { type: "color", value: hex(now(option)), "aria-label": `${label}, chosen from a palette` });
+    well.oninput = () => { input.value = well.value; set(option, well.value, true); };
+    input.onchange = () => { set(option, input.value.trim()); well.value = hex(input.value.trim()); };
+    row(option, label, well, input);
+  };
+  const select = (option, label, names, missing) => {
+    const all = missing === undefined ? names : ["", ...names];
+    const input = make("select", { onchange: () => set(option, input.value) }, ...all.map((name) => make("option", { value: name }, name || missing)));
+    input.value = now(option);
+    row(option, label, input);
+  };
+  const range = (option, label, min, max, missing = min) => {
+    const input = make("input", { type: "range", min, max, step: "any", value: now(option) || missing, oninput: () => set(option, String(+(+input.value).toFixed(2)), true) });
+    row(option, label, input);
+  };
+  const check = (option, label) => {
+    const input = make("input", { type: "checkbox", checked: String(now(option)) === "true", onchange: () => set(option, String(input.checked)) });
+    row(option, label, input);
+  };
+  const two = (option, labels) => {
+    labels.forEach((label, at) => {
+      const [min, max] = at ? [-90, 90] : [-180, 180];
+      const input = make("input", { type: "range", min, max, step: 1, value: angles(option)[at], "data-angle": `${option} ${at}`, "aria-label": label });
+      input.oninput = () => { const next = angles(option); next[at] = +input.value; set(option, next.join(","), true); };
+      input.id = `style-${option}-${at}`;
+      rows.push(make("label", { htmlFor: input.id }, label), make("div", { className: "row" }, input), make("span"));
+    });
+  };
+  head("Colours");
+  select("color-by", "Colour by", choices["color-by"].filter((name) => state.isSystem ? !["age", "fractal", "generator"].includes(name) : !["hits", "first-map", "last-map"].includes(name)));
+  const palettes = make("div", { id: "palettes", role: "group", "aria-label": "Palette" }, ...choices.palettes.map(({ name, colours }) => {
+    const strip = make("i");
+    strip.style.background = `linear-gradient(90deg, ${colours.join(", ")})`;
+    const press = () => {
+      set("palette", name);
+      if (now("color-by") === "none") { look.options["color-by"] = "step"; }
+      style();
+      $("palettes").querySelector(`[data-name="${name}"]`).focus();
+    };
+    return make("button", { type: "button", "data-name": name, "aria-pressed": String(now("palette") === name), onclick: press }, strip, name);
+  }));
+  rows.push(palettes);
+  colour("stroke", "Stroke");
+  colour("fill", "Fill");
+  colour("background", "Background");
+  if (state.isInSpace) {
+    head("Camera");
+    two("from", ["Azimuth", "Elevation"]);
+    range("perspective", "Perspective", 1, 120, 1);
+    head("Light");
+    select("shade", "Shading", choices.shade, "as usual");
+    two("light", ["Light azimuth", "Light elevation"]);
+    check("occlusion", "Occlusion");
+    check("shadows", "Shadows");
+  } else {
+    head("Lines");
+    text("stroke-width", "Width", "1.5 or 10%");
+    select("cap", "Ends", choices.cap);
+    select("join", "Corners", choices.join);
+  }
+  if (state.isSystem) {
+    head("Random iteration");
+    const input = make("input", { type: "checkbox", checked: look.options.method === "chaos", onchange: () => { set("method", input.checked ? "chaos" : null); style(); } });
+    row("method", "Draw points", input);
+    if (input.checked) {
+      text("points", "Points", "10M");
+      select("tone", "Tone", choices.tone, "log");
+    }
+  }
+  box.replaceChildren(...rows);
+}
+function placeAngles(option) {
+  document.querySelectorAll(`[data-angle^="${option} "]`).forEach((input) => {
+    const at = +input.dataset.angle.split(" ")[1];
+    const value = angles(option)[at];
+    input.value = at ? value : ((value + 180) % 360 + 360) % 360 - 180;
+  });
+}
+/** Returns a colour as six digits, for a well. */
+function hex(text) {
+  const probe = document.createElement("canvas").getContext("2d");
+  probe.fillStyle = "#000000";
+  probe.fillStyle = !text || text === "none" ? "#ffffff" : text;
+  return probe.fillStyle.startsWith("#") ? probe.fillStyle : "#000000";
+}
+
+// Text: the editor, its mistakes and completions.
+
+const code = $("code");
+let hasReturns = false; // whether lines end with \r\n, which pages do not keep
+let typing = 0;
+const toPage = (text) => text.replaceAll("\r\n", "\n");
+const toFile = (text) => (hasReturns ? text.replaceAll("\n", "\r\n") : text);
+/** Returns a position of the page's text for one of the file's. */
+const inPage = (at) => at - (hasReturns ? (state.text.slice(0, at).match(/\r\n/g) ?? []).length : 0);
+
+function showText() {
+  hasReturns = /\r\n/.test(state.text) && !/[^\r]\n/.test(state.text);
+  const text = toPage(state.text);
+  if (code.value !== text && !typing) {
+    const at = code.selectionStart;
+    code.value = text;
+    code.selectionStart = code.selectionEnd = Math.min(at, text.length);
+  }
+  mark();
+}
+function mark() {
+  const marks = $("marks");
+  const text = code.value;
+  const found = (code.value === toPage(state.text) ? state.problems : []).filter((it) => it.range);
+  const parts = [];
+  let done = 0;
+  for (const { range, severity } of found) {
+    let [from, to] = range.map(inPage);
+    if (from < done) continue;
+    if (to === from) to = Math.min(text.length, from + 1);
+    parts.push(text.slice(done, from), make("mark", { className: severity }, text.slice(from, to) || " "));
+    done = Math.max(from, to);
+  }
+  marks.replaceChildren(...parts, text.slice(done) + "\n ");
+  [marks.scrollTop, marks.scrollLeft] = [code.scrollTop, code.scrollLeft];
+  const mistakes = state.problems.filter((it) => it.severity === "error").length;
+  $("mistakes").hidden = !mistakes;
+  $("mistakes").textContent = mistakes;
+  $("mistakes").setAttribute("aria-label", `${mistakes} mistakes`);
+  $("problems").replaceChildren(...state.problems.map((it) => make("li", { className: it.severity }, make("button", { type: "button", onclick: () => goToPlace(it) },
+    make("b", {}, it.file ? `${it.file}:${it.line}` : it.line ? `Line ${it.line}` : "File"), ` ${it.message}`, it.hint ? make("small", {}, it.hint) : null))));
+}
+function goToPlace({ range }) {
+  if (!range) return;
+  const [from, to] = range.map(inPage);
+  code.focus();
+  code.setSelectionRange(from, to);
+  const line = code.value.slice(0, from).split("\n").length;
+  code.scrollTop = Math.max(0, (line - 4) * 20);
+}
+code.onscroll = () => ([$("marks").scrollTop, $("marks").scrollLeft] = [code.scrollTop, code.scrollLeft]);
+code.oninput = (event) => {
+  clearTimeout(typing);
+  typing = setTimeout(sendText, 220);
+  mark();
+  if (event.inputType === "insertText") suggest();
+  else hideWords();
+};
+async function sendText() {
+  const text = toFile(code.value);
+  typing = 0;
+  if (text === state.text) return;
+  try {
+    take(await json("PUT", `/text?revision=${state.revision}&tab=${tab}`, text, "text/plain"));
+  } catch (error) {
+    say(error.message);
+    await refresh();
+  }
+}
+let suggested = [];
+async function suggest() {
+  const at = code.selectionStart;
+  const { words } = await json("POST", "/complete", { text: code.value, position: at }).catch(() => ({ words: [] }));
+  if (at !== code.selectionStart) return;
+  suggested = words;
+  const list = $("words");
+  list.hidden = !words.length;
+  if (!words.length) return;
+  list.replaceChildren(...words.map(({ word, about }, number) => make("li", { role: "option", id: `word-${number}`, "aria-selected": String(number === 0), onpointerdown: (event) => { event.preventDefault(); pick(number); } }, make("code", {}, word.replace(/: $/, "")), about ? make("small", {}, about) : null)));
+  const before = code.value.slice(0, at).split("\n");
+  const [x, y] = [before.at(-1).length * 7.53 + 16 - code.scrollLeft, before.length * 20 + 16 - code.scrollTop];
+  list.style.left = `${Math.max(4, Math.min(x, code.clientWidth - 330))}px`;
+  list.style.top = `${y + 210 > code.clientHeight ? Math.max(4, y - 30 - Math.min(210, list.offsetHeight)) : y}px`;
+  code.setAttribute("aria-controls", "words");
+  code.setAttribute("aria-activedescendant", "word-0");
+}
+function hideWords() {
+  $("words").hidden = true;
+  code.removeAttribute("aria-activedescendant");
+}
+function pick(number) {
+  const { word, replaces } = suggested[number];
+  const at = code.selectionStart;
+  code.setRangeText(word, at - replaces, at, "end");
+  hideWords();
+  code.dispatchEvent(new InputEvent("input"));
+}
+code.onblur = hideWords;
+code.onkeydown = (event) => {
+  if (event.key === " " && event.ctrlKey) {
+    event.preventDefault();
+    return suggest();
+  }
+  if ($("words").hidden) return;
+  const list = [...$("words").children];
+  const now = list.findIndex((it) => it.getAttribute("aria-selected") === "true");
+  const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (by) {
+    event.preventDefault();
+    const next = (now + by + list.length) % list.length;
+    list.forEach((it, at) => it.setAttribute("aria-selected", String(at === next)));
+    list[next].scrollIntoView({ block: "nearest" });
+    code.setAttribute("aria-activedescendant", `word-${next}`);
+  } else if (event.key === "Enter" || event.key === "Tab") {
+    event.preventDefault();
+    pick(now);
+  } else if (event.key === "Escape") {
+    event.stopPropagation();
+    hideWords();
+  }
+};
+
+// Library.
+
+let entries = null;
+let wantedTag = "";
+async function library() {
+  if (!entries) {
+    ({ entries } = await json("GET", "/library"));
+    const kinds = [...new Set(entries.map((it) => it.id.split("/")[0]))];
+    $("shelf").replaceChildren(make("option", { value: "" }, "all"), ...kinds.map((it) => make("option", { value: it }, it.replace("_", " "))));
+    const counts = new Map();
+    entries.flatMap((it) => it.tags).forEach((it) => counts.set(it, (counts.get(it) ?? 0) + 1));
+    const tags = [...counts].filter(([, count]) => count > 1).sort((a, b) => b[1] - a[1]).map(([name]) => name);
+    $("tags").replaceChildren(...tags.slice(0, 30).map((it) => make("button", { type: "button", "aria-pressed": "false", onclick: (event) => {
+      wantedTag = wantedTag === it ? "" : it;
+      [...$("tags").children].forEach((other) => other.setAttribute("aria-pressed", String(other === event.currentTarget && wantedTag !== "")));
+      list();
+    } }, it)));
+  }
+  list();
+}
+const sight = new IntersectionObserver((all) => all.filter((it) => it.isIntersecting).forEach(({ target }) => {
+  sight.unobserve(target);
+  fill(target, () => call("GET", `/thumb?id=${encodeURIComponent(target.dataset.id)}`));
+}));
+function list() {
+  const text = $("search").value.trim().toLowerCase();
+  const fits = (it) => [it.name, it.title ?? "", ...it.tags].some((word) => word.toLowerCase().includes(text)) && it.id.startsWith($("shelf").value) && (!wantedTag || it.tags.includes(wantedTag));
+  const found = entries.filter(fits);
+  sight.disconnect();
+  waiting.length = 0;
+  $("entries").replaceChildren(...found.map((it) => {
+    const image = make("img", { alt: "", "data-id": it.id });
+    sight.observe(image);
+    return make("li", {}, make("button", { type: "button", title: [it.title, it.source].filter(Boolean).join("\n"), onclick: () => openEntry(it.id) }, image, make("span", {}, it.title || it.name), make("span", { className: "quiet" }, it.is_component ? `${it.kind.replace("_", " ")} ${it.name}` : it.name)));
+  }));
+  if (!found.length) $("entries").append(make("li", { className: "quiet" }, "Nothing has this in its name, title or tags."));
+}
+async function openEntry(id) {
+  const open = async () => {
+    take(await json("POST", "/open", { tab, id }));
+    look = state.look;
+    changed();
+  };
+  if (state.isSaved || !state.canUndo) return open().catch((error) => say(error.message));
+  ask("Open a copy", [make("p", {}, "The text is not saved. Undo brings it back.")], { go: "Open", act: open });
+}
+$("search").oninput = list;
+$("shelf").onchange = list;
+
+// Dialogs.
+
+function ask(heading, body, { go = "", act = null } = {}) {
+  const dialog = $("ask");
+  $("ask-title").textContent = heading;
+  $("ask-body").replaceChildren(...body);
+  $("ask-error").textContent = "";
+  $("ask-go").hidden = !go;
+  $("ask-go").textContent = go;
+  $("ask-go").className = "main";
+  $("ask-cancel").onclick = () => dialog.close();
+  dialog.querySelector("form").onsubmit = async (event) => {
+    event.preventDefault();
+    try {
+      if ((await act?.()) !== false) dialog.close();
+    } catch (error) {
+      $("ask-error").textContent = error.message;
+    }
+  };
+  if (!dialog.open) dialog.showModal();
+}
+const stem = () => state.name.split(/[\\/]/).at(-1).replace(/\.(ya?ml|json)$/, "");
+function saveAs() {
+  const name = make("input", { type: "text", value: `${stem()}.yaml`, required: true });
+  const inLibrary = make("input", { type: "checkbox" });
+  const replace = make("input", { type: "checkbox" });
+  ask("Save as", [
+    make("label", {}, `File, below ${state.start}`, name),
+    state.library ? make("label", {}, inLibrary, ` In my library, ${state.library}`) : null,
+    make("label", {}, replace, " Replace a file of this name"),
+  ].filter(Boolean), { go: "Save", act: async () => {
+    await sendText();
+    take(await json("POST", "/save", { tab, path: name.value.trim(), library: inLibrary.checked, replace: replace.checked }));
+    entries = null;
+  } });
+}
+async function save() {
+  if (!state.path) return saveAs();
+  try {
+    await sendText();
+    take(await json("POST", "/save", { tab }));
+    say("");
+    $("status").textContent = `Saved ${state.path}`;
+  } catch (error) {
+    say(error.message);
+    await refresh();
+  }
+}
+$("save").onclick = save;
+$("save-as").onclick = saveAs;
+$("mine-as").onclick = saveAs;
+$("export").onclick = () => {
+  const formats = state.isInSpace ? ["png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json"] : ["svg", "png", "pdf", "dxf", "csv", "json"];
+  const format = make("select", {}, ...formats.map((it) => make("option", { value: it }, it)));
+  const name = make("input", { type: "text", value: `${stem()}.${formats[0]}`, required: true });
+  const [width, height] = [canvas.width, canvas.height].map((value) => make("input", { type: "number", min: 1, max: 100000, value }));
+  const plot = make("input", { type: "checkbox" });
+  const replace = make("input", { type: "checkbox" });
+  format.onchange = () => (name.value = name.value.replace(/\.[^.]*$/, "") + `.${format.value}`);
+  const done = make("p", { className: "quiet", role: "status" });
+  ask("Export", [
+    make("label", {}, "Format", format),
+    make("label", {}, `File, below ${state.start}`, name),
+    make("div", { className: "row" }, make("label", {}, "Width in pixels", width), make("label", {}, "Height in pixels", height)),
+    make("label", {}, plot, " Single strokes, for a plotter"),
+    make("label", {}, replace, " Replace a file of this name"),
+    done,
+  ], { go: "Export", act: async () => {
+    done.textContent = "Writing…";
+    try {
+      const { path, summary, notes } = await json("POST", "/export", { tab, path: name.value.trim(), width: +width.value, height: +height.value, plot: plot.checked, replace: replace.checked });
+      done.textContent = [`${path}: ${summary}`, ...notes].join("\n");
+    } catch (error) {
+      done.textContent = "";
+      throw error;
+    }
+    return false;
+  } });
+};
+$("help").onclick = () => {
+  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, or turn it in space; with Shift, turn the light"], ["wheel, drag", "zoom about the pointer, move or turn; with Shift, turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], ["?", "these keys"]];
+  ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
+};
+$("copy").onclick = async () => {
+  await navigator.clipboard.writeText(drawn?.command ?? "").catch(() => getSelection().selectAllChildren($("command")));
+  $("copy").textContent = "Copied";
+  setTimeout(() => ($("copy").textContent = "Copy command"), 1500);
+};
+document.querySelectorAll("[data-settle]").forEach((button) => (button.onclick = async () => take(await json("POST", "/settle", { tab, theirs: button.dataset.settle === "theirs" }))));
+
+// Undo, tabs and keys.
+
+async function travel(path) {
+  if (typing) {
+    clearTimeout(typing);
+    await sendText();
+  }
+  take(await json("POST", path, { tab }));
+}
+$("undo").onclick = () => travel("/undo");
+$("redo").onclick = () => travel("/redo");
+const tabs = [...document.querySelectorAll("[role=tab]")];
+function openTab(button, focuses = false) {
+  tabs.forEach((it) => {
+    it.setAttribute("aria-selected", String(it === button));
+    it.tabIndex = it === button ? 0 : -1;
+    $(it.getAttribute("aria-controls")).hidden = it !== button;
+  });
+  if (focuses) button.focus();
+  sessionStorage.setItem("tab", button.id);
+  if (button.id === "tab-library") library().catch((error) => say(error.message));
+  if (button.id === "tab-text") mark();
+}
+tabs.forEach((button, at) => {
+  button.onclick = () => openTab(button);
+  button.onkeydown = (event) => {
+    const by = { ArrowRight: 1, ArrowLeft: -1, Home: -at, End: tabs.length - 1 - at }[event.key];
+    if (by !== undefined) openTab(tabs[(at + by + tabs.length) % tabs.length], true);
+  };
+});
+document.addEventListener("keydown", (event) => {
+  const command = event.ctrlKey || event.metaKey;
+  const name = event.key.toLowerCase();
+  if (command && name === "s") save();
+  else if (command && name === "z") travel(event.shiftKey ? "/redo" : "/undo");
+  else if (command && name === "y") travel("/redo");
+  else {
+    if (command || event.altKey || $("ask").open || event.target.matches("input, textarea, select")) return;
+    const act = { "[": () => $("back").click(), "]": () => $("forward").click(), "+": () => $("zoom-in").click(), "=": () => $("zoom-in").click(), "-": () => $("zoom-out").click(), 0: whole, r: () => $("seeds").hidden || another(), "?": () => $("help").click() }[name];
+    if (!act) return;
+    act();
+  }
+  event.preventDefault();
+});
+
+// State.
+
+/** Takes the state of the server. */
+function take(next) {
+  const before = state;
+  state = next;
+  const isNew = before.revision !== state.revision;
+  document.title = `${title()} – kfrac studio`;
+  $("title").textContent = title();
+  $("file").textContent = state.path ?? `${state.name}, a copy that is not saved`;
+  $("file").className = state.isSaved ? "quiet" : "quiet unsaved";
+  $("undo").disabled = !state.canUndo;
+  $("redo").disabled = !state.canRedo;
+  $("conflict").hidden = state.theirs == null;
+  $("paper").classList.toggle("wrong", !state.isGood);
+  $("veil").hidden = state.isGood || !state.hasGood;
+  if (!state.hasGood) say("There is nothing to draw yet: the text has mistakes.");
+  $("factor").value = factor(state.factor);
+  for (const id of ["zoom-in", "zoom-out", "follow-label"]) $(id).hidden = state.isInSpace;
+  showText();
+  if (isNew || JSON.stringify(state.look) !== JSON.stringify(look)) {
+    look = state.look;
+    look.options ??= {};
+    $("seed").value = look.seed;
+    $("follow").checked = look.follows;
+    if (state.hasGood) {
+      family();
+      style();
+    }
+    placeSteps();
+    draw();
+    recount();
+  }
+}
+const refresh = async () => take(await json("GET", "/state"));
+let counting = 0;
+/** Asks for forecast and dimension. */
+function recount() {
+  clearTimeout(counting);
+  counting = setTimeout(async () => {
+    if (!state.hasGood) return;
+    try {
+      numbers = await json("GET", `/numbers?tab=${tab}`);
+      $("seeds").hidden = !numbers.is_random;
+      $("dimension").textContent = numbers.dimension.join("  ·  ");
+      $("dimension").title = numbers.dimension.join("\n");
+      placeSteps();
+    } catch (error) {
+      if (error.status !== 410) $("dimension").textContent = error.message;
+    }
+  }, 60);
+}
+/** Follows changes that others make: other tabs, and other programs. */
+async function follow() {
+  for (;;) {
+    try {
+      const reader = (await call("GET", "/events")).body.pipeThrough(new TextDecoderStream()).getReader();
+      let rest = "";
+      for (;;) {
+        const { value, done } = await reader.read();
+        if (done) break;
+        const lines = (rest + value).split("\n");
+        rest = lines.pop();
+        const data = lines.filter((it) => it.startsWith("data:")).map((it) => JSON.parse(it.slice(5)));
+        if (data.some((it) => it.tab !== tab)) await refresh();
+      }
+    } catch {
+      say("The studio has ended: its terminal has no connection to this page.");
+    }
+    await new Promise((resolve) => setTimeout(resolve, 1500));
+    if (await json("GET", "/state").then((next) => (take(next), true), () => false)) say("");
+  }
+}
+
+try {
+  [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
+  const first = state;
+  state = {};
+  resize();
+  take(first);
+  openTab($(sessionStorage.getItem("tab") ?? "") ?? tabs[0]);
+  follow();
+} catch (error) {
+  say(error.message);
+}

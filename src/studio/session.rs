@@ -1,0 +1,551 @@
+//! The session: what the page shows, and what a reload finds again.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::catalogue::{Catalogue, read_file};
+use crate::cli::check;
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::document::ParameterDocument;
+use crate::kind::Kind;
+use crate::model::Model;
+use crate::output_file::OutputFile;
+use crate::style::{Named, Width};
+
+use super::Options;
+use super::answer::Refusal;
+use super::drawing::{Shot, Wholes};
+use super::files::{Roots, is_rule};
+use super::history::History;
+use super::look::Look;
+use super::numbers::Numbers;
+use super::problems::{Problem, problems};
+use super::vary::Variant;
+use super::view::{Gesture, View};
+
+/// State of a studio.
+#[derive(Debug)]
+pub(super) struct Session {
+    pub(super) catalogue: Catalogue,
+    pub(super) roots: Roots,
+    /// Name of the rule on the command line, and of its source in messages.
+    name: String,
+    source_name: String,
+    /// File of the rule; `None` for a copy that is not saved.
+    path: Option<PathBuf>,
+    history: History,
+    /// Number of changes of the text.
+    pub(super) revision: u64,
+    /// Text of the file when it was last read or written.
+    saved: Option<Arc<str>>,
+    /// Text that another program has written while this one was not saved.
+    theirs: Option<Arc<str>>,
+    pub(super) look: Look,
+    /// The last text without mistakes.
+    good: Option<Good>,
+    problems: Vec<Problem>,
+    /// Part of the plane that the last picture showed.
+    pub(super) window: Option<[f64; 4]>,
+    pub(super) numbers: Option<(Key, Arc<Numbers>)>,
+    pub(super) wholes: Arc<Wholes>,
+    pub(super) variants: Vec<Variant>,
+}
+
+/// Revision of the text and settings, on which forecast and dimension depend.
+pub(super) type Key = (u64, Vec<String>);
+
+/// A text without mistakes, with what the page has to know of it.
+#[derive(Clone, Debug)]
+pub(super) struct Good {
+    pub(super) source: Arc<Source>,
+    revision: u64,
+    kind: Kind,
+    is_in_space: bool,
+    pub(super) parameters: Vec<ParameterState>,
+    about: Value,
+    style: Value,
+    own_steps: Option<u32>,
+}
+
+/// Parameter of a rule.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ParameterState {
+    pub(super) name: String,
+    /// Name of the complex parameter of which this is a part.
+    pub(super) whole: Option<String>,
+    pub(super) value: f64,
+    pub(super) min: Option<f64>,
+    pub(super) max: Option<f64>,
+    about: Option<String>,
+}
+
+/// A text that has been read.
+pub(super) struct Checked {
+    text: Arc<str>,
+    good: Option<Good>,
+    problems: Vec<Problem>,
+}
+
+impl Session {
+    /// Opens a rule.
+    pub(super) fn open(options: Options) -> Result<Self, Diagnostics> {
+        let Options {
+            rule,
+            catalogue,
+            library,
+            settings,
+            seed,
+            ..
+        } = options;
+        let rule = rule.unwrap_or_else(|| "pythagoras".into());
+        let source = catalogue.rule(&rule)?;
+        let path = rule.is_file().then(|| rule.clone());
+        let folder = path.as_deref().and_then(Path::parent);
+        let folder = folder.filter(|folder| *folder != Path::new(""));
+        let start = folder.unwrap_or(Path::new("."));
+        let start = start.canonicalize().map_err(|error| {
+            Diagnostic::error(format!("the folder '{}': {error}", start.display()))
+        })?;
+        let text: Arc<str> = match &path {
+            // As it is on the disk, with its byte order mark.
+            Some(path) => read_text(path)?,
+            None => source.text().into(),
+        };
+        let set = settings.iter().filter_map(|it| it.split_once('='));
+        let set = set.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let look = Look {
+            seed,
+            set: set.collect(),
+            ..Look::default()
+        };
+        let mut session = Self {
+            catalogue,
+            roots: Roots { start, library },
+            name: rule.to_string_lossy().into_owned(),
+            source_name: source.name().to_owned(),
+            saved: path.is_some().then(|| Arc::clone(&text)),
+            path,
+            history: History::new(Arc::clone(&text)),
+            revision: 0,
+            theirs: None,
+            look,
+            good: None,
+            problems: Vec::new(),
+            window: None,
+            numbers: None,
+            wholes: Arc::default(),
+            variants: Vec::new(),
+        };
+        let checked = session.reader().check(text);
+        session.take(checked);
+        Ok(session)
+    }
+
+    /// Returns the reader of texts of this rule, which works without the session.
+    pub(super) fn reader(&self) -> Reader {
+        Reader {
+            catalogue: self.catalogue.clone(),
+            name: self.source_name.clone(),
+        }
+    }
+
+    fn take(&mut self, checked: Checked) {
+        self.revision += 1;
+        self.problems = checked.problems;
+        if let Some(good) = checked.good {
+            let known = |name: &str| {
+                good.parameters
+                    .iter()
+                    .any(|it| it.name == name || it.whole.as_deref() == Some(name))
+            };
+            self.look.set.retain(|name, _| known(name));
+            self.good = Some(Good {
+                revision: self.revision,
+                ..good
+            });
+            self.wholes.forget();
+        }
+    }
+
+    /// Returns the text.
+    pub(super) fn text(&self) -> &Arc<str> {
+        self.history.text()
+    }
+
+    /// Replaces the text; `revision` is the one on which the change is based.
+    pub(super) fn set_text(&mut self, checked: Checked, revision: u64) -> Result<(), Refusal> {
+        if revision != self.revision {
+            return Err(Refusal::conflict("the text has changed in the meantime"));
+        }
+        if self.history.push(Arc::clone(&checked.text)) {
+            self.take(checked);
+        }
+        Ok(())
+    }
+
+    /// Goes back or forth in the history; returns the text to be read, if there is one.
+    pub(super) fn travel(&mut self, is_back: bool) -> bool {
+        let has_moved = match is_back {
+            true => self.history.undo(),
+            false => self.history.redo(),
+        };
+        if has_moved {
+            let checked = self.reader().check(Arc::clone(self.history.text()));
+            self.take(checked);
+        }
+        has_moved
+    }
+
+    /// Opens an entry of the library as a copy that is not saved.
+    pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
+        self.name = name.to_owned();
+        self.source_name = source.name().to_owned();
+        self.path = None;
+        self.saved = None;
+        self.theirs = None;
+        self.window = None;
+        self.look = Look::default();
+        self.good = None;
+        let text: Arc<str> = source.text().into();
+        let checked = self.reader().check(Arc::clone(&text));
+        self.history.push(text);
+        self.take(checked);
+    }
+
+    /// Returns the files whose changes matter.
+    pub(super) fn watched(&self) -> Vec<PathBuf> {
+        self.path.iter().cloned().collect()
+    }
+
+    /// Reads the file again, after another program may have changed it; returns whether the page has to know.
+    pub(super) fn reread(&mut self) -> bool {
+        let Some(theirs) = self.path.as_deref().and_then(|path| read_text(path).ok()) else {
+            return false;
+        };
+        if self.saved.as_ref() == Some(&theirs) {
+            return self.theirs.take().is_some();
+        }
+        if self.is_saved() || theirs == *self.text() {
+            self.saved = Some(Arc::clone(&theirs));
+            self.theirs = None;
+            if self.history.push(Arc::clone(&theirs)) {
+                let checked = self.reader().check(theirs);
+                self.take(checked);
+            }
+            return true;
+        }
+        let is_new = self.theirs.as_ref() != Some(&theirs);
+        self.theirs = Some(theirs);
+        is_new
+    }
+
+    /// Settles a conflict: takes the text of the other program, or keeps the own one.
+    pub(super) fn settle(&mut self, takes_theirs: bool) {
+        let Some(theirs) = self.theirs.take() else {
+            return;
+        };
+        self.saved = Some(Arc::clone(&theirs));
+        if takes_theirs && self.history.push(Arc::clone(&theirs)) {
+            let checked = self.reader().check(theirs);
+            self.take(checked);
+        }
+    }
+
+    fn is_saved(&self) -> bool {
+        self.saved.as_deref() == Some(&**self.text())
+    }
+
+    /// Writes the text: to its own file, or to another one.
+    pub(super) fn save(&mut self, to: Option<&str>, replaces: bool) -> Result<PathBuf, Refusal> {
+        let own = self.path.clone();
+        let asked = to.map(PathBuf::from).or_else(|| own.clone());
+        let asked = asked.ok_or_else(|| Refusal::wrong("the copy has no file yet: give a name"))?;
+        if !is_rule(&asked) {
+            return Err(Refusal::wrong("a rule is saved as a .yaml, .yml or .json"));
+        }
+        // The own path is relative to the folder in which the program was started.
+        let full = match to {
+            None => std::path::absolute(&asked).unwrap_or(asked),
+            Some(_) => asked,
+        };
+        let path = self.roots.allowed(&full)?;
+        let is_own = own.is_some_and(|own| is_same(&own, &path));
+        let on_disk = read_text(&path).ok();
+        if is_own && !replaces && on_disk.is_some() && on_disk != self.saved {
+            self.theirs = on_disk;
+            return Err(Refusal::conflict(
+                "another program has changed the file: take its text, or save this one under another name",
+            ));
+        }
+        if !is_own && !replaces && path.exists() {
+            return Err(Refusal::conflict(format!("'{}' exists", path.display())));
+        }
+        let mut file = OutputFile::create(&path)?;
+        let written = std::io::Write::write_all(&mut file, self.text().as_bytes());
+        written.map_err(|error| Refusal::wrong(error.to_string()))?;
+        file.finish()?;
+        self.saved = Some(Arc::clone(self.text()));
+        self.theirs = None;
+        if !is_own {
+            self.name = self.relative(&path);
+            self.source_name = path.display().to_string();
+            self.path = Some(path.clone());
+            let checked = self.reader().check(Arc::clone(self.text()));
+            self.take(checked);
+        }
+        Ok(path)
+    }
+
+    /// Returns a path from the folder in which the program was started, where it leads there.
+    fn relative(&self, path: &Path) -> String {
+        let here = std::env::current_dir().and_then(|here| here.canonicalize());
+        let from_here = here
+            .ok()
+            .and_then(|here| path.strip_prefix(here).ok().map(PathBuf::from));
+        from_here
+            .unwrap_or_else(|| path.into())
+            .display()
+            .to_string()
+    }
+
+    /// Returns the kind of the last good text.
+    pub(super) fn kind(&self) -> Kind {
+        self.good.as_ref().map_or(Kind::Rule, |good| good.kind)
+    }
+
+    /// Returns the last good text; an error if there has been none yet.
+    pub(super) fn good(&self) -> Result<&Good, Refusal> {
+        { self.good.as_ref() }
+            .ok_or_else(|| Refusal::wrong("there is nothing to draw: the text has mistakes"))
+    }
+
+    /// Applies a gesture to the view.
+    pub(super) fn gesture(&mut self, gesture: &Gesture) -> Result<(), Refusal> {
+        let view = match (&self.look.view, self.window) {
+            (Some(view), _) => view.clone(),
+            (None, Some(window)) => View::of(window),
+            (None, None) => return Err(Refusal::wrong("there is no picture of the plane to move")),
+        };
+        self.look.view = Some(view.moved(gesture)?);
+        Ok(())
+    }
+
+    /// Returns everything that a picture depends on.
+    pub(super) fn shot(&self, look: &Look, size: [u32; 2]) -> Result<Shot, Refusal> {
+        let good = self.good()?;
+        self.shot_of(good, &good.source, look, size)
+    }
+
+    /// Returns everything that the picture of a source depends on.
+    pub(super) fn shot_of(
+        &self,
+        good: &Good,
+        source: &Arc<Source>,
+        look: &Look,
+        size: [u32; 2],
+    ) -> Result<Shot, Refusal> {
+        look.check()?;
+        let view = look.view.clone().filter(|_| !good.is_in_space);
+        let steps = match &view {
+            Some(view) if look.follows => self.followed(good, look, view.factor()),
+            _ => look.steps,
+        };
+        let mut look = look.clone();
+        if view.as_ref().is_some_and(|view| !view.is_plain()) {
+            look.options.remove("margin");
+        }
+        Ok(Shot {
+            catalogue: self.catalogue.clone(),
+            source: Arc::clone(source),
+            rule: self.name.clone(),
+            look: look.arguments(good.is_in_space, steps),
+            view,
+            size,
+            wholes: Arc::clone(&self.wholes),
+        })
+    }
+
+    /// Returns the number of steps at a magnification: elements stay as long in the picture as they are without it.
+    fn followed(&self, good: &Good, look: &Look, factor: f64) -> Option<u32> {
+        if look.detail.is_some() {
+            return look.steps;
+        }
+        let numbers = self.known_numbers();
+        let proposed = || match good.kind {
+            Kind::Rule | Kind::LSystem => numbers.as_ref().map(|it| it.proposed),
+            _ => None,
+        };
+        let steps = look.steps.or(good.own_steps).or_else(proposed)?;
+        let further = numbers.as_ref().and_then(|it| it.further(factor));
+        Some(steps.saturating_add(further.unwrap_or(0)).min(1_000_000))
+    }
+
+    /// Returns what forecast and dimension depend on.
+    pub(super) fn key(&self) -> Key {
+        let settings = { self.look.set.iter() }.map(|(name, value)| format!("{name}={value}"));
+        let revision = self.good.as_ref().map_or(0, |good| good.revision);
+        (revision, settings.collect())
+    }
+
+    /// Returns forecast and dimension, if they have been computed.
+    pub(super) fn known_numbers(&self) -> Option<Arc<Numbers>> {
+        let (key, numbers) = self.numbers.as_ref()?;
+        (*key == self.key()).then(|| Arc::clone(numbers))
+    }
+
+    /// Refuses a step of too many elements, where a whole picture is drawn without a detail.
+    pub(super) fn check_size(&self, look: &Look) -> Result<(), Refusal> {
+        let good = self.good()?;
+        let steps = look
+            .steps
+            .filter(|_| look.detail.is_none() && look.view.is_none());
+        let (Some(steps), Some(numbers)) = (steps, self.known_numbers()) else {
+            return Ok(());
+        };
+        if numbers.fits(steps) || look.is_density() || good.is_in_space {
+            return Ok(());
+        }
+        Err(Refusal::wrong(format!(
+            "step {steps} has {}, more than are grown here: fewer steps, or the detail of a pixel, draw it",
+            numbers.described(steps)
+        )))
+    }
+
+    /// Returns what the page shows besides pictures and numbers.
+    pub(super) fn state(&self) -> Value {
+        let good = self.good.as_ref();
+        json!({
+            "revision": self.revision,
+            "name": self.name,
+            "path": self.path,
+            "start": self.roots.start,
+            "library": self.roots.library,
+            "isSaved": self.is_saved(),
+            "text": &**self.text(),
+            "theirs": self.theirs.as_deref(),
+            "canUndo": self.history.can_undo(),
+            "canRedo": self.history.can_redo(),
+            "problems": self.problems,
+            "isGood": good.is_some_and(|good| good.revision == self.revision),
+            "hasGood": good.is_some(),
+            "kind": good.map(|good| good.kind.full_name()),
+            "isInSpace": good.is_some_and(|good| good.is_in_space),
+            "isSystem": good.is_some_and(|good| good.kind == Kind::Ifs),
+            "about": good.map(|good| &good.about),
+            "style": good.map(|good| &good.style),
+            "parameters": good.map(|good| &good.parameters),
+            "look": self.look,
+            "factor": self.look.view.as_ref().map(View::factor),
+        })
+    }
+}
+
+/// Reader of the texts of a rule.
+#[derive(Clone, Debug)]
+pub(super) struct Reader {
+    catalogue: Catalogue,
+    name: String,
+}
+
+impl Reader {
+    /// Returns the source of a text.
+    pub(super) fn source(&self, text: &str) -> Arc<Source> {
+        Source::new(self.name.clone(), text)
+    }
+
+    /// Reads a text.
+    pub(super) fn check(&self, text: Arc<str>) -> Checked {
+        let source = self.source(&text);
+        let (good, found) = match source.check_size() {
+            Err(mistake) => (None, mistake.into()),
+            Ok(()) => match check::checked(&source, &self.catalogue) {
+                Err(found) => (None, found),
+                Ok((document, model, found)) => {
+                    let good = Good::of(&source, &document.metadata().params, &model);
+                    ((!found.has_errors()).then_some(good), found)
+                }
+            },
+        };
+        let problems = problems(&found, &source, &text);
+        Checked {
+            text,
+            good,
+            problems,
+        }
+    }
+}
+
+impl Good {
+    fn of(source: &Arc<Source>, parameters: &[ParameterDocument], model: &Model) -> Self {
+        let heading = model.metadata();
+        let described = &heading.description;
+        let style = &heading.style;
+        let parameters = parameters.iter().zip(&heading.parameters);
+        let hex = |colour: Option<crate::style::Colour>| colour.map(|it| format!("{it:#}"));
+        let view = model.space_view();
+        Self {
+            source: Arc::clone(source),
+            revision: 0,
+            kind: model.kind(),
+            is_in_space: model.is_in_space(),
+            parameters: parameters
+                .map(|(written, parameter)| ParameterState {
+                    name: parameter.name.clone(),
+                    whole: written.whole.as_ref().map(|whole| whole.value.clone()),
+                    value: parameter.value,
+                    min: parameter.min,
+                    max: parameter.max,
+                    about: parameter.about.clone(),
+                })
+                .collect(),
+            about: json!({
+                "title": described.title,
+                "about": described.about.as_deref().map(str::trim),
+                "source": described.source.as_deref().map(str::trim),
+                "tags": described.tags,
+            }),
+            style: json!({
+                "stroke": hex(style.stroke),
+                "fill": hex(style.fill),
+                "background": hex(style.background),
+                "stroke-width": match style.width {
+                    Width::Pixels(width) => width.to_string(),
+                    Width::Relative(width) => format!("{}%", width * 100.0),
+                },
+                "color-by": style.color_by.name(),
+                "palette": style.palette.name(),
+                "cap": style.cap.name(),
+                "join": style.join.name(),
+                "from": view.direction(),
+                "light": view.light().from,
+                "perspective": view.perspective,
+                "shade": view.shade.map(|shade| shade.name()),
+                "occlusion": view.occlusion,
+                "shadows": view.shadows,
+            }),
+            own_steps: heading.steps,
+        }
+    }
+}
+
+/// Reads a file as text, byte for byte.
+fn read_text(path: &Path) -> Result<Arc<str>, Diagnostic> {
+    // Its mistakes are those of reading any rule.
+    read_file(path)?;
+    let bytes =
+        std::fs::read(path).map_err(|error| crate::catalogue::cannot_be_read(path, &error))?;
+    let text = String::from_utf8(bytes);
+    Ok(text
+        .map_err(|_| Diagnostic::error(format!("'{}' is no text", path.display())))?
+        .into())
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}

@@ -1,0 +1,262 @@
+// Checks the page of kfrac studio: node check.mjs PROGRAM [FOLDER]
+//
+// The program is `kfrac`; screenshots are written into the folder, if there is one.
+
+import { spawn } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+
+import { Browser } from "./browser.mjs";
+
+const [program, pictures] = process.argv.slice(2);
+if (!program) throw new Error("node check.mjs PROGRAM [FOLDER]");
+if (pictures) mkdirSync(pictures, { recursive: true });
+const folder = mkdtempSync(join(tmpdir(), "kfrac-rules-"));
+let checks = 0;
+function check(holds, what) {
+  if (!holds) throw new Error(`does not hold: ${what}`);
+  checks += 1;
+}
+
+/** Serves a rule, and returns the address of its page. */
+async function serve(rule, ...more) {
+  const studio = spawn(resolve(program), ["studio", rule, "--no-open", ...more], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+  const url = await new Promise((resolve, reject) => {
+    let text = "";
+    studio.stdout.setEncoding("utf8").on("data", (data) => {
+      text += data;
+      if (text.includes("\n")) resolve(text.trim());
+    });
+    studio.on("exit", () => reject(new Error("the studio ended")));
+  });
+  return { url, end: () => studio.kill("SIGINT") };
+}
+
+const browser = await Browser.start();
+const shoot = (name) => pictures && browser.screenshot(join(pictures, `${name}.png`));
+const isDrawn = "document.querySelector('#status').textContent.includes('ms') || document.querySelector('#status').textContent.includes(' s')";
+const status = () => browser.value("document.querySelector('#status').textContent");
+const text = (selector) => browser.value(`document.querySelector(${JSON.stringify(selector)}).textContent`);
+const value = (selector) => browser.value(`document.querySelector(${JSON.stringify(selector)}).value`);
+/** Returns a number for the pixels of the picture, and how many of them are not empty. */
+const pixels = () => browser.value(`(() => {
+  const canvas = document.querySelector("#picture");
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let sum = 0, inked = 0;
+  for (let at = 0; at < data.length; at += 4) {
+    if (data[at + 3]) inked += 1;
+    sum = (sum * 31 + data[at] + 3 * data[at + 1] + 7 * data[at + 2] + 11 * data[at + 3]) % 2147483647;
+  }
+  return [sum, inked];
+})()`);
+async function changes(act, what) {
+  const [before] = await pixels();
+  await act();
+  const end = Date.now() + 20_000;
+  while ((await pixels())[0] === before) {
+    if (Date.now() > end) throw new Error(`the picture stays: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 40));
+  }
+  await settled();
+  checks += 1;
+}
+/** Waits until the picture has been drawn in full. */
+async function settled() {
+  let last = null;
+  for (;;) {
+    await new Promise((resolve) => setTimeout(resolve, 220));
+    const now = await pixels();
+    if (String(now) === String(last)) return;
+    last = now;
+  }
+}
+async function open(url) {
+  await browser.open(url);
+  await browser.until(isDrawn);
+  await settled();
+}
+
+const TREE = readFileSync(new URL("tree.yaml", import.meta.url), "utf8");
+const studios = [];
+try {
+  writeFileSync(join(folder, "tree.yaml"), TREE);
+  const studio = await serve("tree.yaml");
+  studios.push(studio);
+  await browser.size(1360, 860);
+  await open(studio.url);
+  check((await pixels())[1] > 2000, "there is ink");
+  check((await status()).startsWith("Step "), "the status line has the step");
+  check((await text("#dimension")).includes("dimension"), "the dimension is shown");
+  check((await text("#command")).startsWith("kfrac grow tree.yaml"), "the command is shown");
+  await shoot("first-sight");
+
+  // Every control has a name, in every panel.
+  for (const panel of ["family", "style", "text", "library"]) {
+    await browser.click(`#tab-${panel}`);
+    await browser.until(`!document.querySelector('#${panel}').hidden`);
+    if (panel === "library") await browser.until("document.querySelectorAll('#entries img[src]').length > 8");
+    const unnamed = (await browser.controls()).filter((it) => it.role !== "image" && !it.name);
+    check(unnamed.length === 0, `named controls: ${JSON.stringify(unnamed)}`);
+    await shoot(`panel-${panel}`);
+  }
+  await browser.click("#tab-family");
+  const small = await browser.value(`[...document.querySelectorAll("button, input, select")].filter((it) => it.checkVisibility() && it.type !== "checkbox" && it.getBoundingClientRect().height < 24).map((it) => it.id || it.className)`);
+  check(small.length === 0, `targets of 24 pixels: ${small}`);
+
+  // A slider.
+  const drag = async () => {
+    const [x, y, width, height] = await browser.value("(() => { const { x, y, width, height } = document.querySelector('#parameters input[type=range]').getBoundingClientRect(); return [x, y, width, height]; })()");
+    await browser.drag([x + width * 0.4, y + height / 2], [x + width * 0.75, y + height / 2]);
+  };
+  await changes(drag, "a slider changes the picture");
+  await browser.until("document.querySelector('#command').textContent.includes('--set=')");
+  await shoot("slider");
+
+  // Drag and wheel on the picture.
+  const before = await value("#factor");
+  await changes(() => browser.drag([500, 400], [560, 350]), "a drag moves the picture");
+  await changes(() => browser.send("Input.dispatchMouseEvent", { type: "mouseWheel", x: 500, y: 380, deltaX: 0, deltaY: -600 }), "the wheel zooms");
+  check(before === "" && (await value("#factor")).startsWith("×"), "the magnification is shown");
+  await browser.until("document.querySelector('#command').textContent.includes('--view=')");
+  await shoot("zoomed");
+
+  // The keyboard alone: from the top of the page to the slider of steps, and back.
+  await open(studio.url);
+  await browser.value("document.activeElement.blur(); document.querySelector('.skip').focus()");
+  const seen = [];
+  for (let step = 0; step < 40 && seen.at(-1) !== "step"; step += 1) {
+    await browser.key("Tab");
+    seen.push(await browser.value("document.activeElement.id"));
+  }
+  check(seen.includes("picture") && seen.at(-1) === "step", `Tab reaches the slider of steps: ${seen}`);
+  const stepBefore = +(await value("#step"));
+  await changes(() => browser.key("ArrowRight"), "an arrow key steps forward");
+  check(+(await value("#step")) === stepBefore + 1, "by one step");
+  await browser.value("document.querySelector('#picture').focus()");
+  await changes(() => browser.key("0"), "0 shows all");
+  await changes(() => browser.key("+"), "plus zooms in");
+  await changes(() => browser.key("ArrowLeft"), "an arrow key moves");
+  await changes(() => browser.key("["), "a bracket steps back");
+  await browser.key("?");
+  check(await browser.value("document.querySelector('#ask').open"), "a question mark shows the keys");
+  await browser.key("Escape");
+  check(!(await browser.value("document.querySelector('#ask').open")), "Escape closes them");
+  await browser.value("document.querySelector('#tab-family').focus()");
+  await browser.key("ArrowRight");
+  check((await browser.value("document.activeElement.id")) === "tab-style", "arrow keys change panels");
+  await browser.value("document.querySelector('#picture').focus()");
+  await changes(() => browser.key("0"), "0 shows all again");
+
+  // A step beyond the budget is grey, and is not drawn.
+  await browser.value("(() => { const range = document.querySelector('#step'); range.value = range.max; range.dispatchEvent(new Event('input')); })()");
+  await browser.until("!document.querySelector('#message').hidden");
+  check((await text("#message")).includes("elements"), "the message has the number");
+  check(await browser.value("document.querySelector('#forecast').className === 'beyond'"), "the forecast is grey");
+  await shoot("beyond");
+  await changes(() => browser.click("#to-pixel"), "to the pixel it is drawn");
+
+  // A mistake in the text: underlined at its place, with the last picture dimmed.
+  await browser.click("#tab-text");
+  const type = (from, to) => browser.value(`(() => { const code = document.querySelector('#code'); const at = code.value.indexOf(${JSON.stringify(from)}); code.focus(); code.setRangeText(${JSON.stringify(to)}, at, at + ${from.length}, 'end'); code.dispatchEvent(new InputEvent('input')); })()`);
+  await type("fertile: false", "fertil: false");
+  await browser.until("document.querySelectorAll('#marks mark').length > 0");
+  check((await text("#marks mark")) === "fertil", "the mistake is underlined at its place");
+  check(await browser.value("document.querySelector('#paper').classList.contains('wrong')"), "the last picture is dimmed");
+  check((await text("#problems")).includes("fertile"), "the remedy is shown");
+  check((await pixels())[1] > 2000, "the last picture stays");
+  await shoot("mistake");
+  await type("fertil: false", "fertile: false");
+  await browser.until("document.querySelectorAll('#marks mark').length === 0");
+  await browser.value("document.querySelector('#code').focus()");
+  await browser.key("z", { modifiers: 2 });
+  await browser.until("document.querySelectorAll('#marks mark').length > 0");
+  await browser.key("z", { modifiers: 2 });
+  await browser.until(`document.querySelector('#code').value === ${JSON.stringify(TREE)}`);
+  checks += 1;
+
+  // Completion from the schema.
+  await type("title:", "ab\ntitle:");
+  await browser.value("(() => { const code = document.querySelector('#code'); code.setSelectionRange(2, 2); })()");
+  await browser.key(" ", { modifiers: 2 });
+  await browser.until("!document.querySelector('#words').hidden");
+  check((await text("#words")).includes("about"), "keys are offered");
+  await browser.key("Escape");
+  await browser.key("z", { modifiers: 2 });
+  await browser.until(`document.querySelector('#code').value === ${JSON.stringify(TREE)}`);
+  await browser.until("document.querySelector('#file').className === 'quiet'");
+
+  // Another editor.
+  writeFileSync(join(folder, "tree.yaml"), TREE.replace("angle: {value: 38", "angle: {value: 70"));
+  await browser.until("document.querySelector('#code').value.includes('value: 70')");
+  checks += 1;
+
+  // Random trees: six seeds. Vary.
+  const random = await serve("random-tree");
+  studios.push(random);
+  await open(random.url);
+  await browser.until("!document.querySelector('#seeds').hidden");
+  await changes(() => browser.click("#another"), "another seed is another tree");
+  await browser.click("#six");
+  await browser.until("document.querySelectorAll('.grid img[src]').length === 6");
+  await settled();
+  await shoot("six-seeds");
+  await changes(() => browser.click(".grid button:nth-child(4)"), "a click takes a seed");
+  await browser.click("#vary");
+  await browser.until("document.querySelectorAll('.grid img[src]').length === 9");
+  await settled();
+  await shoot("vary");
+  await changes(() => browser.click(".grid button:nth-child(2)"), "a click takes a member");
+
+  // A complex parameter.
+  const pad = await serve("complex-pair");
+  studios.push(pad);
+  await open(pad.url);
+  const area = await browser.value("(() => { const { x, y, width, height } = document.querySelector('.pad').getBoundingClientRect(); return [x, y, width, height]; })()");
+  await changes(() => browser.drag([area[0] + area[2] * 0.6, area[1] + area[3] * 0.4], [area[0] + area[2] * 0.66, area[1] + area[3] * 0.3]), "a pad changes the picture");
+  await shoot("pad");
+
+  // A large tree, and space.
+  const large = await serve("pythagoras");
+  studios.push(large);
+  await open(large.url);
+  await browser.value("(() => { const range = document.querySelector('#step'); range.value = 15; range.dispatchEvent(new Event('input')); })()");
+  await settled();
+  await shoot("large");
+  const space = await serve("menger");
+  studios.push(space);
+  await open(space.url);
+  await changes(() => browser.drag([400, 400], [520, 360]), "a drag turns a set in space");
+  await browser.until("document.querySelector('#command').textContent.includes('--from=')");
+  await browser.click("#tab-style");
+  await shoot("space");
+
+  // Dark, narrow, and with reduced motion.
+  await browser.prefer({ "prefers-color-scheme": "dark", "prefers-reduced-motion": "reduce" });
+  await open(large.url);
+  await shoot("dark");
+  check((await browser.value("getComputedStyle(document.querySelector('#picture')).transitionDuration")) === "0s", "nothing moves by itself");
+  await browser.prefer({});
+  await browser.size(390, 844, 2);
+  await open(studio.url);
+  await shoot("narrow");
+  check(await browser.value("document.documentElement.scrollWidth <= innerWidth"), "a narrow page has no second direction");
+
+  // Without the key, the page shows nothing.
+  await browser.value("sessionStorage.clear()");
+  await browser.open(studio.url.split("#")[0] + "?2");
+  await browser.until("!document.querySelector('#message').hidden");
+  check((await text("#message")).includes("key"), "without the key there is a message");
+
+  const errors = browser.errors().filter((it) => !/status of (403|422|410|409)/.test(it));
+  check(errors.length === 0, `no errors in the page: ${errors.join("\n")}`);
+  console.log(`${checks} checks of the page hold`);
+} catch (error) {
+  await shoot("failure");
+  console.error(error, browser.errors());
+  process.exitCode = 1;
+} finally {
+  studios.forEach((studio) => studio.end());
+  await browser.end();
+  rmSync(folder, { recursive: true, force: true });
+}
