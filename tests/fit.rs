@@ -195,7 +195,7 @@ fn the_command_writes_a_file() {
     let output = command.arg("fit").arg(&picture).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        String::from_utf8_lossy(&output.stderr).contains("neither PNG nor JPEG"),
+        String::from_utf8_lossy(&output.stderr).contains("neither PNG, JPEG"),
         "{output:?}"
     );
 }
