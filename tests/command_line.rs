@@ -578,7 +578,7 @@ fn components_are_shown_and_printed() {
         );
         assert!(said.contains(&format!("`{kind}: {name}`")), "{said}");
     }
-    assert_eq!(components, 56);
+    assert_eq!(components, 58);
     run(
         folder.path(),
         &["check", "swaying-roof", "leaf", "generators/koch"],

@@ -1,5 +1,8 @@
 //! Corners that neighbouring elements share, for draws that belong to edges.
 
+use std::collections::BTreeMap;
+
+use crate::document::WrittenPoint;
 use crate::draws::{Corner, Variable};
 use crate::expression::{Dependence, Program};
 use crate::geometry::{DVec3, Point as _};
@@ -18,11 +21,24 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         &self,
         elements: &mut [ListedElement],
         points: &[F::Coordinates],
+        written: &[WrittenPoint],
         variables: &[Variable],
         is_initiator: bool,
     ) {
         if !self.kind.draws_by_edge {
             return;
+        }
+        let text = |WrittenPoint { x, y, z, .. }: &WrittenPoint| {
+            let z = z.as_ref().map(|z| z.value.to_string());
+            [
+                x.value.to_string(),
+                y.value.to_string(),
+                z.unwrap_or_default(),
+            ]
+        };
+        let mut alike: BTreeMap<[String; 3], usize> = BTreeMap::new();
+        for (number, point) in written.iter().enumerate() {
+            alike.entry(text(point)).or_insert(number);
         }
         let third = self.kind.base_elements.first().map(F::face);
         let third = third.and_then(|face| face.get(2)).copied();
@@ -46,7 +62,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             if let Some(Ok(corner)) = same.map(u8::try_from) {
                 return Corner::Same(corner);
             }
-            let first = points.iter().position(|other| other == point);
+            let first = alike.get(&text(&written[number])).copied();
             let first = u16::try_from(first.unwrap_or(number));
             first.map_or(Corner::Apart, Corner::Inside)
         };

@@ -232,7 +232,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         let programs: Vec<_> = programs.collect();
         let points = values::<F>(&programs);
         self.check_attitudes(&elements, &points, &written);
-        self.find_corners(&mut elements, &programs, &[], true);
+        self.find_corners(&mut elements, &programs, &written, &[], true);
         for element in &elements {
             if points[element.from] == points[element.to] {
                 let place = &written[element.to].place.clone();

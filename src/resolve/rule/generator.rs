@@ -97,7 +97,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             self.check_attitudes(&elements.collect::<Vec<_>>(), &known, &written);
         }
         for part in &mut parts {
-            self.find_corners(&mut part.elements, &points, &variables, false);
+            self.find_corners(&mut part.elements, &points, &written, &variables, false);
         }
         self.doubt_growth(&parts, &points, &written);
         // Moves may separate points that coincide as written.
