@@ -9,7 +9,7 @@ use crate::studio::{Options, Studio, StudioError};
 
 use super::{Failure, family, help, number, output, text};
 
-/// Opens a page in the browser that shows a rule, steps through its approximants and changes it
+/// Opens a page in the browser that shows, steps and changes a rule
 ///
 /// The page shows the picture that `kfrac grow` writes, to the byte; it steps forwards and backwards, zooms without
 /// end, has a slider for each parameter, and an editor that marks mistakes. It is served to this machine only, at an
