@@ -173,7 +173,10 @@ fn bash_completes() {
         ("kfrac grow pythagoras-3", "pythagoras-30 pythagoras-345"),
         ("kfrac grow koch --palette vi", "viridis"),
         ("kfrac grow koch --cap ''", "round butt square"),
-        ("kfrac check hilbert-", "hilbert-in-space hilbert-lsystem hilbert-cup"),
+        (
+            "kfrac check hilbert-",
+            "hilbert-in-space hilbert-lsystem hilbert-cup",
+        ),
         ("kfrac cat swaying-", "swaying-roof"),
         (
             "kfrac show generators/ko",
