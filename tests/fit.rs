@@ -55,7 +55,8 @@ fn the_gasket_is_found() {
         .maps
         .iter()
         .map(|map| map.matrix2.determinant().abs().sqrt());
-    assert!(ratios.all(|ratio| (ratio - 0.5).abs() < 0.02), "{found:?}");
+    assert!(ratios.all(|ratio| (ratio - 0.5).abs() < 1e-12), "{found:?}");
+    assert!(found.exact, "{found:?}");
 }
 
 #[test]

@@ -26,7 +26,7 @@ use super::{Failure, growth, help, input, number, output, text};
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Picture (PNG or JPEG), or - for standard input
+    /// Picture (PNG, JPEG, PBM, PGM, PPM), or - for standard input
     #[arg(value_name = "PICTURE", value_hint = ValueHint::FilePath)]
     picture: PathBuf,
     /// File to write, or - for standard output [default: only the measures are printed]

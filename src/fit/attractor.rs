@@ -21,7 +21,7 @@ const MAX_PARTS: usize = 3_000_000;
 pub struct Attractor {
     /// Pixels that hold a point of the attractor.
     pub pixels: Bits,
-    /// Pixels that hold a point of the attractor a sixteenth of a pixel inside, or a part of it without a point outside.
+    /// Pixels that hold a point of the attractor an eighth of a pixel inside, or a part of it without a point outside.
     certain: Bits,
     /// Pixels within an eighth of a pixel of a point of the attractor.
     possible: Bits,
@@ -269,7 +269,7 @@ impl Descent<'_> {
             self.drawn.pixels.set(column, row);
             self.drawn.possible.set(column, row);
             let depth = [x, y].map(|at| (at - at.floor() - 0.5).abs());
-            if depth[0].max(depth[1]) < 0.5 - POINTS[0] {
+            if depth[0].max(depth[1]) < 0.5 - 2.0 * POINTS[0] {
                 self.drawn.certain.set(column, row);
             }
             points.extend(

@@ -23,6 +23,7 @@ mod report;
 mod score;
 mod shape;
 mod snap;
+mod symmetry;
 
 pub use attractor::Attractor;
 pub use candidate::{Candidate, Disk};
@@ -34,6 +35,7 @@ pub use score::Score;
 pub use shape::Shape;
 
 use collage::{Collage, Form};
+use refine::Refined;
 
 /// A system that was fitted to a shape, with its measures.
 #[derive(Clone, Debug)]
@@ -88,13 +90,27 @@ pub fn fit(shape: &Shape, options: &FitOptions) -> Result<Fit, FitError> {
         return Err(FitError::Maps(if least < 2 { least } else { most }));
     }
     let collage = Collage::new(shape, options)?;
-    let mut found = collage.search()?;
+    let all = collage.search()?;
     let cancel = options.cancel.as_deref();
+    let mut found = all[0].clone();
     let mut attractor = found.candidate.attractor(shape.size(), cancel)?;
-    if found.form == Form::Similar && found.candidate.disks.is_empty() {
-        let iou = |drawn: &Attractor| score::iou(shape.bits(), &drawn.pixels);
-        if let Some((candidate, drawn)) = snap::snap(shape, collage.fine(), &found, iou, cancel)? {
-            found.candidate = candidate;
+    let iou = |drawn: &Attractor| score::iou(shape.bits(), &drawn.pixels);
+    let before = iou(&attractor);
+    let is_similar = |it: &&Refined| it.form == Form::Similar && it.candidate.disks.is_empty();
+    if let Some(similar) = all.iter().find(is_similar) {
+        let simple =
+            symmetry::simplified(&similar.candidate, &symmetry::symmetries(collage.ground()));
+        let mut snapped = snap::snap(shape, collage.fine(), &simple, before, cancel)?;
+        let is_exact = |it: &(Candidate, Attractor)| it.1.is(shape.bits());
+        if simple != similar.candidate && !snapped.as_ref().is_some_and(is_exact) {
+            let other = snap::snap(shape, collage.fine(), &similar.candidate, before, cancel)?;
+            snapped = other.or(snapped);
+        }
+        if let Some((candidate, drawn)) = snapped {
+            found = Refined {
+                candidate,
+                ..similar.clone()
+            };
             attractor = drawn;
         }
     }

@@ -12,13 +12,14 @@ use super::attractor::Attractor;
 use super::candidate::fixed_point;
 use super::cma::Cma;
 use super::orbit::{Level, Orbit};
-use super::refine::Refined;
 use super::{Candidate, FitError, Shape};
 use lattice::Lattice;
 pub(super) use ratio::nearest as nearest_ratio;
 
 /// Offset in pixels within which a shift is replaced by a number of a lattice.
-const NEAR: f64 = 1.5;
+const NEAR: f64 = 3.0;
+/// Complexity that a shift by a pixel is worth.
+const FAR: f64 = 6.0;
 /// Largest relative change of a ratio.
 const RATIO: f64 = 0.03;
 /// Largest change of an angle, in degrees.
@@ -44,23 +45,24 @@ struct Snapped {
     complexity: usize,
 }
 
-/// Returns an exact system near a candidate of similarities, if there is one whose picture is no worse.
+/// Returns an exact system near a candidate of similarities, if there is one whose picture is no worse than an
+/// intersection over union `before`.
 ///
 /// The attractor's picture decides: simple numbers are kept only if the intersection over union does not fall.
 pub(super) fn snap(
     shape: &Shape,
     level: &Level,
-    found: &Refined,
-    iou: impl Fn(&Attractor) -> f64,
+    found: &Candidate,
+    before: f64,
     cancel: Option<&AtomicBool>,
 ) -> Result<Option<(Candidate, Attractor)>, FitError> {
     let mut orbit = Orbit::new(level);
-    let before = iou(&found.candidate.attractor(shape.size(), cancel)?);
+    let iou = |drawn: &Attractor| super::score::iou(shape.bits(), &drawn.pixels);
     let mut all: Vec<Snapped> = Vec::new();
     for lattice in Lattice::ALL {
         let numbers = lattice.numbers();
-        for [one, other] in frames(&found.candidate) {
-            let Some(snapped) = snapped(&found.candidate, [one, other], lattice, &numbers) else {
+        for [one, other] in frames(found) {
+            let Some(snapped) = snapped(found, [one, other], lattice, &numbers) else {
                 continue;
             };
             let loss = orbit.loss(&snapped.placed(snapped.frame), level);
@@ -109,6 +111,7 @@ fn frames(candidate: &Candidate) -> Vec<[DVec2; 2]> {
 }
 
 /// Returns the system with all numbers replaced by those of a lattice, in a frame.
+#[expect(clippy::cast_precision_loss, reason = "complexities are small")]
 fn snapped(
     candidate: &Candidate,
     [origin, end]: [DVec2; 2],
@@ -135,8 +138,15 @@ fn snapped(
         if (turned - angle).abs() > ANGLE {
             return None;
         }
-        let near = |number: &&(DVec2, usize)| number.0.distance(map.translation) * length <= NEAR;
-        let &(shift, own) = numbers.iter().find(near)?;
+        let mut best: Option<(f64, DVec2, usize)> = None;
+        for &(number, own) in numbers {
+            let away = number.distance(map.translation) * length;
+            let cost = own as f64 + FAR * away * away;
+            if away <= NEAR && best.is_none_or(|best| cost < best.0) {
+                best = Some((cost, number, own));
+            }
+        }
+        let (_, shift, own) = best?;
         complexity += own;
         let turned = turned.to_radians();
         snapped.push(Similar {
@@ -196,7 +206,7 @@ impl Snapped {
         mut frame: [DVec2; 2],
         cancel: Option<&AtomicBool>,
     ) -> Result<(Candidate, Attractor), FitError> {
-        const STEPS: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.025];
+        const STEPS: [f64; 5] = [0.5, 0.25, 0.12, 0.06, 0.03];
         let draw = |frame| -> Result<_, FitError> {
             let candidate = self.placed(frame);
             let drawn = candidate.attractor(shape.size(), cancel)?;
@@ -211,7 +221,7 @@ impl Snapped {
         let size = frame[1].length() / shape.radius();
         for step in STEPS {
             let mut moves = 0;
-            while best.0 > 0 && moves < 6 {
+            while best.0 > 0 && moves < 10 {
                 let mut moved = false;
                 let ways = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
                 let along = frame[1].normalize_or_zero();

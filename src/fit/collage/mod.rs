@@ -22,7 +22,7 @@ use super::{Candidate, Disk, FitError, FitOptions, Shape};
 const GROUND: usize = 96;
 /// Points of the shape by which covers are judged.
 const SAMPLE: usize = 768;
-/// Random starts of every list of copies.
+/// Random starts of every list of copies; more for few maps.
 const STARTS: usize = 6;
 /// Starts from random maps.
 const RANDOM: usize = 16;
@@ -39,6 +39,15 @@ fn numbers(found: &Refined) -> f64 {
         Form::Affine => 6,
     };
     (map * found.candidate.maps.len() + 3 * found.candidate.disks.len()) as f64
+}
+
+/// Shortens a list, best first, to `most` candidates, of which one has similarities if any has.
+fn shorten(list: &mut Vec<Refined>, most: usize) {
+    let first = list.iter().position(|it| it.form == Form::Similar);
+    if let Some(first) = first.filter(|first| *first >= most) {
+        list.swap(most - 1, first);
+    }
+    list.truncate(most);
 }
 
 /// A search for collages of a shape; what does not depend on the number of maps is done once.
@@ -68,6 +77,11 @@ impl<'s> Collage<'s> {
         })
     }
 
+    /// Returns the shape at the size at which copies are searched.
+    pub(super) fn ground(&self) -> &Ground {
+        &self.ground
+    }
+
     /// Returns the shape at the size at which candidates are refined last.
     pub(super) fn fine(&self) -> &Level {
         &self.fine
@@ -78,16 +92,19 @@ impl<'s> Collage<'s> {
         self.evaluations.load(Ordering::Relaxed)
     }
 
-    /// Returns the best candidate whose number of maps is in the range of the options, by the least description length:
-    /// that of the numbers of the candidate, and of the cells that are off.
-    pub(super) fn search(&self) -> Result<Refined, FitError> {
+    /// Returns candidates, best first, whose number of maps is in the range of the options, by the least description
+    /// length: that of the numbers of the best candidate, and of the cells that are off.
+    pub(super) fn search(&self) -> Result<Vec<Refined>, FitError> {
         let mut orbit = Orbit::new(&self.fine);
-        let mut best: Option<(f64, Refined)> = None;
+        let mut best: Option<(f64, Vec<Refined>)> = None;
         let mut worse = 0;
         for count in self.options.maps.clone() {
             let found = self.search_with(count, self.options.effort)?;
-            let misfit = orbit.misfit(&found.candidate, &self.fine);
-            let length = NUMBER * numbers(&found) + PIXEL * misfit;
+            let Some(first) = found.first() else {
+                continue;
+            };
+            let misfit = orbit.misfit(&first.candidate, &self.fine);
+            let length = NUMBER * numbers(first) + PIXEL * misfit;
             worse += 1;
             if best.as_ref().is_none_or(|best| length < best.0) {
                 best = Some((length, found));
@@ -100,10 +117,10 @@ impl<'s> Collage<'s> {
         best.map(|(_, found)| found).ok_or(FitError::Cancelled)
     }
 
-    /// Returns the best candidate with a number of maps.
-    fn search_with(&self, count: usize, effort: usize) -> Result<Refined, FitError> {
+    /// Returns the best candidates with a number of maps, best first.
+    fn search_with(&self, count: usize, effort: usize) -> Result<Vec<Refined>, FitError> {
         let mut starts = self.starts(count);
-        starts.truncate(12);
+        shorten(&mut starts, 12);
         let stage = |starts: Vec<Refined>, level: &Level, share: usize, step: f64, stage: u64| {
             self.stage(
                 starts,
@@ -114,11 +131,10 @@ impl<'s> Collage<'s> {
             )
         };
         let mut kept = stage(starts, &self.coarse, 60, 2.0, 1)?;
-        kept.truncate(4);
+        shorten(&mut kept, 4);
         let mut kept = stage(kept, &self.coarse, 16, 1.0, 2)?;
-        kept.truncate(2);
-        let kept = stage(kept, &self.fine, 10, 0.5, 3)?;
-        kept.into_iter().next().ok_or(FitError::Cancelled)
+        shorten(&mut kept, 2);
+        stage(kept, &self.fine, 10, 0.5, 3)
     }
 
     /// Refines candidates at a level, best first.
@@ -189,7 +205,7 @@ impl<'s> Collage<'s> {
         let starts = parallel::map(&all, threads, |_, candidate| {
             let mut orbit = Orbit::new(&self.coarse);
             let free = self.uncovered(candidate);
-            let mut best: Option<Refined> = None;
+            let mut best: Vec<Refined> = Vec::new();
             for (form, rounds) in [(Form::Similar, 0), (Form::Similar, 6), (Form::Affine, 10)] {
                 if form == Form::Affine && self.options.similar {
                     continue;
@@ -206,13 +222,20 @@ impl<'s> Collage<'s> {
                     disks: candidate.disks.clone(),
                 };
                 let loss = orbit.loss(&candidate, &self.coarse);
-                if best.as_ref().is_none_or(|best| loss < best.loss - 0.004) {
-                    best = Some(Refined {
-                        candidate,
-                        form,
-                        loss,
-                        evaluations: 1,
-                    });
+                let start = Refined {
+                    candidate,
+                    form,
+                    loss,
+                    evaluations: 1,
+                };
+                let is_beaten = |other: &Refined| match other.form == form {
+                    true => loss >= other.loss,
+                    // Fewer numbers are worth a little.
+                    false => loss > other.loss - 0.004,
+                };
+                if !best.iter().any(is_beaten) {
+                    best.retain(|other| other.form != form);
+                    best.push(start);
                 }
             }
             best
@@ -243,7 +266,7 @@ impl<'s> Collage<'s> {
             slots.extend(vec![&disks[..]; self.options.disks]);
             let seed = self.options.seed ^ mix(number as u64 + 1) ^ count as u64;
             let mut random = Pcg::new(seed, 7);
-            let covers = (0..STARTS).filter_map(|_| {
+            let covers = (0..STARTS + 48 / count).filter_map(|_| {
                 let cover = cover::choose(&slots, self.ground.points().len(), &mut random)?;
                 let (maps, round) = cover.copies.split_at(count);
                 let maps = maps
