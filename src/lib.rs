@@ -85,9 +85,9 @@
 //! ```
 //!
 //! Graphs, walks, forecasts, bounds and draws are generic over the [`Frame`](geometry::Frame) of an element; the
-//! frame of the plane, with lines and curves as outlines, is the default. Rules, iterated function systems and
-//! structures lie in the plane or in [space](geometry::Frame3), where `render` draws them by an exact descent into
-//! depth buffers, or as polygons and lines of visible faces; L-systems lie in the plane.
+//! frame of the plane, with lines and curves as outlines, is the default. Rules, iterated function systems,
+//! structures and L-systems lie in the plane or in [space](geometry::Frame3), where `render` draws them by an exact
+//! descent into depth buffers, or as polygons and lines of visible faces.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
 //! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s, [`Metadata`] and pictures of [`Bits`]. No

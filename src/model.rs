@@ -6,6 +6,7 @@ mod instancing;
 mod lsystem;
 mod place;
 mod rule;
+mod steps;
 
 pub use crate::graph::OutOfRange;
 pub use crate::kind::Kind;
@@ -19,7 +20,7 @@ use crate::geometry::{DAffine3, Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
 use crate::instancing::Instancing;
-use crate::lsystem::LSystem;
+use crate::lsystem::{LSystem, LSystemInSpace};
 use crate::metadata::Metadata;
 use crate::rule::Rule;
 use crate::style::{Shade, SpaceView};
@@ -81,10 +82,18 @@ models! {
     InstancingInSpace: Instancing(Instancing<DAffine3>);
     /// L-system.
     LSystem: LSystem(LSystem);
+    /// L-system in space.
+    LSystemInSpace: LSystem(LSystemInSpace);
 }
 
 /// Graph of a model in space.
 type CompiledInSpace = Result<Graph<Frame3>, CompileError>;
+
+/// Largest number of steps that is proposed, unless a file does.
+pub(crate) const DEEPEST: u32 = 12;
+
+/// Largest number of elements of a step that is proposed.
+pub(crate) const MOST_PROPOSED: u64 = 20_000;
 
 /// Properties of a model that depend on its kind. Each kind implements them in a file of this module.
 pub(crate) trait OfKind {
@@ -250,18 +259,43 @@ impl Model {
     pub fn is_in_space(&self) -> bool {
         matches!(
             self,
-            Self::RuleInSpace(_) | Self::IfsInSpace(_) | Self::InstancingInSpace(_)
+            Self::RuleInSpace(_)
+                | Self::IfsInSpace(_)
+                | Self::InstancingInSpace(_)
+                | Self::LSystemInSpace(_)
         )
     }
 
-    /// Compiles a model in space to the graph of its elements, which is resolved for at least `steps` steps; `None` for
-    /// a model of the plane.
+    /// Compiles a model in space as [`graph_in_space_for`](Self::graph_in_space_for) does, with the seed 0 and the limit
+    /// [`MAX_ELEMENTS`](Self::MAX_ELEMENTS) where these matter.
     ///
     /// # Errors
     ///
-    /// If a generator yields points that are not finite within these steps.
+    /// As for [`graph_in_space_for`](Self::graph_in_space_for).
     pub fn graph_in_space(&self, steps: u32) -> Option<Result<Graph<Frame3>, CompileError>> {
-        self.as_kind().compile_in_space(steps, false)
+        self.graph_in_space_for(steps, 0, Self::MAX_ELEMENTS)
+    }
+
+    /// Compiles a model in space to the graph of its elements, which is resolved for at least `steps` steps; `None` for
+    /// a model of the plane. The word of an L-system that is not compiled is derived for exactly `steps` steps, with the
+    /// draws of `seed`, if it draws at most `max_elements` elements.
+    ///
+    /// # Errors
+    ///
+    /// If a generator yields points that are not finite within these steps, or a word cannot be derived.
+    pub fn graph_in_space_for(
+        &self,
+        steps: u32,
+        seed: u64,
+        max_elements: u64,
+    ) -> Option<Result<Graph<Frame3>, CompileError>> {
+        match self {
+            Self::LSystemInSpace(system) => {
+                let graph = Graph::of_lsystem_in_space(system, steps, seed, max_elements);
+                Some(graph)
+            }
+            _ => self.as_kind().compile_in_space(steps, false),
+        }
     }
 
     /// Compiles a system or a structure in space to its graph; `None` for other models. Objects of a system record the map
@@ -269,8 +303,8 @@ impl Model {
     #[must_use]
     pub fn compile_in_space(&self, records_last: bool) -> Option<Graph<Frame3>> {
         match self.kind() {
-            // The graph of a rule depends on the number of steps.
-            Kind::Rule => None,
+            // The graph of a rule, and of an L-system, depends on the number of steps.
+            Kind::Rule | Kind::LSystem => None,
             _ => self.as_kind().compile_in_space(0, records_last)?.ok(),
         }
     }

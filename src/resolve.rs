@@ -110,6 +110,11 @@ fn resolve(
                 { to as &mut Resolver<OfInstancing<DAffine2>> }.structure(document, metadata)
             })
         }
+        KindDocument::LSystem(document) if document.is_in_space => {
+            resolved(&document.metadata, settings, |to, metadata| {
+                to.lsystem_in_space(document, metadata)
+            })
+        }
         KindDocument::LSystem(document) => {
             resolved(&document.metadata, settings, |to, metadata| {
                 to.lsystem(document, metadata)
@@ -133,6 +138,11 @@ fn resolved<K: Default, M: Into<Model>>(
     };
     let mut doubts = Diagnostics::default();
     doubts.extend(unused::parameters(document, &resolver.used));
+    if model.metadata().style.tube.is_some() && !matches!(model, Model::LSystemInSpace(_)) {
+        let warning = Diagnostic::warning("`tube` has an effect on L-systems in space only");
+        let hint = "it makes tubes of the lines of their turtles";
+        doubts.push(warning.at(&document.place.first_line()).hint(hint));
+    }
     doubts.extend(resolver.diagnostics);
     Ok((model, doubts))
 }

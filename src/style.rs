@@ -297,6 +297,25 @@ pub struct Style {
     pub color_by: ColorBy,
     /// Palette of the classes.
     pub palette: Palette,
+    /// Tubes that the lines of a turtle in space are drawn as; lines without a width if `None`.
+    pub tube: Option<Tube>,
+}
+
+/// Tubes along the lines of a turtle in space: prisms and frusta that join in knobs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Number of sides.
+    pub sides: u32,
+    /// Width of a tube where that of the turtle is 1, in the coordinates of the file.
+    pub width: f64,
+}
+
+impl Tube {
+    /// Least and largest number of sides.
+    pub const SIDES: [u32; 2] = [3, 48];
+
+    /// Width where none is given.
+    pub const WIDTH: f64 = 0.1;
 }
 
 impl Style {
@@ -318,6 +337,7 @@ impl Default for Style {
             background: None,
             color_by: ColorBy::None,
             palette: Palette::default(),
+            tube: None,
         }
     }
 }

@@ -279,6 +279,7 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
             join: kfrac::style::Join::Bevel,
             color_by: kfrac::style::ColorBy::Age,
             palette: Palette::of_colours("", &colours),
+            tube: None,
         })
         .view(&View {
             window: Some([-1.0, -1.0, 3.0, 2.5]),

@@ -4,6 +4,7 @@ mod contexts;
 mod laws;
 mod looks;
 mod rules;
+mod space;
 mod turtle;
 
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use crate::document::node::{Key, Node, Value};
 use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
-use crate::style::{Colour, Named, Palette, Style, View, Width};
+use crate::style::{Colour, Named, Palette, Style, Tube, View, Width};
 
 use super::{NumberText, PointText};
 
@@ -123,12 +123,18 @@ pub(crate) fn style(style: &Style) -> Entries {
             .set("join", Value::Text(style.join.name().into()))
             .set("color_by", Value::Text(style.color_by.name().into()))
             .set("palette", palette(&style.palette))
+            .set_some("tube", style.tube.map(tube))
     };
     entries(style).without(&entries(&Style::default()))
 }
 
 pub(super) fn colour_text(colour: Colour) -> Value {
     Value::Text(format!("{colour:#}"))
+}
+
+fn tube(tube: Tube) -> Value {
+    let entries = Entries::default().set("sides", NumberText::from(f64::from(tube.sides)).0);
+    entries.set("width", NumberText::from(tube.width).0).value()
 }
 
 fn palette(palette: &Palette) -> Value {

@@ -3,6 +3,7 @@
 #[cfg(feature = "studio")]
 mod held;
 mod numbers;
+mod turtle;
 
 use std::fmt::Write as _;
 
@@ -29,6 +30,7 @@ use super::system::SystemInfo;
 use super::{Failure, help, output, steps};
 #[cfg(feature = "studio")]
 pub(crate) use held::{Described, hold};
+use turtle::TurtleInfo;
 
 /// Describes a rule: parameters, sizes of its steps, bounds, dimension
 ///
@@ -101,6 +103,8 @@ struct Info<'a> {
     system: Option<SystemInfo>,
     #[serde(flatten)]
     structure: Option<StructureInfo>,
+    #[serde(flatten)]
+    turtle: Option<TurtleInfo>,
 }
 
 #[derive(Serialize)]
@@ -192,6 +196,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
                 .then(|| measures(surfaces, |level| level.area))
                 .flatten(),
             volume: measures(surfaces, |level| level.volume),
+            turtle: TurtleInfo::of(&loaded.model, &graph),
             ..own
         };
         (info, graph.place().ratio())
@@ -306,6 +311,7 @@ fn info<'a, F: Bounded>(
         },
         system: None,
         structure: StructureInfo::of(&loaded.model),
+        turtle: None,
     }
 }
 
@@ -405,6 +411,9 @@ fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     }
     for (label, value) in info.structure.iter().flat_map(StructureInfo::lines) {
         line(label, &value);
+    }
+    if let Some(turtle) = &info.turtle {
+        line("turtle", &turtle.line());
     }
     line("random", if info.random { "yes" } else { "no" });
     line(

@@ -52,9 +52,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Kind::Instancing, false) => include_str!("new/instancing.yaml"),
         (Kind::Instancing, true) => include_str!("new/instancing-in-space.yaml"),
         (Kind::LSystem, false) => include_str!("new/lsystem.yaml"),
+        (Kind::LSystem, true) => include_str!("new/lsystem-in-space.yaml"),
         (kind, true) => {
             let message = format!(
-                "{} lies in the plane: --kind ifs and --kind instancing know space",
+                "{} lies in the plane: --kind ifs, --kind instancing and --kind lsystem know space",
                 kind.full_name()
             );
             return Err(Failure::Usage(message));

@@ -64,6 +64,7 @@ impl PictureArguments {
         let own = &metadata.style;
         let width = self.stroke_width.unwrap_or(StrokeWidth::of(own.width));
         Style {
+            tube: own.tube,
             stroke: self.stroke.map_or(own.stroke, Ink::colour),
             width: width.width(unit),
             cap: self.cap.unwrap_or(own.cap),

@@ -137,7 +137,9 @@ impl Loaded {
     /// Returns the graph of the elements of a set in space, resolved for the number of steps that is given or proposed;
     /// `None` for a set of the plane.
     pub(super) fn in_space(&self, steps: Option<u32>) -> Result<Option<Graph<Frame3>>, Failure> {
-        let graph = self.model.graph_in_space(self.steps_in_space(steps));
+        let (seed, max_elements) = self.growth;
+        let steps = self.model.resolved_steps_in_space(steps);
+        let graph = self.model.graph_in_space_for(steps, seed, max_elements);
         graph.transpose().map_err(|error| self.failure(&error))
     }
 
@@ -151,7 +153,7 @@ impl Loaded {
         let growth = Growth {
             seed,
             max_elements,
-            ..Growth::steps(self.steps_in_space(steps))
+            ..Growth::steps(self.model.resolved_steps_in_space(steps))
         };
         let Some(drawn) = self.model.drawn_in_space(steps, &growth, color_by) else {
             return Err(anyhow::anyhow!("{} lies in the plane", self.name).into());
@@ -167,13 +169,6 @@ impl Loaded {
                 anyhow::anyhow!(message).into()
             }
         })
-    }
-
-    /// Returns the number of steps for which graphs in space are resolved.
-    fn steps_in_space(&self, steps: Option<u32>) -> u32 {
-        const SOON: u32 = 16;
-        let proposed = self.model.metadata().steps;
-        steps.or(proposed).unwrap_or(SOON)
     }
 
     /// Returns an error of compiling as a mistake in the file.

@@ -20,19 +20,23 @@ mod reader;
 mod similar;
 mod state;
 mod words;
+mod worn;
 
 pub(crate) use similar::Chords;
 
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Diagnostic;
-use crate::geometry::Bounds;
+use crate::geometry::{Affine as _, Bounds, Frame3, Outline as _};
 use crate::instancing::Thickness;
-use crate::lsystem::{LSystem, Placed, RewriteError, Turtle};
-use crate::rule::BaseElement;
+use crate::lsystem::{
+    Drawn, LSystem, LSystemInSpace, Placed, RewriteError, TubePart, Turtle, TurtleFrame,
+};
+use crate::style::Tube;
 
 use self::effects::Effects;
-use crate::graph::{Chain, CompileError, Graph, Instance, Object};
+use self::levels::{Levels, levels};
+use crate::graph::{Chain, CompileError, Graph, Instance, Object, Replacement};
 
 impl Graph {
     /// Compiles an L-system for a number of steps: by edge rewriting, otherwise to objects by module and
@@ -69,37 +73,109 @@ impl Graph {
         seed: u64,
         max_elements: u64,
     ) -> Result<Self, CompileError> {
-        let mut turtle = Turtle::new(system);
-        let mut strings = Strings::new(system);
-        let mut instances = Vec::new();
-        system.read(steps, seed, max_elements, |symbol, arguments| {
-            turtle.read(symbol, arguments);
-            let drawn = turtle.drawing.elements.drain(..);
-            instances.extend(drawn.map(|placed| strings.instance(&placed)));
-        })?;
-        for (position, instance) in (0..).zip(&mut instances) {
-            instance.position = position;
-            if !instance.frame.is_finite() {
-                return Err(CompileError::TooFar);
+        derived(system, (steps, seed, max_elements), None).map(|(graph, _)| graph)
+    }
+}
+
+/// Returns the graph whose initiator consists of the elements that the turtle draws of a word, with its base elements;
+/// the word is given by its step, the seed, and the largest number of elements. Lines are tubes if these are given.
+fn derived<F: TurtleFrame>(
+    system: &F::System,
+    (steps, seed, max_elements): (u32, u64, u64),
+    tube: Option<Tube>,
+) -> Result<Levels<F>, CompileError> {
+    let words = F::words(system);
+    let mut turtle = Turtle::<F>::new(system);
+    let mut strings = Strings::<F>::new(words, tube);
+    let mut instances = Vec::new();
+    words.read(steps, seed, max_elements, |symbol, arguments| {
+        turtle.read(symbol, arguments);
+        for placed in turtle.drawing.elements.drain(..) {
+            strings.place(&placed, &mut instances);
+        }
+    })?;
+    for (position, instance) in (0..).zip(&mut instances) {
+        instance.position = position;
+        if !instance.frame.map().is_finite() {
+            return Err(CompileError::TooFar);
+        }
+    }
+    let base_elements = strings.base_elements(F::surfaces(system), turtle.drawing.polygons);
+    let outlines = F::outlines(&base_elements);
+    let initiator = Chain::loose(instances);
+    let mut bounds = Bounds::EMPTY;
+    for instance in &initiator.instances {
+        let base_element = strings.objects[instance.object].base_element;
+        outlines[base_element].add_to(&mut bounds, &instance.frame, 0.0);
+    }
+    let mut graph = Graph {
+        tints: words.has_colours(),
+        draws: !words.is_deterministic(),
+        affine: tube.is_some(),
+        ..Graph::of(strings.objects, outlines, vec![initiator])
+    };
+    graph.find_widths();
+    if !bounds.is_empty() {
+        graph.middle = bounds.centre();
+    }
+    Ok((graph, base_elements))
+}
+
+impl Graph<Frame3> {
+    /// Compiles an L-system in space for a number of steps: to objects by module and level, otherwise from the elements
+    /// that the turtle draws of the derived word. Lines have no width.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Graph::of_derived_word`], if the system cannot be compiled in the first way.
+    pub fn of_lsystem_in_space(
+        system: &LSystemInSpace,
+        steps: u32,
+        seed: u64,
+        max_elements: u64,
+    ) -> Result<Self, CompileError> {
+        let (graph, _) = in_space(system, (steps, seed, max_elements), None)?;
+        Ok(graph)
+    }
+
+    /// Compiles an L-system in space as it is drawn after a number of steps: lines are tubes if the style asks for them,
+    /// and there is an object for each surface. All instances are fixed.
+    ///
+    /// # Errors
+    ///
+    /// As for [`of_lsystem_in_space`](Self::of_lsystem_in_space).
+    pub(crate) fn drawn_of_lsystem(
+        system: &LSystemInSpace,
+        steps: u32,
+        seed: u64,
+        max_elements: u64,
+    ) -> Result<Self, CompileError> {
+        let word = (steps, seed, max_elements);
+        let (mut graph, bodies) = match in_space(system, word, system.tube())? {
+            (graph, _) if !graph.is_plain() => derived(system, word, system.tube())?,
+            compiled => compiled,
+        };
+        graph.initiators = vec![graph.initiator(steps).clone()];
+        for object in &mut graph.objects {
+            // Only what is left in the last word is drawn.
+            object.visible = object.is_kept() || object.is_unresolved();
+            if object.is_unresolved() {
+                object.replacement = Replacement::Kept;
             }
         }
-        strings.base_elements.extend(turtle.drawing.polygons);
-        let initiator = Chain::loose(instances);
-        let mut bounds = Bounds::EMPTY;
-        for instance in &initiator.instances {
-            let base_element = strings.objects[instance.object].base_element;
-            strings.base_elements[base_element].add_to(&mut bounds, &instance.frame, 0.0);
-        }
-        let mut graph = Self {
-            tints: system.has_colours(),
-            draws: !system.is_deterministic(),
-            ..Self::of(strings.objects, strings.base_elements, vec![initiator])
-        };
-        graph.find_widths();
-        if !bounds.is_empty() {
-            graph.middle = bounds.centre();
-        }
-        Ok(graph)
+        Ok(graph.with_surfaces(&bodies))
+    }
+}
+
+fn in_space(
+    system: &LSystemInSpace,
+    word: (u32, u64, u64),
+    tube: Option<Tube>,
+) -> Result<Levels<Frame3>, CompileError> {
+    let effects = Effects::of_system(system, word.0);
+    match effects.and_then(|effects| levels(effects, word.0, tube)) {
+        Ok(compiled) => Ok(compiled),
+        Err(NotCompiled) => derived(system, word, tube),
     }
 }
 
@@ -120,48 +196,104 @@ impl LSystem {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct NotCompiled;
 
-/// Creates objects of the elements that turtles draw: one for every base element, colour and width.
-struct Strings<'s> {
-    system: &'s LSystem,
-    base_elements: Vec<BaseElement>,
-    objects: Vec<Object>,
-    numbers: BTreeMap<(usize, Option<i64>, u64), usize>,
+/// Base element of an object.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Shape {
+    Line,
+    Surface(usize),
+    Tube(TubePart),
+    Polygon(usize),
 }
 
-impl<'s> Strings<'s> {
-    fn new(system: &'s LSystem) -> Self {
+/// Creates objects of the elements that turtles draw: one for every base element, colour and width.
+struct Strings<'s, F: TurtleFrame> {
+    words: &'s LSystem,
+    tube: Option<Tube>,
+    shapes: Vec<Shape>,
+    objects: Vec<Object<F>>,
+    numbers: BTreeMap<(Shape, Option<i64>, u64), usize>,
+}
+
+impl<'s, F: TurtleFrame> Strings<'s, F> {
+    fn new(words: &'s LSystem, tube: Option<Tube>) -> Self {
         Self {
-            system,
-            base_elements: vec![BaseElement::line()],
+            words,
+            tube,
+            shapes: Vec::new(),
             objects: Vec::new(),
             numbers: BTreeMap::new(),
         }
     }
 
-    /// Returns an element that a turtle drew as an instance that is kept.
-    fn instance(&mut self, placed: &Placed) -> Instance {
-        // Base element 0 is the line; polygons follow.
-        let base_element = placed.polygon.map_or(0, |number| number + 1);
-        Instance {
+    /// Adds an element that a turtle drew as an instance that is kept; for a tube, one for each of its parts.
+    fn place(&mut self, placed: &Placed<F>, instances: &mut Vec<Instance<F>>) {
+        let shape = match (placed.of, self.tube) {
+            (Drawn::Line(line), Some(tube)) => {
+                for (part, stretch) in tube.parts(&line) {
+                    let object = self.object(placed, Shape::Tube(part));
+                    let frame = placed.frame.stretched(stretch);
+                    instances.push(Instance::new(object, frame, 0));
+                }
+                return;
+            }
+            (Drawn::Line(_), None) => Shape::Line,
+            (Drawn::Polygon(number), _) => Shape::Polygon(number),
+            (Drawn::Surface(number), _) => Shape::Surface(number),
+        };
+        instances.push(Instance {
             joined: placed.joined,
-            ..Instance::new(self.object(placed, base_element), placed.frame, 0)
-        }
+            ..Instance::new(self.object(placed, shape), placed.frame, 0)
+        });
     }
 
-    fn object(&mut self, placed: &Placed, base_element: usize) -> usize {
-        let colour = self.system.has_colours().then_some(placed.colour);
+    fn object(&mut self, placed: &Placed<F>, shape: Shape) -> usize {
+        let colour = self.words.has_colours().then_some(placed.colour);
         let made = self.objects.len();
-        let key = (base_element, colour, placed.width.to_bits());
-        let number = *self.numbers.entry(key).or_insert(made);
+        // Tubes have their widths.
+        let width = if self.tube.is_some() {
+            1.0
+        } else {
+            placed.width
+        };
+        let number = *self
+            .numbers
+            .entry((shape, colour, width.to_bits()))
+            .or_insert(made);
         if number == made {
-            let palette = &self.system.metadata.style.palette;
+            let palette = &self.words.metadata.style.palette;
+            self.shapes.push(shape);
             self.objects.push(Object {
                 paint: colour.map(|index| palette.entry(index)),
-                thickness: Some(Thickness::Set(placed.width)).filter(|_| placed.width != 1.0),
-                ..Object::kept(base_element)
+                thickness: Some(Thickness::Set(width)).filter(|_| width != 1.0),
+                ..Object::kept(0)
             });
         }
         number
+    }
+
+    /// Returns the base elements, and refers the objects to them: the line, surfaces, tubes and polygons.
+    fn base_elements(
+        &mut self,
+        surfaces: &[F::BaseElement],
+        polygons: Vec<F::BaseElement>,
+    ) -> Vec<F::BaseElement> {
+        let mut all = vec![F::line()];
+        all.extend_from_slice(surfaces);
+        let first_polygon = all.len();
+        all.extend(polygons);
+        let mut tubes = BTreeMap::new();
+        for (object, shape) in self.objects.iter_mut().zip(&self.shapes) {
+            object.base_element = match (*shape, self.tube) {
+                (Shape::Surface(number), _) => 1 + number,
+                (Shape::Polygon(number), _) => first_polygon + number,
+                (Shape::Tube(part), Some(tube)) => *tubes.entry(part).or_insert_with(|| {
+                    all.push(F::tube_part(tube, part));
+                    all.len() - 1
+                }),
+                (Shape::Line | Shape::Tube(_), _) => 0,
+            };
+        }
+        all
     }
 }
 

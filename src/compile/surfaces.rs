@@ -38,7 +38,7 @@ impl Graph<Frame3> {
                 continue;
             };
             object.base_element = *outline;
-            object.paint = body.surfaces()[*surface].color;
+            object.paint = body.surfaces()[*surface].color.or(object.paint);
             if !object.visible {
                 continue;
             }

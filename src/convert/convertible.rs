@@ -13,9 +13,6 @@ use super::{copies, shape};
 
 /// Maps of models that are converted.
 pub(super) trait Convertible: AffineMap {
-    /// Returns the inverse.
-    fn inverse(&self) -> Self;
-
     /// Returns whether two maps are equal, to rounding.
     fn is_same(&self, other: &Self) -> bool;
 
@@ -36,10 +33,6 @@ pub(super) trait Convertible: AffineMap {
 }
 
 impl Convertible for DAffine2 {
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
-
     fn is_same(&self, other: &Self) -> bool {
         number::is_same(self, other)
     }
@@ -89,10 +82,6 @@ impl Convertible for DAffine2 {
 }
 
 impl Convertible for DAffine3 {
-    fn inverse(&self) -> Self {
-        self.inverse()
-    }
-
     fn is_same(&self, other: &Self) -> bool {
         const ROUNDING: f64 = 1e-12;
         let size = 1.0 + self.translation.abs().max_element();

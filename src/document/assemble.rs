@@ -2,6 +2,7 @@
 
 mod fractals;
 mod parameters;
+mod surfaces;
 
 use std::sync::Arc;
 
@@ -66,6 +67,9 @@ fn assemble_within(
         assembly.budget.own(Size::of(node));
     }
     let kind = assembly.kind.unwrap_or(Kind::Rule);
+    if kind == Kind::LSystem {
+        surfaces::add(&mut entries);
+    }
     assembly.inline_all(&mut entries, KindDocument::table(kind).shape);
     assembly.hoist_parameters(&mut entries);
     assembly.inline_data(&mut entries);

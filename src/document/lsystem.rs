@@ -5,17 +5,28 @@
 
 use crate::diagnostic::Place;
 
-use super::{MetadataDocument, WrittenNumber};
+use super::read::BaseElementDocument;
+use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
 /// An L-system as written.
 #[derive(Clone, Debug)]
 pub struct LSystemDocument {
     /// Metadata of the file.
     pub metadata: MetadataDocument,
+    /// Whether the turtle moves in space.
+    pub is_in_space: bool,
     /// Angle increment of `+` and `-`, in degrees.
     pub angle: Option<WrittenNumber>,
     /// Initial heading of the turtle, in degrees counter-clockwise from the x axis.
     pub start: Option<WrittenNumber>,
+    /// In space, initial heading as a vector.
+    pub start_vector: Option<Box<WrittenPoint>>,
+    /// In space, initial direction upwards from the turtle's back.
+    pub up: Option<Box<WrittenPoint>>,
+    /// In space, tropism.
+    pub tropism: Option<Box<TropismDocument>>,
+    /// In space, surfaces by name.
+    pub surfaces: Vec<(Written<String>, BaseElementDocument)>,
     /// Step length of the turtle.
     pub length: Option<WrittenNumber>,
     /// Factor by which `!` multiplies the width.
@@ -28,6 +39,15 @@ pub struct LSystemDocument {
     pub symbols: Vec<SymbolDocument>,
     /// Symbols that contexts ignore.
     pub ignored: Vec<char>,
+}
+
+/// A tropism as written.
+#[derive(Clone, Debug)]
+pub struct TropismDocument {
+    /// The vector towards which lines bend.
+    pub towards: WrittenPoint,
+    /// The susceptibility to bending, in radians.
+    pub susceptibility: WrittenNumber,
 }
 
 /// A string of modules as written.
@@ -91,6 +111,14 @@ pub enum ActionDocument {
     Turn(WrittenNumber),
     /// Turns counter-clockwise by an angle in degrees, also after a reflection.
     Rotate(WrittenNumber),
+    /// In space, turns about the direction to the left, by an angle in degrees.
+    Pitch(WrittenNumber),
+    /// In space, turns about the heading, by an angle in degrees.
+    Roll(WrittenNumber),
+    /// In space, rolls until the direction to the left is horizontal.
+    Level,
+    /// Cuts off the rest of the branch.
+    Cut,
     /// Exchanges the heading and the second heading.
     Swap,
     /// Pushes the state.

@@ -38,7 +38,7 @@ pub use instancing::{
 };
 pub use lsystem::{
     ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, SymbolDocument,
-    WordDocument,
+    TropismDocument, WordDocument,
 };
 pub use metadata::{MetadataDocument, ParameterDocument};
 pub use read::{

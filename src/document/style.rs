@@ -1,7 +1,7 @@
 //! Reading of `style`.
 
 use crate::expression::Scope;
-use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, Width};
+use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, Tube, Width};
 
 use super::mapping::FromNode;
 use super::node::{Node, Value};
@@ -26,6 +26,8 @@ pub(super) const STYLE: Shape = Shape {
              direction.";
         palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),
             "The colours for `color_by`: a palette's name, or a list of colours that are mixed evenly.";
+        tube: Form::Either(&[Form::Whole(3, Some(48)), Form::Mapping(&TUBE)]),
+            "In L-systems in space: lines are tubes of so many sides, or `{sides: 8, width: 0.1}`.";
     ]],
     alternatives: &[],
     hint: "style: {stroke: black, width: 1.5}",
@@ -40,6 +42,17 @@ const WIDTH: Shape = Shape {
     hint: "width: 1.5 in pixels, or width: {relative: 0.1} of the element's length",
 };
 
+const TUBE: Shape = Shape {
+    what: "a tube",
+    keys: &[&keys![
+        sides: Form::Whole(3, Some(48)), "The number of sides; 8 if left out.";
+        width: Form::Positive,
+            "The width of a line of width 1, in the coordinates of the file; 0.1 if left out.";
+    ]],
+    alternatives: &[],
+    hint: "tube: 8, or tube: {sides: 8, width: 0.1}",
+};
+
 impl FromNode for Style {
     fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
         let fields = reader.fields(node, &STYLE)?;
@@ -52,6 +65,7 @@ impl FromNode for Style {
             join: fields.read(reader, "join")?,
             color_by: fields.read(reader, "color_by")?,
             palette: fields.read(reader, "palette")?,
+            tube: fields.optional(reader, "tube"),
         })
     }
 
@@ -109,6 +123,37 @@ impl FromNode for Width {
 
     fn absent(_: &Fields<'_>, _: &'static str) -> Option<Self> {
         Some(Style::default().width)
+    }
+}
+
+impl FromNode for Tube {
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        let (sides, width) = match node.value {
+            Value::Mapping(_) => {
+                let fields = reader.fields(node, &TUBE)?;
+                (fields.take("sides"), fields.take("width"))
+            }
+            _ => (Some(node), None),
+        };
+        let width_of = |reader: &mut Reader| match width {
+            Some(width) => f64::from_node(reader, width),
+            None => Some(Self::WIDTH),
+        };
+        let sides = match sides {
+            None => 8,
+            Some(node) => {
+                let [least, most] = Self::SIDES;
+                let value = constant(reader, node)?;
+                let sides = (least..=most).find(|sides| f64::from(*sides) == value);
+                if sides.is_none() {
+                    let message = format!("a tube has from {least} to {most} sides");
+                    reader.error_with_hint(&node.place, message, TUBE.hint);
+                }
+                sides?
+            }
+        };
+        let width = width_of(reader)?;
+        Some(Self { sides, width })
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::geometry::Frame;
 use crate::graph::{CompileError, Graph};
 use crate::grow::WalkError;
-use crate::model::Model;
+use crate::model::{DEEPEST, MOST_PROPOSED, Model};
 use crate::render::{Detail, NoDetail, RenderError};
 use crate::zoom::ZoomError;
 
@@ -136,33 +136,30 @@ pub fn proposed_steps(
     if let Some(steps) = model.metadata().steps {
         return Ok(steps);
     }
-    if let Some(deepest) = model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
+    if let Some(deepest) = model.as_kind().deepest(DEEPEST, MOST_PROPOSED) {
         return Ok(deepest);
     }
     Ok(steps_of_graph(model, &compile(DEEPEST)?))
 }
-
-/// Largest number of steps that is proposed, unless a file does.
-const DEEPEST: u32 = 12;
-
-/// Largest number of elements of a step that is proposed.
-const MAX_ELEMENTS: u64 = 20_000;
 
 /// Returns the number of steps that [`proposed_steps`] proposes for a model whose graph is known.
 pub(crate) fn steps_of_graph<F: Frame>(model: &Model, graph: &Graph<F>) -> u32 {
     if let Some(steps) = model.metadata().steps {
         return steps;
     }
+    if let Model::LSystemInSpace(_) = model {
+        return model.resolved_steps_in_space(None);
+    }
     if graph.forecast().is_none() {
         return DEEPEST / 2;
     }
     if let Some(depth) = model.as_kind().ends()
         && depth <= Goal::MAX_STEPS
-        && graph.check_size(depth, MAX_ELEMENTS).is_ok()
+        && graph.check_size(depth, MOST_PROPOSED).is_ok()
     {
         return depth;
     }
-    match graph.check_size(DEEPEST, MAX_ELEMENTS) {
+    match graph.check_size(DEEPEST, MOST_PROPOSED) {
         Ok(_) => DEEPEST,
         Err(error) => error.deepest.unwrap_or(0),
     }

@@ -124,7 +124,8 @@ impl Fractal {
         if let Some(graph) = self.graph_in_space.get() {
             return Ok(graph);
         }
-        let graph = self.model.graph_in_space(self.resolved_steps_in_space());
+        let steps = self.resolved_steps_in_space();
+        let graph = { &self.model }.graph_in_space_for(steps, self.seed, self.max_elements);
         let graph = graph.ok_or(Error::InPlane(instead))?;
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
         Ok(self.graph_in_space.get_or_init(|| graph))
@@ -132,8 +133,7 @@ impl Fractal {
 
     /// Returns the number of steps for which graphs in space are resolved.
     fn resolved_steps_in_space(&self) -> u32 {
-        const SOON: u32 = 16;
-        self.steps.or(self.model.metadata().steps).unwrap_or(SOON)
+        self.model.resolved_steps_in_space(self.steps)
     }
 
     /// Returns the graph of a set in space as it is drawn; `instead` states what a set of the plane has.
@@ -179,8 +179,7 @@ impl Fractal {
 
     /// Returns the number of steps of a picture; `None` for the limit set.
     pub(super) fn steps_drawn_in_space(&self) -> Option<u32> {
-        let proposed = self.model.metadata().steps;
-        self.steps.or(proposed.filter(|_| self.detail.is_none()))
+        { &self.model }.drawn_steps_in_space(self.steps, self.detail.is_some())
     }
 
     /// Returns the options of pictures in space: those of the file, unless others are set.

@@ -35,6 +35,10 @@ pub trait Affine:
     #[must_use]
     fn apply(&self, point: Self::Point) -> Self::Point;
 
+    /// Returns the inverse; its numbers are not finite for a singular map.
+    #[must_use]
+    fn inverse(&self) -> Self;
+
     /// Returns whether all numbers are finite.
     #[must_use]
     fn is_finite(&self) -> bool;
@@ -77,6 +81,10 @@ macro_rules! by_glam {
         #[inline]
         fn apply(&self, point: Self::Point) -> Self::Point {
             self.$apply(point)
+        }
+
+        fn inverse(&self) -> Self {
+            Self::inverse(self)
         }
 
         fn is_finite(&self) -> bool {

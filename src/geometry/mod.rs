@@ -49,3 +49,4 @@ pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;
 pub(crate) use homothety::exponent_of;
 pub(crate) use hull::{convex_hull, distance_to_hull, distance_to_segment, thinned};
+pub(crate) use polygon::triangulated;

@@ -77,6 +77,40 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<Solid>, PolygonError> {
     Ok(ears.iter().map(triangle).collect())
 }
 
+/// Returns a polygon as convex pieces, also where its corners do not lie in a plane: then as triangles, by the ears of
+/// its projection along Newell's normal, or as a fan around the first corner where sides of that cross. Empty if the
+/// corners lie on a line.
+pub(crate) fn triangulated(points: &[DVec3]) -> Vec<Solid> {
+    match polygon(points) {
+        Ok(pieces) => return pieces,
+        Err(PolygonError::NoExtent) if points.len() < 4 => return Vec::new(),
+        Err(_) => {}
+    }
+    let first = points[0];
+    let normal: DVec3 = { points.windows(2) }
+        .map(|pair| (pair[0] - first).cross(pair[1] - first))
+        .sum();
+    let fan = || (2..points.len()).map(|at| [0, at - 1, at]).collect();
+    let triangles: Vec<[usize; 3]> = match normal.try_normalize() {
+        Some(unit) if points.len() <= MAX_POINTS => {
+            let right = unit.any_orthonormal_vector();
+            let up = unit.cross(right);
+            let size = points.iter().map(|it| (*it - first).length());
+            let size = size.fold(0.0, f64::max);
+            let flat = points.iter().map(|point| {
+                let away = (*point - first) / size;
+                DVec2::new(away.dot(right), away.dot(up))
+            });
+            ears(&flat.collect::<Vec<_>>()).unwrap_or_else(fan)
+        }
+        _ => fan(),
+    };
+    let solids = triangles
+        .iter()
+        .map(|it| Solid::hull(&it.map(|corner| points[corner])));
+    solids.filter(|it| it.corners().len() == 3).collect()
+}
+
 /// Returns twice the signed area of a triangle.
 fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)

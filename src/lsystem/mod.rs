@@ -20,6 +20,8 @@
 //! clockwise while the turtle is mirrored. Brackets save and restore the state. A second heading, initially
 //! equal to the first, is part of the state and has no effect until both are exchanged.
 //!
+//! [In space](LSystemInSpace), the heading is a rotation, which a [`TurtleFrame`] composes of turns about three axes.
+//!
 //! # Guarantees
 //!
 //! All indices of symbols and productions are in range. A module has as many arguments as its symbol takes,
@@ -30,16 +32,22 @@
 
 mod compass;
 mod expand;
+mod frame;
 mod lengths;
 mod rewrite;
+mod space;
 mod surroundings;
+mod tube;
 mod turtle;
 mod word;
 
 pub use compass::Compass;
+pub use frame::{Axis, Heading3, TurtleFrame};
 pub use rewrite::RewriteError;
+pub use space::{LSystemInSpace, Tropism, Walked};
+pub use tube::{Stretch, TubeLine, TubePart};
 pub(crate) use turtle::Turtle;
-pub use turtle::{Drawing, Placed};
+pub use turtle::{Drawing, Drawn, Placed};
 pub use word::Word;
 
 use crate::diagnostic::Place;
@@ -85,6 +93,14 @@ pub enum Action {
     Turn(Program),
     /// Turns by an angle in degrees counter-clockwise, also while mirrored.
     Rotate(Program),
+    /// In space, turns about L, the direction to the left, by an angle in degrees, by the right-hand rule: pitches down.
+    Pitch(Program),
+    /// In space, turns about the heading by an angle in degrees, by the right-hand rule. A mirrored turtle rolls the
+    /// other way.
+    Roll(Program),
+    /// In space, rolls about the heading until L is horizontal: L = V × H / |V × H| for the y axis V, which points up,
+    /// and U = H × L. A vertical turtle does nothing (Prusinkiewicz & Lindenmayer 1990, section 2.3.3).
+    Level,
     /// Exchanges the heading with the second one.
     Swap,
     /// Saves the state: an opening bracket.
@@ -109,6 +125,11 @@ pub enum Action {
     Close,
     /// Adds the current position to the polygon as a vertex.
     Vertex,
+    /// In space, places a surface of the system, by index, along the heading; its length is a number of steps. The
+    /// turtle stays.
+    Surface(usize, Program),
+    /// Cuts off the rest of the branch: everything up to the closing bracket that ends it.
+    Cut,
 }
 
 /// A module: a symbol with the values of its arguments.
@@ -273,7 +294,13 @@ impl Symbol {
     /// Returns the largest number of lines and polygons that the symbol draws.
     #[must_use]
     pub fn draws(&self) -> u64 {
-        let draws = |action: &Action| u64::from(matches!(action, Action::Draw(_) | Action::Close));
+        let draws = |action: &Action| {
+            let draws = matches!(
+                action,
+                Action::Draw(_) | Action::Close | Action::Surface(..)
+            );
+            u64::from(draws)
+        };
         self.meaning.iter().map(draws).sum()
     }
 

@@ -1,19 +1,18 @@
-//! The turtle: interprets the modules of words as lines and polygons in the plane.
+//! The turtle: interprets the modules of words as lines, polygons and surfaces in the plane or in space.
 
 use std::collections::BTreeMap;
 
-use crate::geometry::{DVec2, Direction, Frame2};
-use crate::rule::{BaseElement, Piece};
+use crate::geometry::{Affine as _, Frame2, Point as _};
 
 use super::word::number;
-use super::{Action, Compass, LSystem, Word};
+use super::{Action, Axis, Compass, LSystem, TubeLine, TurtleFrame, Word};
 
-/// An element that the turtle draws: a line or a polygon.
+/// An element that the turtle draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
-    /// Frame of the element. A line runs from (0, 0) to (1, 0) in it; a polygon's coordinates are those of a
-    /// turtle that starts at (0, 0), heading right, where the polygon was opened.
-    pub frame: Frame2,
+pub struct Placed<F: TurtleFrame = Frame2> {
+    /// Frame of the element. A line runs from the origin to the unit point of the x axis in it; the coordinates of a
+    /// polygon are those of a turtle that starts at the origin, heading along the x axis, where the polygon was opened.
+    pub frame: F,
     /// Whether the element starts at the end of the preceding one, in the same width and colour.
     pub joined: bool,
     /// Index of the symbol that drew the element; of a polygon, the one that closed it.
@@ -22,47 +21,72 @@ pub struct Placed {
     pub width: f64,
     /// Colour index.
     pub colour: i64,
-    /// Index of the outline in [`Drawing::polygons`], if the element is a polygon.
-    pub polygon: Option<usize>,
+    /// Content of the element.
+    pub of: Drawn,
+}
+
+impl<F: TurtleFrame> Placed<F> {
+    /// Returns the index of the outline in [`Drawing::polygons`], if the element is a polygon.
+    #[must_use]
+    pub fn polygon(&self) -> Option<usize> {
+        match self.of {
+            Drawn::Polygon(number) => Some(number),
+            Drawn::Line(_) | Drawn::Surface(_) => None,
+        }
+    }
+}
+
+/// Content of an element that the turtle draws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drawn {
+    /// A line, with what a tube along it needs.
+    Line(TubeLine),
+    /// A polygon, by index in [`Drawing::polygons`].
+    Polygon(usize),
+    /// A surface of the system, by index.
+    Surface(usize),
 }
 
 /// All elements that a turtle draws.
-#[derive(Clone, Debug, Default)]
-pub struct Drawing {
+#[derive(Clone, Debug)]
+pub struct Drawing<F: TurtleFrame = Frame2> {
     /// The elements, in drawing order.
-    pub elements: Vec<Placed>,
+    pub elements: Vec<Placed<F>>,
     /// Distinct outlines of polygons.
-    pub polygons: Vec<BaseElement>,
+    pub polygons: Vec<F::BaseElement>,
 }
 
-/// State of the turtle, which brackets save and restore.
+impl<F: TurtleFrame> Default for Drawing<F> {
+    fn default() -> Self {
+        Self {
+            elements: Vec::new(),
+            polygons: Vec::new(),
+        }
+    }
+}
+
+/// TurtleState of the turtle, which brackets save and restore.
 #[derive(Clone, Copy, Debug)]
-struct TurtleState {
-    place: DVec2,
-    heading: u64,
+struct TurtleState<F: TurtleFrame> {
+    place: F::Point,
+    heading: F::Heading,
     /// Second heading.
-    other: u64,
+    other: F::Heading,
     mirrored: bool,
     /// Length of a step.
     step: f64,
     width: f64,
     colour: i64,
-}
-
-impl TurtleState {
-    fn direction(&self) -> Direction {
-        if self.mirrored {
-            Direction::YReflected
-        } else {
-            Direction::Normal
-        }
-    }
+    /// Width at the end of the line that ends here, if there is one in this branch.
+    tip: Option<f64>,
+    /// Whether the turtle has turned since the last line.
+    is_bent: bool,
 }
 
 /// A polygon that has not been closed.
-struct OpenPolygon {
-    state: TurtleState,
-    vertices: Vec<DVec2>,
+struct OpenPolygon<F: TurtleFrame> {
+    state: TurtleState<F>,
+    vertices: Vec<F::Point>,
     /// The number of saved states at its start.
     depth: usize,
     /// The least number of saved states since.
@@ -70,16 +94,19 @@ struct OpenPolygon {
 }
 
 /// An interpreter that reads modules one by one and draws.
-pub(crate) struct Turtle<'s> {
-    system: &'s LSystem,
+pub(crate) struct Turtle<'s, F: TurtleFrame = Frame2> {
+    system: &'s F::System,
+    words: &'s LSystem,
     compass: Compass,
-    state: TurtleState,
-    saved: Vec<TurtleState>,
-    open: Vec<OpenPolygon>,
+    state: TurtleState<F>,
+    saved: Vec<TurtleState<F>>,
+    open: Vec<OpenPolygon<F>>,
+    /// The number of states that were saved where the branch was cut off, if it was.
+    cut: Option<usize>,
     /// Modules since the outermost polygon was opened: symbols, and the bits of arguments.
     inside: (Vec<u32>, Vec<u64>),
     /// Elements drawn and not yet taken, and the outlines of all polygons.
-    pub(crate) drawing: Drawing,
+    pub(crate) drawing: Drawing<F>,
     /// Width and colour of the preceding element.
     last: Option<(f64, i64)>,
     /// Whether the turtle stands at the end of the preceding line.
@@ -112,24 +139,29 @@ impl LSystem {
     }
 }
 
-impl<'s> Turtle<'s> {
-    pub(crate) fn new(system: &'s LSystem) -> Self {
-        let compass = Compass::of(system);
-        let heading = compass.of_degrees(system.start);
+impl<'s, F: TurtleFrame> Turtle<'s, F> {
+    pub(crate) fn new(system: &'s F::System) -> Self {
+        let words = F::words(system);
+        let compass = Compass::of(words);
+        let heading = F::start(system, compass);
         Self {
             system,
+            words,
             compass,
             state: TurtleState {
-                place: DVec2::ZERO,
+                place: F::Point::ZERO,
                 heading,
                 other: heading,
                 mirrored: false,
-                step: system.length,
+                step: words.length,
                 width: 1.0,
                 colour: 0,
+                tip: None,
+                is_bent: false,
             },
             saved: Vec::new(),
             open: Vec::new(),
+            cut: None,
             inside: (Vec::new(), Vec::new()),
             drawing: Drawing::default(),
             last: None,
@@ -140,12 +172,33 @@ impl<'s> Turtle<'s> {
 
     /// Performs the actions of the next module of a word.
     pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
-        for action in &self.system.symbols[symbol].meaning {
-            self.act(action, symbol, arguments);
+        for action in &self.words.symbols[symbol].meaning {
+            if self.stays(action) {
+                self.act(action, symbol, arguments);
+            }
         }
         if !self.open.is_empty() {
             self.remember(symbol, arguments);
         }
+    }
+
+    /// Returns whether an action belongs to no branch that is cut off. The closing bracket of such a branch ends it.
+    fn stays(&mut self, action: &Action) -> bool {
+        let Some(depth) = self.cut else {
+            return true;
+        };
+        match action {
+            Action::Push => self.saved.push(self.state),
+            Action::Pop if self.saved.len() == depth => {
+                self.cut = None;
+                return true;
+            }
+            Action::Pop => {
+                self.saved.pop();
+            }
+            _ => {}
+        }
+        false
     }
 
     fn remember(&mut self, symbol: usize, arguments: &[f64]) {
@@ -167,21 +220,24 @@ impl<'s> Turtle<'s> {
                 self.go(steps.eval(arguments));
                 self.is_down = false;
             }
-            Action::Turn(angle) => {
-                let turn = self.compass.of_degrees(angle.eval(arguments));
-                let turn = if state.mirrored {
-                    self.compass.back(turn)
-                } else {
-                    turn
-                };
-                state.heading = self.compass.sum(state.heading, turn);
-            }
+            Action::Turn(angle) => self.turn(Axis::Up, angle.eval(arguments)),
+            Action::Pitch(angle) => self.turn(Axis::Left, angle.eval(arguments)),
+            Action::Roll(angle) => self.turn(Axis::Heading, angle.eval(arguments)),
             Action::Rotate(angle) => {
-                let turn = self.compass.of_degrees(angle.eval(arguments));
-                state.heading = self.compass.sum(state.heading, turn);
+                let turn = F::turn(self.compass, Axis::Up, angle.eval(arguments));
+                state.heading = F::after_turn(self.compass, state.heading, turn, false);
+                state.is_bent = true;
             }
-            Action::Swap => std::mem::swap(&mut state.heading, &mut state.other),
-            Action::Push => self.saved.push(*state),
+            Action::Level => state.heading = F::levelled(self.compass, state.heading),
+            Action::Swap => {
+                std::mem::swap(&mut state.heading, &mut state.other);
+                state.is_bent = true;
+            }
+            Action::Push => {
+                self.saved.push(*state);
+                // A branch begins with a width of its own.
+                state.tip = None;
+            }
             Action::Pop => {
                 // Words are balanced.
                 if let Some(saved) = self.saved.pop() {
@@ -192,6 +248,7 @@ impl<'s> Turtle<'s> {
                 }
                 self.is_down = false;
             }
+            Action::Cut => self.cut = Some(self.saved.len()),
             Action::Reflect => state.mirrored = !state.mirrored,
             Action::Scale(factor) => state.step *= factor.eval(arguments),
             Action::Width(factor) => state.width *= factor.eval(arguments).max(0.0),
@@ -216,13 +273,50 @@ impl<'s> Turtle<'s> {
             }
             Action::Close => self.close(symbol, arguments),
             Action::Vertex => self.vertex(),
+            Action::Surface(number, size) => {
+                let size = size.eval(arguments) * self.state.step;
+                if size != 0.0 {
+                    let state = self.state;
+                    let frame = self.frame(&state, self.ahead(&state, size));
+                    self.place(frame, Drawn::Surface(*number), symbol, &state);
+                }
+            }
         }
+    }
+
+    /// Turns about an axis by an angle in degrees.
+    fn turn(&mut self, axis: Axis, angle: f64) {
+        let turn = F::turn(self.compass, axis, angle);
+        let TurtleState {
+            heading, mirrored, ..
+        } = self.state;
+        self.state.heading = F::after_turn(self.compass, heading, turn, mirrored);
+        // A roll leaves a line straight.
+        self.state.is_bent |= axis != Axis::Heading && angle != 0.0;
+    }
+
+    /// Returns the vector of a length along the heading of a state.
+    fn ahead(&self, state: &TurtleState<F>, length: f64) -> F::Point {
+        let ahead = F::Point::AXES[0];
+        F::outward(self.compass, state.heading, state.mirrored, ahead) * length
+    }
+
+    /// Returns the frame of an element that runs along a vector from the place of a state.
+    fn frame(&self, state: &TurtleState<F>, along: F::Point) -> F {
+        F::along(
+            self.compass,
+            state.heading,
+            state.mirrored,
+            state.place,
+            along,
+        )
     }
 
     /// Moves forward by a number of steps.
     fn go(&mut self, steps: f64) {
-        let along = self.compass.direction(self.state.heading);
-        self.state.place += along * (steps * self.state.step);
+        let way = self.ahead(&self.state, steps * self.state.step);
+        self.state.place = self.state.place + way;
+        self.state.tip = None;
     }
 
     fn vertex(&mut self) {
@@ -232,27 +326,54 @@ impl<'s> Turtle<'s> {
     }
 
     fn draw(&mut self, steps: f64, symbol: usize) {
-        let from = self.state.place;
+        let start = self.state;
         self.go(steps);
+        let bent = F::bent(self.system, self.compass, start.heading);
+        let is_bent = bent != start.heading;
+        self.state.heading = bent;
         if !self.open.is_empty() {
             return self.vertex();
         }
-        if steps * self.state.step == 0.0 {
+        let length = (steps * start.step).abs();
+        if length == 0.0 {
+            self.state.tip = start.tip;
             return;
         }
-        let TurtleState { width, colour, .. } = self.state;
+        let TurtleState { width, colour, .. } = start;
         let alike = self.last == Some((width, colour));
         self.last = Some((width, colour));
-        let direction = self.state.direction();
+        let along = self.state.place - start.place;
+        let line = TubeLine {
+            length,
+            widths: [start.tip.unwrap_or(width), width],
+            is_bent: start.is_bent,
+        };
         self.drawing.elements.push(Placed {
-            frame: Frame2::between(from, self.state.place, direction),
+            frame: self.frame(&start, along),
             joined: self.is_down && alike,
             symbol,
             width,
             colour,
-            polygon: None,
+            of: Drawn::Line(line),
         });
+        self.state.tip = Some(width);
+        self.state.is_bent = is_bent;
         self.is_down = true;
+    }
+
+    /// Draws an element that no line joins.
+    fn place(&mut self, frame: F, of: Drawn, symbol: usize, state: &TurtleState<F>) {
+        let TurtleState { width, colour, .. } = *state;
+        self.last = Some((width, colour));
+        self.drawing.elements.push(Placed {
+            frame,
+            joined: false,
+            symbol,
+            width,
+            colour,
+            of,
+        });
+        self.is_down = false;
     }
 
     /// Ends the polygon that was begun last.
@@ -263,41 +384,27 @@ impl<'s> Turtle<'s> {
         if let Some(outer) = self.open.last_mut() {
             outer.min_depth = outer.min_depth.min(open.min_depth);
         }
-        let TurtleState { place, step, .. } = open.state;
-        let along = self.compass.direction(open.state.heading) * step;
-        let direction = open.state.direction();
-        let frame = Frame2::between(place, place + along, direction);
+        let step = open.state.step;
         if open.vertices.len() < 3 || step == 0.0 {
             return;
         }
+        let frame = self.frame(&open.state, self.ahead(&open.state, step));
         let number = self.drawing.polygons.len();
         let mut made = number;
         // A polygon across the end of an outer bracket depends on more than the modules inside it.
-        let is_local = open.min_depth == open.depth && !self.system.depends_on_the_way();
+        let is_local = open.min_depth == open.depth && !F::depends_on_the_way(self.system);
         if self.open.is_empty() && is_local {
             self.remember(symbol, arguments);
             made = *self.known.entry(self.inside.clone()).or_insert(number);
         }
         if made == number {
             let inverse = frame.map().inverse();
-            let mut vertices = open.vertices.iter().map(|v| inverse.transform_point2(*v));
-            let start = vertices.next().unwrap_or(DVec2::ZERO);
-            let pieces = vertices.map(Piece::Line).collect();
-            let outline = BaseElement::new(start, pieces, true);
+            let vertices = open.vertices.iter().map(|v| inverse.apply(*v));
+            let outline = F::polygon(&vertices.collect::<Vec<_>>());
             // A polygon of no extent keeps its index and is drawn as a line.
-            let outline = outline.unwrap_or_else(BaseElement::line);
+            let outline = outline.unwrap_or_else(F::line);
             self.drawing.polygons.push(outline);
         }
-        let TurtleState { width, colour, .. } = open.state;
-        self.last = Some((width, colour));
-        self.drawing.elements.push(Placed {
-            frame,
-            joined: false,
-            symbol,
-            width,
-            colour,
-            polygon: Some(made),
-        });
-        self.is_down = false;
+        self.place(frame, Drawn::Polygon(made), symbol, &open.state);
     }
 }

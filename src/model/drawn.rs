@@ -65,7 +65,8 @@ pub enum DrawnError {
 impl Model {
     /// Returns the graph of a model in space as it is drawn after a number of steps, or in the limit, in colours by a
     /// property; `None` for a model of the plane. A rule whose elements depend on draws or on more than place and age, or whose
-    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements.
+    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements. An L-system has its last
+    /// step instead of a limit; lines are tubes if its style asks for them.
     ///
     /// Objects of a system record the map that is applied last if colours depend on it, unless there are too many for it.
     ///
@@ -78,15 +79,29 @@ impl Model {
         growth: &Growth<'_>,
         color_by: ColorBy,
     ) -> Option<Result<DrawnInSpace, DrawnError>> {
-        let Self::RuleInSpace(rule) = self else {
-            let graph = self.compile_in_space(color_by == ColorBy::LastMap)?;
-            return Some(Ok(DrawnInSpace {
-                graph,
-                steps,
-                records: None,
-            }));
-        };
-        Some(drawn(rule, steps, growth, color_by))
+        let records = None;
+        match self {
+            Self::RuleInSpace(rule) => Some(drawn(rule, steps, growth, color_by)),
+            Self::LSystemInSpace(system) => {
+                let steps = steps.unwrap_or(growth.steps);
+                let (seed, most) = (growth.seed, growth.max_elements);
+                let graph = Graph::drawn_of_lsystem(system, steps, seed, most);
+                let drawn = graph.map(|graph| DrawnInSpace {
+                    graph,
+                    steps: Some(steps),
+                    records,
+                });
+                Some(drawn.map_err(DrawnError::from))
+            }
+            _ => {
+                let graph = self.compile_in_space(color_by == ColorBy::LastMap)?;
+                Some(Ok(DrawnInSpace {
+                    graph,
+                    steps,
+                    records,
+                }))
+            }
+        }
     }
 }
 

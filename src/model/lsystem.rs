@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
 use crate::graph::{CompileError, Graph};
-use crate::lsystem::LSystem;
+use crate::lsystem::{LSystem, LSystemInSpace};
 use crate::metadata::Metadata;
 
 use super::{Model, OfKind};
@@ -36,5 +36,23 @@ impl OfKind for Arc<LSystem> {
 
     fn deepest(&self, max_steps: u32, max_elements: u64) -> Option<u32> {
         Some(LSystem::deepest(self, max_steps, max_elements))
+    }
+}
+
+impl OfKind for Arc<LSystemInSpace> {
+    fn metadata(&self) -> &Metadata {
+        &self.words.metadata
+    }
+
+    fn diagnostic(&self, error: &CompileError) -> Diagnostic {
+        self.words.diagnostic(error)
+    }
+
+    fn starts_anew(&self) -> bool {
+        true
+    }
+
+    fn deepest(&self, most_steps: u32, max_elements: u64) -> Option<u32> {
+        Some(self.words.deepest(most_steps, max_elements))
     }
 }

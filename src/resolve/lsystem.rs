@@ -2,6 +2,7 @@
 
 mod alphabet;
 mod check;
+mod space;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,6 +25,11 @@ const MAX_BRANCHES: i32 = 64;
 pub(super) struct OfLSystem {
     symbols: Vec<Symbol>,
     numbers: BTreeMap<(char, usize), usize>,
+    is_in_space: bool,
+    /// Names of the surfaces.
+    surfaces: Vec<String>,
+    /// Symbols that place surfaces, by surface and number of arguments besides its name.
+    placing: BTreeMap<(usize, usize), usize>,
     /// The file's own interpretations of symbols.
     own: BTreeMap<(char, usize), Vec<Action>>,
     /// Angle increment of `+` and `-`, in degrees.
@@ -121,7 +127,7 @@ impl Resolver<OfLSystem> {
         let templates: Vec<_> = { word.modules.iter() }
             .map(|module| Template {
                 symbol: self.symbol(module),
-                arguments: { module.arguments.iter() }
+                arguments: { self.arguments(module).iter() }
                     .map(|number| self.program(number, scope))
                     .collect(),
             })

@@ -89,9 +89,10 @@ impl<'a> Constants<'a> {
                 Kind::System(system, maps)
             }
             // Its graph is none of the plane.
-            Model::RuleInSpace(_) | Model::IfsInSpace(_) | Model::InstancingInSpace(_) => {
-                return Err(ZoomError::NoReach);
-            }
+            Model::RuleInSpace(_)
+            | Model::IfsInSpace(_)
+            | Model::InstancingInSpace(_)
+            | Model::LSystemInSpace(_) => return Err(ZoomError::NoReach),
             Model::Instancing(structure) => {
                 Kind::Structure(structure, Graph::canonical_objects(structure))
             }

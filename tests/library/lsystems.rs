@@ -12,9 +12,11 @@ use super::common::{document, document_of, grown};
 use super::picture::Picture;
 use super::{check_paths, entries};
 
-/// Iterates over all L-systems, with their names.
+/// Iterates over all L-systems of the plane, with their names.
 fn systems() -> impl Iterator<Item = (String, Arc<LSystem>)> {
+    let is_in_plane = |name: &str| !document(name).resolve(&[]).unwrap().0.is_in_space();
     let names = entries(Shelf::LSYSTEMS).into_iter();
+    let names = names.filter(move |entry| is_in_plane(&entry.name));
     names.map(|entry| {
         let system = system(&document(&entry.name).to_yaml());
         (entry.name, system)

@@ -122,10 +122,10 @@ fn polygons_are_filled() {
     let polygons: Vec<_> = drawing
         .elements
         .iter()
-        .filter(|it| it.polygon.is_some())
+        .filter(|it| it.polygon().is_some())
         .collect();
     assert_eq!((drawing.elements.len(), polygons.len()), (4, 2));
-    let leaf = &drawing.polygons[polygons[0].polygon.unwrap()];
+    let leaf = &drawing.polygons[polygons[0].polygon().unwrap()];
     assert_eq!(leaf.pieces().len(), 6);
     assert!(leaf.is_closed());
     let area = leaf.signed_area().abs();
@@ -195,7 +195,7 @@ fn polygons_of_one_symbol_are_told_apart() {
     };
     let symbols = format!("symbols: {{P: {}, Q: {}}}\n", outline(3), outline(4));
     let drawing = drawn("PQP", &symbols);
-    let numbers = drawing.elements.iter().map(|element| element.polygon);
+    let numbers = drawing.elements.iter().map(|element| element.polygon());
     assert_eq!(numbers.collect::<Vec<_>>(), [Some(0), Some(1), Some(0)]);
     assert_eq!(drawing.polygons.len(), 2);
 }

@@ -52,7 +52,7 @@ pub(super) fn write(
     let name = &loaded.name;
     let extension = Format::Scene(format).name();
     let metadata = loaded.model.metadata();
-    let Some(steps) = arguments.steps.or(metadata.steps) else {
+    let Some(steps) = loaded.model.drawn_steps_in_space(arguments.steps, false) else {
         let message = format!("a .{extension} holds the elements of a step: give --steps");
         return Err(Failure::Usage(message));
     };

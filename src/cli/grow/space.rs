@@ -41,9 +41,7 @@ pub(super) fn draw(
         Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::in_space(arguments, loaded)?),
         _ => None,
     };
-    let steps = arguments
-        .steps
-        .or(metadata.steps.filter(|_| arguments.detail.is_none()));
+    let steps = { &loaded.model }.drawn_steps_in_space(arguments.steps, arguments.detail.is_some());
     let mut options = render::Options {
         format: render::Format::Png,
         style,

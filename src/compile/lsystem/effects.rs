@@ -4,24 +4,27 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::draws::Path;
-use crate::lsystem::{Action, Compass, LSystem};
+use crate::geometry::Frame2;
+use crate::lsystem::{Action, Compass, LSystem, TurtleFrame};
 
 use super::NotCompiled;
 use super::far::Far;
 use super::kinds::{Kinds, MAX_CLOSED, MAX_KINDS};
-use super::long::Displacements;
+use super::long::{SummedFrame, Sums as _};
 use super::reader::Reader;
 use super::state::{Pose, StrokeAttributes, TurtleState};
 
 /// Effect of a module that is derived for some steps, relative to the state of the turtle before it.
 #[derive(Clone, Debug)]
-pub(super) struct Effect {
-    /// State of the turtle after it.
-    pub(super) state: TurtleState,
+pub(super) struct Effect<F: TurtleFrame = Frame2> {
+    /// TurtleState of the turtle after it.
+    pub(super) state: TurtleState<F>,
     /// Whether the pen is up after it, or was lifted at all if nothing is drawn.
     pub(super) lifts: bool,
+    /// Whether it cuts off the rest of the branch.
+    pub(super) cuts: bool,
     /// Extent and appearance of its drawing, if it draws.
-    pub(super) drawn: Option<ModuleDrawing>,
+    pub(super) drawn: Option<ModuleDrawing<F>>,
     /// Whether the effect is independent of draws. Otherwise it bounds the effects of all draws.
     pub(super) is_exact: bool,
     /// Whether it is certain to draw something, if it can.
@@ -32,13 +35,13 @@ pub(super) struct Effect {
 
 /// Extent and appearance of a module's drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ModuleDrawing {
+pub(super) struct ModuleDrawing<F: TurtleFrame = Frame2> {
     /// Bound on the distance of the drawing from the start.
-    pub(super) reach: Far,
+    pub(super) reach: Far<F::Point>,
     /// Nominal length: the distance by which it moves the turtle, but at least a fixed share of `reach`.
-    pub(super) size: Far,
+    pub(super) size: Far<F::Point>,
     /// Position of the part that may reach farthest.
-    pub(super) tip: Far,
+    pub(super) tip: Far<F::Point>,
     /// Attributes of the first line.
     pub(super) first: StrokeAttributes,
     /// Attributes of the last line.
@@ -48,9 +51,9 @@ pub(super) struct ModuleDrawing {
 /// Least nominal length, as a share of the reach.
 const SHARE: f64 = 0.25;
 
-impl ModuleDrawing {
+impl<F: TurtleFrame> ModuleDrawing<F> {
     /// Returns the nominal length if the turtle is moved to a pose.
-    pub(super) fn size_of(&self, pose: &Pose) -> Far {
+    pub(super) fn size_of(&self, pose: &Pose<F>) -> Far<F::Point> {
         self.reach.times(SHARE).longer(pose.away())
     }
 }
@@ -60,28 +63,32 @@ const MAX_EFFECTS: usize = 1 << 18;
 
 /// Effects of all kinds of modules, computed from the bottom up.
 #[derive(Debug)]
-pub(super) struct Effects {
-    pub(super) system: Arc<LSystem>,
+pub(super) struct Effects<F: TurtleFrame = Frame2> {
+    pub(super) system: Arc<F::System>,
     pub(super) compass: Compass,
     pub(super) kinds: Kinds,
     /// Effects by the number of steps that are left, less 1, and by kind.
-    levels: Vec<Vec<Option<Effect>>>,
+    levels: Vec<Vec<Option<Effect<F>>>>,
 }
 
-impl Effects {
+impl<F: SummedFrame> Effects<F> {
     /// Computes the effects for all numbers of steps up to `steps`, of all kinds that occur within them.
-    pub(super) fn of_system(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        Self::of_kinds(system, Kinds::of(system, steps, MAX_KINDS)?, steps)
+    pub(super) fn of_system(system: &F::System, steps: u32) -> Result<Self, NotCompiled> {
+        if F::depends_on_the_way(system) {
+            return Err(NotCompiled);
+        }
+        let kinds = Kinds::of(F::words(system), steps, MAX_KINDS)?;
+        Self::of_kinds(system, kinds, steps)
     }
 
     /// Computes the effects for all numbers of steps up to `steps`, of all kinds that ever occur.
-    pub(super) fn closed(system: &LSystem, steps: u32) -> Result<Self, NotCompiled> {
-        let mut kinds = Kinds::of(system, u32::MAX, MAX_CLOSED)?;
+    pub(super) fn closed(system: &F::System, steps: u32) -> Result<Self, NotCompiled> {
+        let mut kinds = Kinds::of(F::words(system), u32::MAX, MAX_CLOSED)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
         Self::of_kinds(system, kinds, steps)
     }
 
-    fn of_kinds(system: &LSystem, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
+    fn of_kinds(system: &F::System, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
         let fertile = { &kinds.all }.iter().filter(|kind| kind.is_fertile());
         let levels = fertile.map(|kind| steps.saturating_sub(kind.born) as usize);
         if levels.fold(0, usize::saturating_add) > MAX_EFFECTS {
@@ -89,13 +96,13 @@ impl Effects {
         }
         let mut effects = Self {
             system: Arc::new(system.clone()),
-            compass: Compass::of(system),
+            compass: Compass::of(F::words(system)),
             kinds,
             levels: Vec::new(),
         };
         let mut bits = None;
         loop {
-            let mut ways = Displacements::new(effects.compass, bits);
+            let mut ways = F::Sums::new(effects.compass, bits);
             effects.levels.clear();
             for left in 1..=steps {
                 let known: Result<Vec<_>, _> = (0..effects.kinds.all.len())
@@ -111,10 +118,22 @@ impl Effects {
             }
         }
     }
+}
+
+impl<F: TurtleFrame> Effects<F> {
+    /// Returns the symbols, words and productions of the system.
+    pub(super) fn words(&self) -> &LSystem {
+        F::words(&self.system)
+    }
 
     /// Computes the effect of a kind with `left` steps left; `None` if it is not replaced, or does not
     /// occur with so many left.
-    fn of_level(&self, kind: usize, left: u32, steps: u32) -> Result<Option<Effect>, NotCompiled> {
+    fn of_level(
+        &self,
+        kind: usize,
+        left: u32,
+        steps: u32,
+    ) -> Result<Option<Effect<F>>, NotCompiled> {
         let of = &self.kinds.all[kind];
         if !of.is_fertile() || of.born > steps - left {
             return Ok(None);
@@ -124,7 +143,7 @@ impl Effects {
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             reader.effect()
         });
-        let effects: Vec<Effect> = effects.collect::<Result<_, _>>()?;
+        let effects: Vec<Effect<F>> = effects.collect::<Result<_, _>>()?;
         match effects.as_slice() {
             [only] => Ok(Some(only.clone())),
             _ => Effect::of_any(&effects).map(Some),
@@ -137,7 +156,7 @@ impl Effects {
         kind: usize,
         left: u32,
         path: Path,
-    ) -> Result<Cow<'_, Effect>, NotCompiled> {
+    ) -> Result<Cow<'_, Effect<F>>, NotCompiled> {
         let known = self.of(kind, left)?;
         if known.is_exact {
             return Ok(Cow::Borrowed(known));
@@ -156,7 +175,7 @@ impl Effects {
     }
 
     /// Returns the effect of a kind with `left` steps left.
-    pub(super) fn of(&self, kind: usize, left: u32) -> Result<&Effect, NotCompiled> {
+    pub(super) fn of(&self, kind: usize, left: u32) -> Result<&Effect<F>, NotCompiled> {
         self.levels[left as usize - 1][kind]
             .as_ref()
             .ok_or(NotCompiled)
@@ -164,23 +183,23 @@ impl Effects {
 
     /// Returns whether a kind is a closing bracket.
     pub(super) fn pops(&self, kind: usize) -> bool {
-        let meaning = &self.system.symbols()[self.kinds.all[kind].symbol].meaning;
+        let meaning = &self.words().symbols()[self.kinds.all[kind].symbol].meaning;
         matches!(meaning.first(), Some(Action::Pop))
     }
 
     /// Returns the drawing of a kind with `left` steps left.
-    pub(super) fn drawn_by(&self, kind: usize, left: u32) -> Result<ModuleDrawing, NotCompiled> {
+    pub(super) fn drawn_by(&self, kind: usize, left: u32) -> Result<ModuleDrawing<F>, NotCompiled> {
         self.of(kind, left)?.drawn.ok_or(NotCompiled)
     }
 
     /// Returns the position of the turtle after a kind with `left` steps left.
-    pub(super) fn place_after(&self, kind: usize, left: u32) -> Far {
+    pub(super) fn place_after(&self, kind: usize, left: u32) -> Far<F::Point> {
         let effect = self.of(kind, left);
         effect.map_or(Far::ZERO, |effect| effect.state.pose.place)
     }
 }
 
-impl Effect {
+impl<F: TurtleFrame> Effect<F> {
     /// Returns an effect that bounds several alternatives: with the largest reach, and only their common
     /// properties.
     fn of_any(all: &[Self]) -> Result<Self, NotCompiled> {
@@ -192,7 +211,8 @@ impl Effect {
         for other in others {
             let (a, b) = (&mut any.state, &other.state);
             // The objects of later modules must not depend on draws.
-            if a.attributes != b.attributes || a.pose.scale != b.pose.scale {
+            let (looks, other_looks) = ((a.attributes, a.joint), (b.attributes, b.joint));
+            if looks != other_looks || a.pose.scale != b.pose.scale || any.cuts != other.cuts {
                 return Err(NotCompiled);
             }
             let way = a.pose.away().longer(b.pose.away());

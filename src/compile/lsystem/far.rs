@@ -1,26 +1,26 @@
-//! Plane vectors with a separate exponent.
+//! Vectors with a separate exponent.
 
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, Point};
 
-/// Vector of the plane of arbitrary length: 3ⁿ steps exceed the range of a double from n = 647 on.
+/// Vector of arbitrary length: 3ⁿ steps exceed the range of a double from n = 647 on.
 ///
 /// Guarantee: the larger absolute coordinate of the mantissa is in [0.5, 1), or the vector is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Far {
-    mantissa: DVec2,
+pub(super) struct Far<P: Point = DVec2> {
+    mantissa: P,
     exponent: i32,
 }
 
 /// Exponent difference, in powers of two, above which the smaller vector adds nothing.
 const NEGLIGIBLE: i32 = 200;
 
-impl Far {
+impl<P: Point> Far<P> {
     pub(super) const ZERO: Self = Self {
-        mantissa: DVec2::ZERO,
+        mantissa: P::ZERO,
         exponent: 0,
     };
 
-    pub(super) fn new(vector: DVec2) -> Self {
+    pub(super) fn new(vector: P) -> Self {
         Self {
             mantissa: vector,
             exponent: 0,
@@ -30,7 +30,7 @@ impl Far {
 
     /// Returns a horizontal vector that represents a length.
     pub(super) fn of_length(length: f64) -> Self {
-        Self::new(DVec2::new(length.abs(), 0.0))
+        Self::new(P::AXES[0] * length.abs())
     }
 
     fn normalised(self) -> Self {
@@ -45,7 +45,7 @@ impl Far {
     }
 
     pub(super) fn is_zero(self) -> bool {
-        self.mantissa == DVec2::ZERO
+        self.mantissa == P::ZERO
     }
 
     pub(super) fn is_finite(self) -> bool {
@@ -77,7 +77,7 @@ impl Far {
         // Normalising the factor first keeps the product of mantissas from underflow.
         let factor = Self::of_length(factor).signed(factor);
         Self {
-            mantissa: self.mantissa * factor.mantissa.x,
+            mantissa: self.mantissa * factor.mantissa.coordinates()[0],
             exponent: self.exponent.saturating_add(factor.exponent),
         }
         .normalised()
@@ -91,7 +91,7 @@ impl Far {
     }
 
     /// Returns the image under an isometry.
-    pub(super) fn turned(self, turn: impl FnOnce(DVec2) -> DVec2) -> Self {
+    pub(super) fn turned(self, turn: impl FnOnce(P) -> P) -> Self {
         Self {
             mantissa: turn(self.mantissa),
             ..self
@@ -101,7 +101,7 @@ impl Far {
 
     pub(super) fn length(self) -> Self {
         Self {
-            mantissa: DVec2::new(self.mantissa.length(), 0.0),
+            mantissa: P::AXES[0] * self.mantissa.length(),
             ..self
         }
         .normalised()
@@ -109,7 +109,7 @@ impl Far {
 
     /// Returns the greater of two lengths.
     pub(super) fn longer(self, other: Self) -> Self {
-        let key = |far: Self| (!far.is_zero(), far.exponent, far.mantissa.x);
+        let key = |far: Self| (!far.is_zero(), far.exponent, far.mantissa.coordinates()[0]);
         if key(self) < key(other) { other } else { self }
     }
 
@@ -131,16 +131,21 @@ impl Far {
         }
     }
 
+    /// Returns a length as a multiple of another.
+    pub(super) fn ratio(self, unit: Self) -> f64 {
+        self.over(unit).coordinates()[0]
+    }
+
     /// Returns the vector as a multiple of a length.
-    pub(super) fn over(self, unit: Self) -> DVec2 {
+    pub(super) fn over(self, unit: Self) -> P {
         let by = self.exponent.saturating_sub(unit.exponent);
-        shifted(self.mantissa / unit.mantissa.x, by)
+        shifted(self.mantissa / unit.mantissa.coordinates()[0], by)
     }
 }
 
 /// Multiplies a vector by a power of two.
-fn shifted(vector: DVec2, by: i32) -> DVec2 {
-    DVec2::new(libm::ldexp(vector.x, by), libm::ldexp(vector.y, by))
+fn shifted<P: Point>(vector: P, by: i32) -> P {
+    vector.map(|value| libm::ldexp(value, by))
 }
 
 #[cfg(test)]
@@ -170,7 +175,7 @@ mod tests {
         assert_eq!(step.times(0.0), Far::ZERO);
         assert_eq!(Far::ZERO.plus(step), step);
         assert_eq!(
-            Far::of_length(-6.0).over(Far::of_length(1.5)),
+            Far::<DVec2>::of_length(-6.0).over(Far::of_length(1.5)),
             DVec2::new(4.0, 0.0)
         );
     }

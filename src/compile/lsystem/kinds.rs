@@ -122,7 +122,7 @@ impl KindFinder<'_> {
         let encloses = |action: &Action| {
             matches!(
                 action,
-                Action::Push | Action::Pop | Action::Open | Action::Close
+                Action::Push | Action::Pop | Action::Open | Action::Close | Action::Cut
             )
         };
         if system.symbols()[symbol].meaning.iter().any(encloses) {

@@ -4,16 +4,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::draws::Path;
-use crate::geometry::{DVec2, Frame2};
-use crate::rule::{BaseElement, Piece};
+use crate::geometry::{Frame2, Point as _};
+use crate::lsystem::{TubePart, TurtleFrame};
+use crate::style::Tube;
 
 use super::NotCompiled;
 use super::effects::{Effects, ModuleDrawing};
 use super::far::Far;
+use super::long::SummedFrame;
 use super::paint::Paint;
 use super::reader::{DrawnPart, Of, Reader};
-use super::state::{StrokeAttributes, TurtleState};
+use super::state::{Joint, StrokeAttributes, TurtleState};
 use super::words::{Words, Written};
+use super::worn::Worn;
 use crate::graph::{Alternative, Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::rule::Extent;
 
@@ -32,6 +35,8 @@ const FARTHEST: f64 = 1e150;
 struct ObjectKey {
     of: Master,
     paint: Paint,
+    /// What tubes inherit.
+    worn: Worn,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -40,27 +45,30 @@ enum Master {
     Subtree(usize, u32),
     /// Line, and whether its module is replaced in the next step.
     Step(bool),
-    /// Polygon, by base element.
-    Polygon(usize),
+    /// Polygon, surface or part of a tube, by base element.
+    Body(usize),
 }
 
 /// Builder of the objects of a time-indexed graph, from the largest number of steps left to the smallest.
-struct Leveller<'e> {
-    effects: &'e Effects,
-    base_elements: Vec<BaseElement>,
-    outlines: BTreeMap<Vec<[u64; 2]>, usize>,
+struct Leveller<'e, F: TurtleFrame> {
+    effects: &'e Effects<F>,
+    tube: Option<Tube>,
+    base_elements: Vec<F::BaseElement>,
+    outlines: BTreeMap<Vec<[u64; 3]>, usize>,
+    surfaces: BTreeMap<usize, usize>,
+    tubes: BTreeMap<TubePart, usize>,
     /// Numbers of the objects that are replaced, and of all others.
     numbers: [BTreeMap<ObjectKey, usize>; 2],
     /// Identities of both, in the order of their numbers.
     keys: [Vec<ObjectKey>; 2],
-    /// Replacements of kinds, by the number of steps left and by colour.
-    productions: BTreeMap<(usize, u32, i64), Made>,
-    written: Vec<Written>,
+    /// Replacements of kinds, by the number of steps left and by what they inherit.
+    productions: BTreeMap<(usize, u32, Worn), Made<F>>,
+    written: Vec<Written<F>>,
 }
 
 /// Replacement of a kind.
-enum Made {
-    Fixed(Successor),
+enum Made<F: TurtleFrame> {
+    Fixed(Successor<F>),
     /// Words of which one is drawn, or whose modules are random.
     Drawn(Vec<Alternative>),
 }
@@ -69,44 +77,69 @@ enum Made {
 /// others.
 const LEAVES: usize = usize::MAX / 2;
 
-impl Graph {
+/// Graph of an L-system, with the base elements of which it knows the outlines.
+pub(super) type Levels<F> = (Graph<F>, Vec<<F as crate::rule::RuleFrame>::BaseElement>);
+
+impl Graph<Frame2> {
     /// Builds the graph whose objects are kinds with a number of steps that are left.
     pub(super) fn of_levels(effects: Effects, steps: u32) -> Result<Self, NotCompiled> {
-        let leveller = Leveller {
-            effects: &effects,
-            base_elements: vec![BaseElement::line()],
-            outlines: BTreeMap::new(),
-            numbers: [const { BTreeMap::new() }; 2],
-            keys: [const { Vec::new() }; 2],
-            productions: BTreeMap::new(),
-            written: Vec::new(),
-        };
-        let (mut graph, written) = leveller.run(steps)?;
-        if !written.is_empty() {
-            graph.draws = true;
-            graph.source = Some(Arc::new(Words { effects, written }));
-        }
-        Ok(graph)
+        levels(effects, steps, None).map(|(graph, _)| graph)
     }
 }
 
-impl Leveller<'_> {
-    fn run(mut self, steps: u32) -> Result<(Graph, Vec<Written>), NotCompiled> {
+/// Builds the graph whose objects are kinds with a number of steps that are left. Lines are tubes if these are given,
+/// and not replaced; nothing may depend on draws then.
+pub(super) fn levels<F: SummedFrame>(
+    effects: Effects<F>,
+    steps: u32,
+    tube: Option<Tube>,
+) -> Result<Levels<F>, NotCompiled> {
+    let leveller = Leveller {
+        effects: &effects,
+        tube,
+        base_elements: vec![F::line()],
+        outlines: BTreeMap::new(),
+        surfaces: BTreeMap::new(),
+        tubes: BTreeMap::new(),
+        numbers: [const { BTreeMap::new() }; 2],
+        keys: [const { Vec::new() }; 2],
+        productions: BTreeMap::new(),
+        written: Vec::new(),
+    };
+    let (mut graph, base_elements, written) = leveller.run(steps)?;
+    if !written.is_empty() {
+        graph.draws = true;
+        graph.source = Some(Arc::new(Words { effects, written }));
+    }
+    Ok((graph, base_elements))
+}
+
+/// Graph, base elements, and the words that draws select.
+type Finished<F> = (
+    Graph<F>,
+    Vec<<F as crate::rule::RuleFrame>::BaseElement>,
+    Vec<Written<F>>,
+);
+
+impl<F: TurtleFrame> Leveller<'_, F> {
+    fn run(mut self, steps: u32) -> Result<Finished<F>, NotCompiled> {
         let mut initiators = Vec::new();
         let mut done = 0;
-        for left in (0..=steps).rev() {
+        // With tubes, the graph is drawn, and no other number of steps is asked for.
+        let least = if self.tube.is_some() { steps } else { 0 };
+        for left in (least..=steps).rev() {
             initiators.push(self.initiator(left)?);
             while let Some(&key) = self.keys[0].get(done) {
                 let Master::Subtree(kind, level) = key.of else {
                     break;
                 };
-                if level < left {
+                if level < left && left > least {
                     break;
                 }
                 done += 1;
-                let replaced = (kind, level, key.paint.colour);
+                let replaced = (kind, level, key.worn);
                 if !self.productions.contains_key(&replaced) {
-                    let production = self.production(kind, level, key.paint.colour)?;
+                    let production = self.production(kind, level, key.worn)?;
                     self.productions.insert(replaced, production);
                 }
             }
@@ -116,15 +149,15 @@ impl Leveller<'_> {
     }
 
     /// Returns the chain of the axiom with `left` steps left.
-    fn initiator(&mut self, left: u32) -> Result<Chain, NotCompiled> {
+    fn initiator(&mut self, left: u32) -> Result<Chain<F>, NotCompiled> {
         let effects = self.effects;
         let mut start = TurtleState {
             attributes: StrokeAttributes::START,
+            joint: Joint::START,
             ..TurtleState::SAME
         };
-        let compass = effects.compass;
-        start.pose.heading = compass.of_degrees(effects.system.start());
-        start.pose.scale = effects.system.length();
+        start.pose.heading = F::start(&effects.system, effects.compass);
+        start.pose.scale = effects.words().length();
         let mut reader = Reader::new(effects, start, false);
         reader.read(&effects.kinds.axiom, left, Path::of_seed(0))?;
         let effect = reader.effect()?;
@@ -141,20 +174,23 @@ impl Leveller<'_> {
             }
             _ => Far::of_length(1.0),
         };
-        let instances = self.instances(&reader.parts, left, unit, 0)?;
+        let instances = self.instances(&reader.parts, left, unit, Worn::START)?;
         Ok(Chain::loose(instances))
     }
 
     /// Returns the replacement of a kind with `left` steps left, where the turtle has a colour.
-    fn production(&mut self, kind: usize, left: u32, colour: i64) -> Result<Made, NotCompiled> {
+    fn production(&mut self, kind: usize, left: u32, worn: Worn) -> Result<Made<F>, NotCompiled> {
         let effects = self.effects;
         let unit = effects.drawn_by(kind, left)?.size;
         let is_exact = effects.of(kind, left)?.is_exact;
+        if !is_exact && self.tube.is_some() {
+            return Err(NotCompiled);
+        }
         let mut words = Vec::new();
         for alternative in &effects.kinds.all[kind].alternatives {
             let mut reader = Reader::new(effects, TurtleState::SAME, false);
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
-            let instances = self.instances(&reader.parts, left - 1, unit, colour)?;
+            let instances = self.instances(&reader.parts, left - 1, unit, worn)?;
             if is_exact {
                 let meets_frame = reader.meets();
                 let body = Chain {
@@ -164,8 +200,8 @@ impl Leveller<'_> {
                 return Ok(Made::Fixed(body.into()));
             }
             let placed = reader.parts.iter().zip(&instances);
-            let extent = |(part, instance): (&DrawnPart, &Instance)| Extent {
-                away: part.pose.away().over(unit).x,
+            let extent = |(part, instance): (&DrawnPart<F>, &Instance<F>)| Extent {
+                away: part.pose.away().ratio(unit),
                 length: instance.length,
             };
             words.push(Alternative {
@@ -185,47 +221,77 @@ impl Leveller<'_> {
 
     fn instances(
         &mut self,
-        parts: &[DrawnPart],
+        parts: &[DrawnPart<F>],
         left: u32,
-        unit: Far,
-        colour: i64,
-    ) -> Result<Vec<Instance>, NotCompiled> {
-        let all = parts
-            .iter()
-            .map(|part| self.instance(part, left, unit, colour));
-        all.collect()
+        unit: Far<F::Point>,
+        worn: Worn,
+    ) -> Result<Vec<Instance<F>>, NotCompiled> {
+        let mut instances = Vec::new();
+        for part in parts {
+            self.add(part, left, unit, worn, &mut instances)?;
+        }
+        Ok(instances)
     }
 
-    fn instance(
+    /// Adds the instance of a part; for a line that is a tube, those of its parts.
+    fn add(
         &mut self,
-        part: &DrawnPart,
+        part: &DrawnPart<F>,
         left: u32,
-        unit: Far,
-        colour: i64,
-    ) -> Result<Instance, NotCompiled> {
+        unit: Far<F::Point>,
+        worn: Worn,
+        instances: &mut Vec<Instance<F>>,
+    ) -> Result<(), NotCompiled> {
+        let one = Far::of_length(1.0);
         let (steps, of) = match &part.of {
             Of::Subtree(kind, drawn) => (drawn.size, Master::Subtree(*kind, left)),
-            Of::Step { fertile } => (Far::of_length(1.0), Master::Step(*fertile)),
-            Of::Polygon(vertices) => {
-                let number = self.outline(vertices);
-                (Far::of_length(1.0), Master::Polygon(number))
-            }
+            Of::Step { fertile } => (one, Master::Step(*fertile)),
+            Of::Polygon(vertices) => (one, Master::Body(self.outline(vertices))),
+            Of::Surface(number) => (one, Master::Body(self.surface(*number))),
         };
-        let frame: Frame2 = part.pose.frame(self.effects.compass, steps, unit);
-        let paint = Paint::of(&self.effects.system, part.attributes, colour);
-        let object = self.object(ObjectKey { of, paint })?;
-        Ok(Instance {
-            corners: None,
-            joined: part.joined,
-            ..Instance::new(object, frame, part.position)
-        })
+        let effects = self.effects;
+        let frame: F = part.pose.frame(effects.compass, steps, unit);
+        let attributes = match self.tube {
+            // Tubes have their widths.
+            Some(_) => StrokeAttributes {
+                width: StrokeAttributes::SAME.width,
+                ..part.attributes
+            },
+            None => part.attributes,
+        };
+        let mut key = ObjectKey {
+            of,
+            paint: Paint::of(effects.words(), attributes, worn.colour),
+            worn: Worn::START,
+        };
+        let mut push = |object: usize, frame: F, joined: bool| {
+            instances.push(Instance {
+                joined,
+                ..Instance::new(object, frame, part.position)
+            });
+        };
+        match (&part.of, self.tube) {
+            (Of::Subtree(..), Some(_)) => key.worn = worn.inside(part),
+            (Of::Step { .. }, Some(tube)) => {
+                for (piece, stretch) in tube.parts(&worn.line(part)) {
+                    key.of = Master::Body(self.tube_part(tube, piece));
+                    let object = self.object(key)?;
+                    push(object, frame.stretched(stretch), false);
+                }
+                return Ok(());
+            }
+            _ => {}
+        }
+        key.worn.colour = key.paint.colour;
+        push(self.object(key)?, frame, part.joined);
+        Ok(())
     }
 
     /// Returns the number of an object, which is created if it is new.
     fn object(&mut self, key: ObjectKey) -> Result<usize, NotCompiled> {
         let (shelf, first) = match key.of {
             Master::Subtree(..) => (0, 0),
-            Master::Step(_) | Master::Polygon(_) => (1, LEAVES),
+            Master::Step(_) | Master::Body(_) => (1, LEAVES),
         };
         let made = self.keys[shelf].len();
         let number = *self.numbers[shelf].entry(key).or_insert(made);
@@ -239,30 +305,49 @@ impl Leveller<'_> {
     }
 
     /// Returns the base element of a polygon, which is created if it is new.
-    fn outline(&mut self, vertices: &[DVec2]) -> usize {
+    fn outline(&mut self, vertices: &[F::Point]) -> usize {
         let bits = vertices
             .iter()
-            .map(|vertex| vertex.to_array().map(f64::to_bits));
+            .map(|vertex| vertex.coordinates().map(f64::to_bits));
         let next = self.base_elements.len();
         let number = *self.outlines.entry(bits.collect()).or_insert(next);
         if number == next {
-            let pieces = vertices[1..].iter().copied().map(Piece::Line);
             // A polygon without extent is drawn as a line.
-            let outline = BaseElement::new(vertices[0], pieces.collect(), true);
-            let outline = outline.unwrap_or_else(BaseElement::line);
+            let outline = F::polygon(vertices).unwrap_or_else(F::line);
             self.base_elements.push(outline);
         }
         number
     }
 
-    fn finish(mut self, mut initiators: Vec<Chain>, steps: u32) -> (Graph, Vec<Written>) {
+    /// Returns the base element of a surface of the system, which is added if it is new.
+    fn surface(&mut self, number: usize) -> usize {
+        let next = self.base_elements.len();
+        let known = *self.surfaces.entry(number).or_insert(next);
+        if known == next {
+            let surfaces = F::surfaces(&self.effects.system);
+            self.base_elements.push(surfaces[number].clone());
+        }
+        known
+    }
+
+    /// Returns the base element of a part of a tube, which is created if it is new.
+    fn tube_part(&mut self, tube: Tube, part: TubePart) -> usize {
+        let next = self.base_elements.len();
+        let known = *self.tubes.entry(part).or_insert(next);
+        if known == next {
+            self.base_elements.push(F::tube_part(tube, part));
+        }
+        known
+    }
+
+    fn finish(mut self, mut initiators: Vec<Chain<F>>, steps: u32) -> Finished<F> {
         let count = self.keys[0].len();
         let number = |object: &mut usize| {
             if *object >= LEAVES {
                 *object = *object - LEAVES + count;
             }
         };
-        let renumber = |chain: &mut Chain| {
+        let renumber = |chain: &mut Chain<F>| {
             let instances = chain.instances.iter_mut();
             instances.for_each(|instance| number(&mut instance.object));
         };
@@ -282,20 +367,26 @@ impl Leveller<'_> {
         let replacements: BTreeMap<_, _> =
             made.map(|(key, made)| (key, replacement(made))).collect();
         let keys: Vec<ObjectKey> = self.keys.concat();
-        let system = &*self.effects.system;
+        let system = self.effects.words();
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());
         for key in keys {
             let (base_element, behaves, replacement) = match key.of {
                 Master::Subtree(kind, left) => {
-                    let replaced = (kind, left, key.paint.colour);
+                    let replaced = (kind, left, key.worn);
                     let replacement = replacements[&replaced].clone();
-                    let behaves = (Master::Subtree(kind, left), key.paint.colour);
+                    let behaves = (Master::Subtree(kind, left), key.worn);
                     (self.way(kind, left), behaves, replacement)
                 }
-                Master::Step(true) => (0, (key.of, 0), Replacement::Unresolved),
-                Master::Step(false) => (0, (Master::Step(false), 0), Replacement::Kept),
-                Master::Polygon(number) => (number, (Master::Step(false), 0), Replacement::Kept),
+                Master::Step(true) => (0, (key.of, Worn::START), Replacement::Unresolved),
+                Master::Step(false) | Master::Body(_) => {
+                    let kept = (Master::Step(false), Worn::START);
+                    let number = match key.of {
+                        Master::Body(number) => number,
+                        _ => 0,
+                    };
+                    (number, kept, Replacement::Kept)
+                }
             };
             let next = behaviours.len();
             objects.push(Object {
@@ -307,10 +398,11 @@ impl Leveller<'_> {
         let mut graph = Graph {
             depth: Some(steps),
             tints: system.has_colours(),
-            ..Graph::of(objects, self.base_elements, initiators)
+            affine: self.tube.is_some(),
+            ..Graph::of(objects, F::outlines(&self.base_elements), initiators)
         };
         graph.find_widths();
-        (graph, self.written)
+        (graph, self.base_elements, self.written)
     }
 
     /// Adds the base element that represents a kind until it is replaced: the line from the position of
@@ -325,13 +417,8 @@ impl Leveller<'_> {
         // A displacement within the rounding error has no direction.
         const SHORT: f64 = 1e-9;
         let end = ends.into_iter().find(|end| end.length() > SHORT);
-        let line = BaseElement::new(
-            DVec2::ZERO,
-            vec![Piece::Line(end.unwrap_or(DVec2::X))],
-            false,
-        );
-        self.base_elements
-            .push(line.unwrap_or_else(BaseElement::line));
+        let line = end.and_then(F::line_to).unwrap_or_else(F::line);
+        self.base_elements.push(line);
         self.base_elements.len() - 1
     }
 }

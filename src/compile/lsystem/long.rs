@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use dashu_int::IBig;
 
 use crate::expression::{Precision, leading};
-use crate::geometry::DVec2;
-use crate::lsystem::{Action, Compass};
+use crate::geometry::{DVec2, Frame2, Frame3};
+use crate::lsystem::{Action, Axis, Compass, TurtleFrame};
 
 use super::effects::{Effect, Effects};
 use super::far::Far;
@@ -59,6 +59,43 @@ impl Turtle {
     }
 }
 
+/// Frames of a turtle whose displacements are summed.
+pub(super) trait SummedFrame: TurtleFrame {
+    /// The sums.
+    type Sums: Sums<Self>;
+}
+
+impl SummedFrame for Frame2 {
+    type Sums = Displacements;
+}
+
+impl SummedFrame for Frame3 {
+    type Sums = ();
+}
+
+/// Displacements that are summed beside the effects, more precisely than in doubles.
+pub(super) trait Sums<F: TurtleFrame>: Sized {
+    /// Creates the displacements for no steps; `bits` is the precision of the sums, if they are not doubles.
+    fn new(compass: Compass, bits: Option<usize>) -> Self;
+
+    /// Returns the number of bits that is required instead, if too many have been lost.
+    fn too_few(&self) -> Option<usize>;
+
+    /// Advances to the effects of the next number of steps, and corrects their positions.
+    fn advance(&mut self, effects: &Effects<F>, left: u32, level: &mut [Option<Effect<F>>]);
+}
+
+/// Doubles suffice.
+impl<F: TurtleFrame> Sums<F> for () {
+    fn new(_: Compass, _: Option<usize>) {}
+
+    fn too_few(&self) -> Option<usize> {
+        None
+    }
+
+    fn advance(&mut self, _: &Effects<F>, _: u32, _: &mut [Option<Effect<F>>]) {}
+}
+
 /// Displacements of all kinds for the number of steps that has been processed.
 pub(super) struct Displacements {
     compass: Compass,
@@ -70,10 +107,8 @@ pub(super) struct Displacements {
     lost: [i32; 2],
 }
 
-impl Displacements {
-    /// Creates the displacements for no steps; `bits` is the precision of the sums, if they are not
-    /// doubles.
-    pub(super) fn new(compass: Compass, bits: Option<usize>) -> Self {
+impl Sums<Frame2> for Displacements {
+    fn new(compass: Compass, bits: Option<usize>) -> Self {
         Self {
             compass,
             precision: bits.map(Precision::new),
@@ -83,8 +118,7 @@ impl Displacements {
         }
     }
 
-    /// Returns the number of bits that is required instead, if too many have been lost.
-    pub(super) fn too_few(&self) -> Option<usize> {
+    fn too_few(&self) -> Option<usize> {
         let [double, long] = self.lost;
         let enough = match &self.precision {
             None => double <= MAX_LOST,
@@ -96,8 +130,7 @@ impl Displacements {
         (!enough).then_some(bits)
     }
 
-    /// Advances to the effects of the next number of steps, and corrects their positions.
-    pub(super) fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Effect>]) {
+    fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Effect>]) {
         let mut next = Vec::with_capacity(level.len());
         for (kind, effect) in level.iter_mut().enumerate() {
             let exact = effect.as_mut().filter(|effect| effect.is_exact);
@@ -109,7 +142,9 @@ impl Displacements {
         }
         self.known = next;
     }
+}
 
+impl Displacements {
     fn correct(&mut self, effect: &mut Effect, displacement: &Displacement) {
         if let Some(precision) = &self.precision {
             effect.state.pose.place = Far::of_long(&displacement.place, precision.bits());
@@ -178,8 +213,8 @@ impl Displacements {
                 self.go(turtle, &step);
             }
             Action::Turn(angle) => {
-                let turn = self.compass.of_degrees(angle.eval(arguments));
-                turtle.pose.turn(self.compass, turn);
+                let angle = angle.eval(arguments);
+                turtle.pose.turn(self.compass, Axis::Up, angle);
             }
             Action::Push => turtle
                 .saved
@@ -187,6 +222,8 @@ impl Displacements {
             Action::Pop => (turtle.pose, turtle.displacement) = turtle.saved.pop()?,
             Action::Reflect => turtle.pose.mirrored ^= true,
             Action::Scale(factor) => turtle.pose.scale *= factor.eval(arguments),
+            // The doubles know which branches are cut off.
+            Action::Cut => return None,
             _ => {}
         }
         Some(())

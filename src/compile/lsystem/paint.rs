@@ -1,5 +1,6 @@
 //! Colours and widths as parts of the identity of objects.
 
+use crate::geometry::Frame;
 use crate::graph::Object;
 use crate::instancing::Thickness;
 use crate::lsystem::LSystem;
@@ -34,7 +35,7 @@ impl Paint {
     }
 
     /// Returns an object with this paint that is never replaced.
-    pub(super) fn object(self, system: &LSystem, base_element: usize) -> Object {
+    pub(super) fn object<F: Frame>(self, system: &LSystem, base_element: usize) -> Object<F> {
         let palette = &system.metadata().style.palette;
         let width = f64::from_bits(self.thickness.0);
         Object {

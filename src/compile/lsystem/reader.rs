@@ -3,47 +3,50 @@
 use std::borrow::Cow;
 
 use crate::draws::Path;
-use crate::geometry::DVec2;
+use crate::geometry::{Frame2, Point as _};
 use crate::instancing::Thickness;
-use crate::lsystem::{Action, LSystem};
+use crate::lsystem::{Action, Axis, LSystem, TurtleFrame};
 
 use super::NotCompiled;
 use super::effects::{Effect, Effects, ModuleDrawing};
 use super::far::Far;
-use super::state::{Pose, Shade, StrokeAttributes, TurtleState};
+use super::state::{Joint, Pose, Shade, StrokeAttributes, Tip, TurtleState};
 
-/// Part of the drawing of a word.
+/// DrawnPart of the drawing of a word.
 #[derive(Clone, Debug)]
-pub(super) struct DrawnPart {
+pub(super) struct DrawnPart<F: TurtleFrame = Frame2> {
     /// Position of the module that draws it.
     pub(super) position: u32,
-    pub(super) of: Of,
+    pub(super) of: Of<F>,
     /// Pose of the turtle where it starts.
-    pub(super) pose: Pose,
+    pub(super) pose: Pose<F>,
     pub(super) attributes: StrokeAttributes,
+    pub(super) joint: Joint,
     /// Whether it continues the stroke of the part before, as far as the word determines this.
     pub(super) joined: bool,
 }
 
 /// Content of a part.
 #[derive(Clone, Debug)]
-pub(super) enum Of {
+pub(super) enum Of<F: TurtleFrame = Frame2> {
     /// Line of one step.
     Step {
         /// Whether the module is replaced in the next step.
         fertile: bool,
     },
     /// Polygon, by its vertices in steps.
-    Polygon(Vec<DVec2>),
+    Polygon(Vec<F::Point>),
+    /// Surface of the system, by number.
+    Surface(usize),
     /// Subtree of a kind.
-    Subtree(usize, ModuleDrawing),
+    Subtree(usize, ModuleDrawing<F>),
 }
 
-impl DrawnPart {
-    /// Returns a bound on the distance of its points from its start.
-    fn reach(&self) -> Far {
+impl<F: TurtleFrame> DrawnPart<F> {
+    /// Returns a bound on the distance of its points from its start, apart from those of surfaces.
+    fn reach(&self) -> Far<F::Point> {
         let steps = match &self.of {
-            Of::Step { .. } => Far::of_length(1.0),
+            Of::Step { .. } | Of::Surface(_) => Far::of_length(1.0),
             Of::Polygon(vertices) => {
                 let farthest = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
                 // A polygon without extent is drawn as a line.
@@ -55,10 +58,10 @@ impl DrawnPart {
     }
 }
 
-/// Open polygon.
-struct OpenPolygon {
-    state: TurtleState,
-    vertices: Vec<Far>,
+/// OpenPolygon polygon.
+struct OpenPolygon<F: TurtleFrame> {
+    state: TurtleState<F>,
+    vertices: Vec<Far<F::Point>>,
 }
 
 /// Limit of the number of vertices of polygons.
@@ -68,16 +71,18 @@ const MAX_VERTICES: usize = 1 << 16;
 const DEEPEST: u32 = 1000;
 
 /// Interpreter of a word.
-pub(super) struct Reader<'e> {
-    effects: &'e Effects,
+pub(super) struct Reader<'e, F: TurtleFrame = Frame2> {
+    effects: &'e Effects<F>,
     /// Whether the drawing is that of one path; otherwise it bounds those of all paths.
     draws: bool,
-    /// State of the turtle relative to the beginning of the word.
-    pub(super) state: TurtleState,
-    saved: Vec<TurtleState>,
-    open: Vec<OpenPolygon>,
+    /// TurtleState of the turtle relative to the beginning of the word.
+    pub(super) state: TurtleState<F>,
+    saved: Vec<TurtleState<F>>,
+    open: Vec<OpenPolygon<F>>,
+    /// The number of states that were saved where the branch was cut off, if it was.
+    cut: Option<usize>,
     vertices: usize,
-    pub(super) parts: Vec<DrawnPart>,
+    pub(super) parts: Vec<DrawnPart<F>>,
     /// Whether the pen has stayed down since the last part or, before the first, since the beginning.
     down: bool,
     /// Attributes of the first line.
@@ -96,8 +101,8 @@ pub(super) struct Reader<'e> {
     work: u64,
 }
 
-impl<'e> Reader<'e> {
-    pub(super) fn new(effects: &'e Effects, state: TurtleState, draws: bool) -> Self {
+impl<'e, F: TurtleFrame> Reader<'e, F> {
+    pub(super) fn new(effects: &'e Effects<F>, state: TurtleState<F>, draws: bool) -> Self {
         Self {
             effects,
             draws,
@@ -108,6 +113,7 @@ impl<'e> Reader<'e> {
             state,
             saved: Vec::new(),
             open: Vec::new(),
+            cut: None,
             vertices: 0,
             parts: Vec::new(),
             down: true,
@@ -149,9 +155,12 @@ impl<'e> Reader<'e> {
         let of = &effects.kinds.all[kind];
         self.work = self.work.saturating_add(1);
         if left == 0 || !of.is_fertile() {
-            let meaning = &effects.system.symbols()[of.symbol].meaning;
+            let meaning = &effects.words().symbols()[of.symbol].meaning;
             let mut actions = meaning.iter();
             return actions.try_for_each(|action| {
+                if !self.stays(action)? {
+                    return Ok(());
+                }
                 self.act(
                     action,
                     &of.arguments,
@@ -159,6 +168,9 @@ impl<'e> Reader<'e> {
                     position,
                 )
             });
+        }
+        if self.cut.is_some() {
+            return Ok(());
         }
         if self.open.is_empty() {
             let known = effects.of(kind, left)?;
@@ -181,7 +193,28 @@ impl<'e> Reader<'e> {
         Ok(())
     }
 
-    fn subtree(&mut self, kind: usize, effect: &Effect, position: u32) {
+    /// Returns whether an action belongs to no branch that is cut off. The closing bracket of such a branch ends it.
+    fn stays(&mut self, action: &Action) -> Result<bool, NotCompiled> {
+        let Some(depth) = self.cut else {
+            return Ok(true);
+        };
+        match action {
+            Action::Push => self.saved.push(self.state),
+            Action::Pop if self.saved.len() == depth => {
+                self.cut = None;
+                return Ok(true);
+            }
+            Action::Pop => {
+                self.saved.pop();
+            }
+            // A polygon that is cut off stays open.
+            Action::Close if !self.open.is_empty() => return Err(NotCompiled),
+            _ => {}
+        }
+        Ok(false)
+    }
+
+    fn subtree(&mut self, kind: usize, effect: &Effect<F>, position: u32) {
         let state = self.state;
         self.is_exact &= effect.is_exact;
         if !effect.is_exact {
@@ -195,10 +228,13 @@ impl<'e> Reader<'e> {
             self.down = false;
         }
         self.state = state.then(self.effects.compass, &effect.state);
+        if effect.cuts {
+            self.cut = Some(self.saved.len());
+        }
     }
 
     /// Adds a part from a state; `first` holds the attributes of its first line.
-    fn part(&mut self, of: Of, state: TurtleState, first: StrokeAttributes, position: u32) {
+    fn part(&mut self, of: Of<F>, state: TurtleState<F>, first: StrokeAttributes, position: u32) {
         let attributes = state.attributes.then(first);
         let alike = self.parts.is_empty() || self.last == attributes;
         if self.parts.is_empty() {
@@ -210,6 +246,7 @@ impl<'e> Reader<'e> {
             of,
             pose: state.pose,
             attributes: state.attributes,
+            joint: state.joint,
             joined: self.down && alike && !self.parts.is_empty(),
         });
         self.down = true;
@@ -235,7 +272,11 @@ impl<'e> Reader<'e> {
         position: u32,
     ) -> Result<(), NotCompiled> {
         let compass = self.effects.compass;
-        let TurtleState { pose, attributes } = &mut self.state;
+        let TurtleState {
+            pose,
+            attributes,
+            joint,
+        } = &mut self.state;
         let changed = |width, colour| StrokeAttributes { width, colour };
         let StrokeAttributes { width, colour } = StrokeAttributes::SAME;
         match action {
@@ -244,11 +285,16 @@ impl<'e> Reader<'e> {
                 let mut state = self.state;
                 self.state.pose.go(compass, steps);
                 if !self.open.is_empty() {
+                    self.state.joint.tip = Tip::Free;
                     return self.vertex();
                 }
                 state.pose.scale *= steps;
                 if state.pose.scale != 0.0 {
                     self.is_sure = true;
+                    self.state.joint = Joint {
+                        tip: Tip::Ends(state.attributes.width),
+                        bent: Some(false),
+                    };
                     self.part(
                         Of::Step { fertile },
                         state,
@@ -259,17 +305,24 @@ impl<'e> Reader<'e> {
             }
             Action::Move(steps) => {
                 pose.go(compass, steps.eval(arguments));
+                joint.tip = Tip::Free;
                 self.vertex()?;
                 self.down = false;
             }
             Action::Glide(steps) => {
                 pose.go(compass, steps.eval(arguments));
+                joint.tip = Tip::Free;
                 self.down = false;
             }
-            Action::Turn(angle) => pose.turn(compass, compass.of_degrees(angle.eval(arguments))),
+            Action::Turn(angle) => self.turn(Axis::Up, angle.eval(arguments)),
+            Action::Pitch(angle) => self.turn(Axis::Left, angle.eval(arguments)),
+            Action::Roll(angle) => self.turn(Axis::Heading, angle.eval(arguments)),
             // `Kinds::of` rejects systems with these actions.
-            Action::Rotate(_) | Action::Swap => return Err(NotCompiled),
-            Action::Push => self.saved.push(self.state),
+            Action::Rotate(_) | Action::Swap | Action::Level => return Err(NotCompiled),
+            Action::Push => {
+                self.saved.push(self.state);
+                self.state.joint.tip = Tip::Free;
+            }
             Action::Pop => {
                 self.state = self.saved.pop().ok_or(NotCompiled)?;
                 self.down = false;
@@ -301,11 +354,35 @@ impl<'e> Reader<'e> {
                 self.close(&open, position);
             }
             Action::Vertex => self.vertex()?,
+            Action::Surface(number, size) => {
+                let mut state = self.state;
+                state.pose.scale *= size.eval(arguments);
+                if state.pose.scale != 0.0 {
+                    self.is_sure = true;
+                    self.part(
+                        Of::Surface(*number),
+                        state,
+                        StrokeAttributes::SAME,
+                        position,
+                    );
+                    self.down = false;
+                }
+            }
+            Action::Cut => self.cut = Some(self.saved.len()),
         }
         Ok(())
     }
 
-    fn close(&mut self, open: &OpenPolygon, position: u32) {
+    /// Turns about an axis by an angle in degrees.
+    fn turn(&mut self, axis: Axis, angle: f64) {
+        self.state.pose.turn(self.effects.compass, axis, angle);
+        // A roll leaves a line straight.
+        if axis != Axis::Heading && angle != 0.0 {
+            self.state.joint.bent = Some(true);
+        }
+    }
+
+    fn close(&mut self, open: &OpenPolygon<F>, position: u32) {
         let OpenPolygon { state, vertices } = open;
         if vertices.len() < 3 || state.pose.scale == 0.0 {
             return;
@@ -325,7 +402,7 @@ impl<'e> Reader<'e> {
     }
 
     /// Returns the effect of the modules that have been read.
-    pub(super) fn effect(&self) -> Result<Effect, NotCompiled> {
+    pub(super) fn effect(&self) -> Result<Effect<F>, NotCompiled> {
         let reached = self.parts.iter().map(|part| {
             let reach = part.reach();
             (part.pose.away().plus(reach), part)
@@ -345,7 +422,7 @@ impl<'e> Reader<'e> {
             }
         });
         let pose = &self.state.pose;
-        let finite = |reach: Far| reach.is_finite() && !reach.is_zero();
+        let finite = |reach: Far<F::Point>| reach.is_finite() && !reach.is_zero();
         let is_known = pose.place.is_finite()
             && pose.scale.is_finite()
             && drawn.as_ref().is_none_or(|drawn| finite(drawn.reach));
@@ -355,6 +432,7 @@ impl<'e> Reader<'e> {
         Ok(Effect {
             state: self.state,
             lifts: !self.down,
+            cuts: self.cut.is_some(),
             drawn,
             is_exact: self.is_exact,
             is_sure: self.is_sure || self.parts.is_empty(),

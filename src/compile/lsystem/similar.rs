@@ -13,7 +13,7 @@ use crate::rule::BaseElement;
 use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
-use super::long::{Displacements, Vector};
+use super::long::{Displacements, Sums as _, Vector};
 use super::paint::Paint;
 use super::reader::{DrawnPart, Of, Reader};
 use super::state::{Pose, StrokeAttributes, TurtleState};
@@ -95,7 +95,7 @@ type Objects = BTreeMap<ObjectKey, usize>;
 /// Limit of the number of objects.
 const MAX_OBJECTS: usize = 1 << 12;
 
-/// State of the turtle after each replaced kind at one number of steps, with the displacement relative to the
+/// TurtleState of the turtle after each replaced kind at one number of steps, with the displacement relative to the
 /// longest.
 #[derive(Debug)]
 struct Stage {
@@ -273,7 +273,7 @@ impl Edges {
                 let effect = self.effects.of(kind, left)?;
                 pose = pose.then(compass, &effect.state.pose);
             }
-            Of::Polygon(_) => return Err(NotCompiled),
+            Of::Polygon(_) | Of::Surface(_) => return Err(NotCompiled),
         }
         Ok(pose.place)
     }

@@ -1,22 +1,22 @@
 //! States of the turtle relative to an earlier state.
 
-use crate::geometry::{DAffine2, DMat2, DVec2, Direction, Frame2};
+use crate::geometry::{Frame2, Point as _};
 use crate::instancing::Thickness;
-use crate::lsystem::Compass;
+use crate::lsystem::{Axis, Compass, TurtleFrame};
 
 use super::far::Far;
 
 /// Pose of the turtle relative to an earlier one: in its steps, with its former heading along the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pose {
-    pub(super) place: Far,
-    /// Heading in units of the compass: exact.
-    pub(super) heading: u64,
+pub(super) struct Pose<F: TurtleFrame = Frame2> {
+    pub(super) place: Far<F::Point>,
+    /// Heading: exact in the plane.
+    pub(super) heading: F::Heading,
     pub(super) mirrored: bool,
     /// Length of its steps relative to the former length; negative if they go backwards.
     pub(super) scale: f64,
     /// Bound on the distance that it has covered.
-    pub(super) way: Far,
+    pub(super) way: Far<F::Point>,
     /// Whether draws leave position and heading unknown: only the bound holds then.
     pub(super) is_rough: bool,
 }
@@ -37,17 +37,37 @@ pub(super) enum Shade {
     Set(i64),
 }
 
-/// Pose and stroke attributes of the turtle.
+/// Beginning of the next tube relative to an earlier state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TurtleState {
-    pub(super) pose: Pose,
-    pub(super) attributes: StrokeAttributes,
+pub(super) struct Joint {
+    pub(super) tip: Tip,
+    /// Whether the turtle has turned since the last line; `None` if as before.
+    pub(super) bent: Option<bool>,
 }
 
-impl Pose {
+/// Width at the end of the line that ends where the turtle is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Tip {
+    /// As before.
+    Kept,
+    /// No line of the branch ends there.
+    Free,
+    /// Width relative to the earlier one.
+    Ends(Thickness),
+}
+
+/// Pose and stroke attributes of the turtle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TurtleState<F: TurtleFrame = Frame2> {
+    pub(super) pose: Pose<F>,
+    pub(super) attributes: StrokeAttributes,
+    pub(super) joint: Joint,
+}
+
+impl<F: TurtleFrame> Pose<F> {
     const START: Self = Self {
         place: Far::ZERO,
-        heading: 0,
+        heading: F::AHEAD,
         mirrored: false,
         scale: 1.0,
         way: Far::ZERO,
@@ -61,21 +81,19 @@ impl Pose {
     }
 
     /// Converts a vector from the turtle's coordinates to those of the earlier pose, without scaling.
-    fn turned(&self, compass: Compass, vector: Far) -> Far {
-        let along = compass.direction(self.heading);
-        let mirrored = self.mirrored;
-        vector.turned(|v| along.rotate(if mirrored { DVec2::new(v.x, -v.y) } else { v }))
+    fn turned(&self, compass: Compass, vector: Far<F::Point>) -> Far<F::Point> {
+        vector.turned(|v| F::outward(compass, self.heading, self.mirrored, v))
     }
 
     /// Moves a number of steps ahead.
     pub(super) fn go(&mut self, compass: Compass, steps: f64) {
-        let ahead = Far::new(DVec2::X).times(steps).times(self.scale);
+        let ahead = Far::new(F::Point::AXES[0]).times(steps).times(self.scale);
         self.place = self.place.plus(self.turned(compass, ahead));
         self.way = self.way.plus(ahead.length());
     }
 
     /// Returns a bound on the distance from the start.
-    pub(super) fn away(&self) -> Far {
+    pub(super) fn away(&self) -> Far<F::Point> {
         if self.is_rough {
             self.way
         } else {
@@ -83,21 +101,20 @@ impl Pose {
         }
     }
 
-    /// Turns by units of the compass, counter-clockwise unless mirrored.
-    pub(super) fn turn(&mut self, compass: Compass, turn: u64) {
-        let turn = if self.mirrored {
-            compass.back(turn)
-        } else {
-            turn
-        };
-        self.heading = compass.sum(self.heading, turn);
+    /// Turns about an axis by an angle in degrees.
+    pub(super) fn turn(&mut self, compass: Compass, axis: Axis, angle: f64) {
+        self.turn_by(compass, F::turn(compass, axis, angle));
+    }
+
+    fn turn_by(&mut self, compass: Compass, turn: F::Heading) {
+        self.heading = F::after_turn(compass, self.heading, turn, self.mirrored);
     }
 
     /// Composes the pose with another relative to it.
     pub(super) fn then(mut self, compass: Compass, next: &Self) -> Self {
         let way = self.turned(compass, next.place.times(self.scale));
         self.place = self.place.plus(way);
-        self.turn(compass, next.heading);
+        self.turn_by(compass, next.heading);
         self.mirrored ^= next.mirrored;
         self.way = self.way.plus(next.away().times(self.scale).length());
         self.is_rough |= next.is_rough;
@@ -106,30 +123,17 @@ impl Pose {
     }
 
     /// Returns a position in the coordinates of the turtle, in its steps.
-    pub(super) fn seen(&self, compass: Compass, place: Far) -> DVec2 {
-        let along = compass.direction(self.heading);
-        let back = DVec2::new(along.x, -along.y);
+    pub(super) fn seen(&self, compass: Compass, place: Far<F::Point>) -> F::Point {
         let from = place.plus(self.place.times(-1.0));
         let v = from.over(Far::of_length(self.scale)) * self.scale.signum();
-        let v = back.rotate(v);
-        if self.mirrored {
-            DVec2::new(v.x, -v.y)
-        } else {
-            v
-        }
+        F::inward(compass, self.heading, self.mirrored, v)
     }
 
     /// Returns the frame, in multiples of `unit`, of an object at this pose whose length is `steps`.
-    pub(super) fn frame(&self, compass: Compass, steps: Far, unit: Far) -> Frame2 {
-        let x_axis = self.turned(compass, steps.times(self.scale)).over(unit);
-        let (y_axis, direction) = if self.mirrored {
-            (-x_axis.perp(), Direction::YReflected)
-        } else {
-            (x_axis.perp(), Direction::Normal)
-        };
-        let matrix = DMat2::from_cols(x_axis, y_axis);
-        let map = DAffine2::from_mat2_translation(matrix, self.place.over(unit));
-        Frame2::new(map, direction)
+    pub(super) fn frame(&self, compass: Compass, steps: Far<F::Point>, unit: Far<F::Point>) -> F {
+        let along = self.turned(compass, steps.times(self.scale)).over(unit);
+        let place = self.place.over(unit);
+        F::along(compass, self.heading, self.mirrored, place, along)
     }
 }
 
@@ -148,11 +152,7 @@ impl StrokeAttributes {
 
     /// Composes the attributes with others relative to them.
     pub(super) fn then(self, next: Self) -> Self {
-        let width = match (self.width, next.width) {
-            (Thickness::Times(a), Thickness::Times(b)) => Thickness::Times(a * b),
-            (Thickness::Set(a), Thickness::Times(b)) => Thickness::Set(a * b),
-            (_, set) => set,
-        };
+        let width = composed(self.width, next.width);
         let colour = match (self.colour, next.colour) {
             (Shade::Shifted(a), Shade::Shifted(b)) => Shade::Shifted(a.saturating_add(b)),
             (Shade::Set(a), Shade::Shifted(b)) => Shade::Set(a.saturating_add(b)),
@@ -172,11 +172,47 @@ impl Shade {
     }
 }
 
-impl TurtleState {
+impl Joint {
+    /// Identity: as before.
+    const SAME: Self = Self {
+        tip: Tip::Kept,
+        bent: None,
+    };
+
+    /// Joint of the turtle at the start.
+    pub(super) const START: Self = Self {
+        tip: Tip::Free,
+        bent: Some(false),
+    };
+
+    /// Composes the joint, where the turtle has a width, with another relative to it.
+    fn then(self, width: Thickness, next: Self) -> Self {
+        Self {
+            tip: match next.tip {
+                Tip::Kept => self.tip,
+                Tip::Free => Tip::Free,
+                Tip::Ends(end) => Tip::Ends(composed(width, end)),
+            },
+            bent: next.bent.or(self.bent),
+        }
+    }
+}
+
+/// Composes a change of width with another relative to it.
+fn composed(first: Thickness, next: Thickness) -> Thickness {
+    match (first, next) {
+        (Thickness::Times(a), Thickness::Times(b)) => Thickness::Times(a * b),
+        (Thickness::Set(a), Thickness::Times(b)) => Thickness::Set(a * b),
+        (_, set) => set,
+    }
+}
+
+impl<F: TurtleFrame> TurtleState<F> {
     /// Identity: pose and attributes are unchanged.
     pub(super) const SAME: Self = Self {
         pose: Pose::START,
         attributes: StrokeAttributes::SAME,
+        joint: Joint::SAME,
     };
 
     /// Composes the state with another relative to it.
@@ -184,6 +220,7 @@ impl TurtleState {
         Self {
             pose: self.pose.then(compass, &next.pose),
             attributes: self.attributes.then(next.attributes),
+            joint: self.joint.then(self.attributes.width, next.joint),
         }
     }
 }

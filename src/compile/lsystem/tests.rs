@@ -8,7 +8,7 @@ use crate::count::Count;
 use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::extent::bounding_box;
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DVec2, Frame2};
 use crate::graph::Graph;
 use crate::grow::{Element, Growth, Visitor, walk};
 use crate::lsystem::LSystem;
@@ -234,7 +234,7 @@ fn library() {
         let name = &entry.name;
         counts[0] += usize::from(Graph::of_edges(&system).is_ok());
         let levels = |steps| {
-            let effects = Effects::of_system(&system, steps)?;
+            let effects = Effects::<Frame2>::of_system(&system, steps)?;
             Graph::of_levels(effects, steps)
         };
         let most = system.deepest(6, 1_000);
@@ -308,7 +308,7 @@ fn a_thousand_steps_are_exact() {
     assert!((ratio - 16.0).abs().max_element() < 1e-9, "{ratio}");
 
     let koch = system("angle: 360/7\naxiom: F\nproductions: {F: F+F--F+F+}\n");
-    let effects = Effects::of_system(&koch, 1000).unwrap();
+    let effects = Effects::<Frame2>::of_system(&koch, 1000).unwrap();
     let mut heading = 0;
     for left in 1..=1000 {
         heading = (4 * heading + 1) % 7;

@@ -3,8 +3,8 @@
 
 use crate::draws::Path;
 use crate::expression::Interval;
-use crate::geometry::Frame2;
 use crate::graph::{Alternative, Buffers, CompileError, Instance, Source, Successor};
+use crate::lsystem::TurtleFrame;
 use crate::rule::{ElementContext, Extent, Part};
 
 use super::effects::Effects;
@@ -14,11 +14,11 @@ use super::state::TurtleState;
 
 /// Word that may replace a kind with `left` steps left.
 #[derive(Debug)]
-pub(super) struct Written {
+pub(super) struct Written<F: TurtleFrame> {
     pub(super) kind: usize,
     pub(super) left: u32,
     /// Nominal length of the kind.
-    pub(super) unit: Far,
+    pub(super) unit: Far<F::Point>,
     /// Positions of all modules that may draw.
     pub(super) positions: Vec<u32>,
     /// Bounds on the drawing of each.
@@ -28,12 +28,12 @@ pub(super) struct Written {
 /// Words of an L-system by kind and number of steps left, with the effects that are required to read
 /// them.
 #[derive(Debug)]
-pub(super) struct Words {
-    pub(super) effects: Effects,
-    pub(super) written: Vec<Written>,
+pub(super) struct Words<F: TurtleFrame> {
+    pub(super) effects: Effects<F>,
+    pub(super) written: Vec<Written<F>>,
 }
 
-impl Words {
+impl<F: TurtleFrame> Words<F> {
     /// Returns bounds on the drawings of a word's modules.
     fn extents(&self, word: usize) -> &[Extent] {
         &self.written[word].extents
@@ -41,7 +41,7 @@ impl Words {
 
     /// Overwrites a production with the word that the draws of a path select among `words`, interpreted
     /// with the draws of the path.
-    fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Successor) {
+    fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Successor<F>) {
         production.seeds.clear();
         production.body.instances.clear();
         production.body.meets_frame = [false; 2];
@@ -63,7 +63,7 @@ impl Words {
             };
             let steps = match &part.of {
                 Of::Subtree(_, drawn) => drawn.size,
-                Of::Step { .. } | Of::Polygon(_) => Far::of_length(1.0),
+                Of::Step { .. } | Of::Polygon(_) | Of::Surface(_) => Far::of_length(1.0),
             };
             let frame = part.pose.frame(effects.compass, steps, written.unit);
             production.body.instances.push(Instance {
@@ -76,14 +76,14 @@ impl Words {
     }
 }
 
-impl Source<Frame2> for Words {
+impl<F: TurtleFrame> Source<F> for Words<F> {
     fn evaluate(
         &self,
         alternatives: &[Alternative],
         path: Path,
         _: &ElementContext,
-        _: &mut Buffers<Frame2>,
-        production: &mut Successor,
+        _: &mut Buffers<F>,
+        production: &mut Successor<F>,
     ) -> Result<(), CompileError> {
         self.evaluate(alternatives, path, production);
         Ok(())

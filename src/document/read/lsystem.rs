@@ -2,7 +2,10 @@
 
 use crate::catalogue::Shelf;
 use crate::document::MetadataDocument;
-use crate::document::lsystem::{LSystemDocument, ProductionDocument, WordDocument};
+use crate::document::lsystem::{
+    LSystemDocument, ProductionDocument, TropismDocument, WordDocument,
+};
+use crate::document::mapping::FromNode as _;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, key, keys};
@@ -10,8 +13,10 @@ use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
+use super::base_element::{BASE_ELEMENT_OF, BaseElementDocument};
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
+use super::space::{SPACE, read_space};
 use super::turtle::{MEANING, read_symbol};
 use super::word::{Text, WordReader};
 use super::{KindTable, OfKind};
@@ -25,11 +30,12 @@ const LSYSTEM: Shape = Shape {
 };
 
 /// Keys that only an L-system has.
-const LSYSTEM_ALONE: [Member; 11] = keys![
+const LSYSTEM_ALONE: [Member; 15] = keys![
     needed kind: Form::Words(&[Kind::LSystem.name()]), "The kind of file.";
     extends: Form::File(Shelf::LSYSTEMS),
         "Another L-system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
+    =SPACE;
     =PARAMS;
     alone axiom: Form::Text,
         "The word that all begins with: symbols, perhaps with arguments, such as `F` or `A(1, 10)`. \
@@ -41,8 +47,18 @@ const LSYSTEM_ALONE: [Member; 11] = keys![
             => "the L-system has no productions", "productions: {F: F+F--F+F}";
     angle: Form::Number,
         "By how much `+` turns counter-clockwise and `-` clockwise, in degrees; 90 if left out.";
-    heading: Form::Number,
-        "Where the turtle looks first, in degrees counter-clockwise; 0, to the right, if left out.";
+    heading: Form::Either(&[Form::Number, Form::Place]),
+        "Where the turtle looks first, in degrees counter-clockwise; 0, to the right, if left out. In space also a \
+         vector: `[0, 1, 0]` is upwards.";
+    up: Form::Place,
+        "In space, the direction that lies above the turtle's back, as far as it is across the heading; that after the \
+         least turn from [0, 0, 1], towards the viewer, if left out.";
+    tropism: Form::Mapping(&TROPISM),
+        "In space, what bends branches: after each line, the turtle turns by e·|H × T| radians about H × T, for its \
+         heading H and the vector T of `towards` (ABOP, section 2.3.3).";
+    surfaces: Form::Names(&BASE_ELEMENT_OF, 0),
+        "In space, surfaces that `~(NAME)` places along the heading, each of a step's length: base elements of the library, \
+         or written here. A name that is not listed is one of the library; `~(leaf, 2)` is two steps long.";
     length: Form::Positive, "The length of a step; 1 if left out.";
     thinning: Form::Positive, "What `!` multiplies widths by; 0.7 if left out.";
     symbols: Form::Names(&MEANING, 0),
@@ -79,6 +95,18 @@ const PRODUCTION: Shape = Shape {
     hint: "- \"F -> F[+F]F\", or - {production: \"F -> F[+F]F\", weight: 1/3}",
 };
 
+const TROPISM: Shape = Shape {
+    what: "a tropism",
+    keys: &[&keys![
+        needed towards: Form::Place, "The vector T; its length counts."
+            => "this tropism has no direction";
+        needed e: Form::Number, "The susceptibility to bending, in radians."
+            => "this tropism has no `e`";
+    ]],
+    alternatives: &[],
+    hint: "tropism: {towards: [0, -1, 0], e: 0.22}",
+};
+
 /// Help text for words that YAML does not read as text.
 const QUOTE: &str = "a word that begins with a bracket, or with another sign of YAML, needs quotes: \
                      F: \"[+F]F\"";
@@ -91,8 +119,37 @@ impl OfKind for LSystemDocument {
     };
 
     fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
-        let [angle, start, length, thinning] =
-            ["angle", "heading", "length", "thinning"].map(|key| fields.optional(reader, key));
+        let is_in_space = read_space(reader, fields);
+        reader.is_in_space = is_in_space;
+        for key in ["up", "tropism", "surfaces"] {
+            if !is_in_space && fields.take(key).is_some() {
+                let message = format!("`{key}` is known in space only");
+                let hint = "write `space: 3` at the top";
+                reader.error_with_hint(fields.place_of(key), message, hint);
+            }
+        }
+        let heading_node = fields.take("heading");
+        let vector = heading_node.filter(|node| matches!(node.value, Value::Sequence(_)));
+        if let Some(node) = vector.filter(|_| !is_in_space) {
+            let message = "in the plane, a heading is an angle";
+            reader.error_with_hint(&node.place, message, "heading: 90");
+        }
+        let start_vector = vector.map(|node| Box::new(reader.point(node)));
+        let start = match vector {
+            Some(_) => None,
+            None => heading_node.map(|node| reader.number(node)),
+        };
+        let up = fields.take("up").map(|node| Box::new(reader.point(node)));
+        let tropism = fields.take("tropism").and_then(|node| {
+            let fields = reader.fields(node, &TROPISM)?;
+            Some(Box::new(TropismDocument {
+                towards: reader.point(fields.take("towards")?),
+                susceptibility: reader.number(fields.take("e")?),
+            }))
+        });
+        let surfaces = read_surfaces(reader, fields);
+        let [angle, length, thinning] =
+            ["angle", "length", "thinning"].map(|key| fields.optional(reader, key));
         let mut words = WordReader::new(reader);
         let axiom = fields.take("axiom").and_then(|node| words.of(node));
         let productions = fields.take("productions");
@@ -108,10 +165,16 @@ impl OfKind for LSystemDocument {
         let symbols = symbols.collect();
         let ignored = fields.take("ignore").and_then(|node| words.of(node));
         let ignored = ignored.into_iter().flat_map(|word| word.modules);
+        (reader.is_in_space, reader.may_lie_in_space) = (false, false);
         Self {
             metadata,
+            is_in_space,
             angle,
             start,
+            start_vector,
+            up,
+            tropism,
+            surfaces,
             length,
             thinning,
             axiom,
@@ -120,6 +183,28 @@ impl OfKind for LSystemDocument {
             ignored: ignored.map(|module| module.character).collect(),
         }
     }
+}
+
+fn read_surfaces(
+    reader: &mut Reader,
+    fields: &Fields<'_>,
+) -> Vec<(Written<String>, BaseElementDocument)> {
+    let Some(node) = fields.take("surfaces") else {
+        return Vec::new();
+    };
+    let hint =
+        "surfaces: {leaf: leaf, petal: {points: [[0, 0], [1/2, 1/4], [1, 0]], closed: true}}";
+    let entries = reader.entries(node, "a mapping of names to base elements", hint);
+    let mut surfaces = Vec::new();
+    for (key, node) in entries.unwrap_or_default() {
+        let name = Written {
+            value: key.name.clone(),
+            place: key.place.clone(),
+        };
+        let surface = BaseElementDocument::from_node(reader, node);
+        surfaces.extend(surface.map(|surface| (name, surface)));
+    }
+    surfaces
 }
 
 fn read_productions(words: &mut WordReader<'_>, node: &Node) -> Vec<ProductionDocument> {

@@ -3,14 +3,19 @@
 use crate::diagnostic::did_you_mean;
 use crate::document::lsystem::{ActionDocument, SymbolDocument};
 use crate::document::node::{Key, Node, Value};
+use crate::document::reader::Reader;
 use crate::document::shape::{Form, Shape, keys};
 
 use super::word::{Text, WordReader};
 
 /// Actions without a number.
-const WORDS: [&str; 11] = [
-    "draw", "move", "glide", "push", "pop", "reflect", "swap", "open", "close", "vertex", "nothing",
+const WORDS: [&str; 13] = [
+    "draw", "move", "glide", "push", "pop", "reflect", "swap", "open", "close", "vertex", "cut",
+    "level", "nothing",
 ];
+
+/// Actions that a turtle of the plane does not know.
+const IN_SPACE: [&str; 3] = ["pitch", "roll", "level"];
 
 /// An action, or a list of actions.
 pub(super) const MEANING: Form = Form::Either(&[ONE, Form::List(&ONE, 0, None)]);
@@ -26,6 +31,9 @@ const ACTION: Shape = Shape {
         turn: Form::Number, "Turns by so many degrees, counter-clockwise.";
         rotate: Form::Number,
             "Turns by so many degrees, counter-clockwise also where turns are reflected.";
+        pitch: Form::Number,
+            "In space, turns about the direction to the left by so many degrees: down.";
+        roll: Form::Number, "In space, turns about the heading by so many degrees.";
         scale: Form::Number, "Multiplies the length of all steps from here on.";
         width: Form::Positive, "Multiplies the width of lines from here on.";
         set_width: Form::Positive, "Sets the width, as a multiple of the file's.";
@@ -64,6 +72,16 @@ pub(super) fn read_symbol(
     })
 }
 
+/// Returns whether the turtle knows an action. Reports one of space in the plane.
+fn check_space(reader: &mut Reader, name: &str, node: &Node) -> bool {
+    let is_known = reader.is_in_space || !IN_SPACE.contains(&name);
+    if !is_known {
+        let message = format!("`{name}` needs space, and the turtle lives in the plane");
+        reader.error_with_hint(&node.place, message, "write `space: 3` at the top");
+    }
+    is_known
+}
+
 fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<ActionDocument>) {
     let reader = &mut *words.reader;
     let Value::Text(name) = &node.value else {
@@ -71,6 +89,9 @@ fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<Action
             return;
         };
         for (name, node) in fields.in_order() {
+            if !check_space(reader, name, node) {
+                continue;
+            }
             let number = reader.number(node);
             actions.push(match name {
                 "draw" => ActionDocument::Draw(Some(number)),
@@ -78,6 +99,8 @@ fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<Action
                 "glide" => ActionDocument::Glide(Some(number)),
                 "turn" => ActionDocument::Turn(number),
                 "rotate" => ActionDocument::Rotate(number),
+                "pitch" => ActionDocument::Pitch(number),
+                "roll" => ActionDocument::Roll(number),
                 "scale" => ActionDocument::Scale(number),
                 "width" => ActionDocument::Width(number),
                 "set_width" => ActionDocument::SetWidth(number),
@@ -87,6 +110,9 @@ fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<Action
         }
         return;
     };
+    if !check_space(reader, name, node) {
+        return;
+    }
     actions.push(match name.as_str() {
         "draw" => ActionDocument::Draw(None),
         "move" => ActionDocument::Move(None),
@@ -98,6 +124,8 @@ fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<Action
         "open" => ActionDocument::Open,
         "close" => ActionDocument::Close,
         "vertex" => ActionDocument::Vertex,
+        "cut" => ActionDocument::Cut,
+        "level" => ActionDocument::Level,
         "nothing" => return,
         name => {
             let mut numbered = ACTION.members();

@@ -1,5 +1,6 @@
 //! The turtle's interpretation of symbols.
 
+use crate::diagnostic::did_you_mean;
 use crate::document::{ActionDocument, ModuleDocument, SymbolDocument, WrittenNumber};
 use crate::expression::{Program, Scope};
 use crate::lsystem::{Action, Symbol};
@@ -10,26 +11,38 @@ use super::{OfLSystem, of_argument};
 /// Symbols of turns in space (Prusinkiewicz and Lindenmayer 1990), which the plane turtle refuses.
 const SPACE: [char; 4] = ['&', '^', '\\', '/'];
 
+/// Symbol that places a surface.
+const PLACES: char = '~';
+
 impl Resolver<OfLSystem> {
     /// Returns the index of a module's symbol, which is added to the alphabet if it is new.
     pub(super) fn symbol(&mut self, module: &ModuleDocument) -> usize {
+        if let Some(name) = self.surface_of(module) {
+            return self.placing(module, name);
+        }
         let (character, arity) = (module.character, module.arguments.len());
         if let Some(&number) = self.kind.numbers.get(&(character, arity)) {
             return number;
         }
         let own = |arity| self.kind.own.get(&(character, arity)).cloned();
         let meaning = own(arity).or_else(|| own(0)).unwrap_or_else(|| {
-            let is_space = SPACE.contains(&character);
+            let is_space = !self.kind.is_in_space && SPACE.contains(&character);
             if is_space {
                 let message =
                     format!("'{character}' needs space, and the turtle lives in the plane");
-                let hint =
-                    format!("symbols: {{'{character}': {{turn: 30}}}} gives it another meaning");
+                let hint = format!(
+                    "write `space: 3` at the top, or give it another meaning: symbols: {{'{character}': {{turn: 30}}}}"
+                );
                 self.error_with_hint(&module.place, message, hint);
             }
             self.usual(character, arity)
         });
-        let number = self.kind.symbols.len();
+        let number = self.add_symbol(character, arity, meaning);
+        self.kind.numbers.insert((character, arity), number);
+        number
+    }
+
+    fn add_symbol(&mut self, character: char, arity: usize, meaning: Vec<Action>) -> usize {
         self.kind.symbols.push(Symbol {
             character,
             arity,
@@ -37,7 +50,49 @@ impl Resolver<OfLSystem> {
             ignored: false,
             productions: Vec::new(),
         });
-        self.kind.numbers.insert((character, arity), number);
+        self.kind.symbols.len() - 1
+    }
+
+    /// Returns the name of the surface that a module places: its first argument.
+    fn surface_of<'m>(&self, module: &'m ModuleDocument) -> Option<&'m WrittenNumber> {
+        let is_own = || { self.kind.own.keys() }.any(|(character, _)| *character == PLACES);
+        let is_placing = self.kind.is_in_space && module.character == PLACES && !is_own();
+        module.arguments.first().filter(|_| is_placing)
+    }
+
+    /// Returns the arguments of a module that are numbers.
+    pub(super) fn arguments<'m>(&self, module: &'m ModuleDocument) -> &'m [WrittenNumber] {
+        let names = usize::from(self.surface_of(module).is_some());
+        &module.arguments[names..]
+    }
+
+    /// Returns the index of the symbol that places a surface, which is added to the alphabet if it is new. An argument
+    /// after the name is the length in steps.
+    fn placing(&mut self, module: &ModuleDocument, name: &WrittenNumber) -> usize {
+        let written = name.place.text();
+        let known = self.kind.surfaces.iter().position(|known| known == written);
+        let arity = module.arguments.len() - 1;
+        if known.is_none() && !self.incomplete {
+            let message = format!("there is no surface '{written}'");
+            let names = self.kind.surfaces.iter().map(String::as_str);
+            let hint = did_you_mean(written, names).unwrap_or_else(|| {
+                "list it under `surfaces`, or name a base element of the library: ~(leaf)".into()
+            });
+            self.error_with_hint(&name.place, message, hint);
+        } else if arity > 1 {
+            let message = "a surface has a name, and perhaps a length in steps";
+            self.error_with_hint(&module.place, message, "~(leaf) or ~(leaf, 2)");
+        }
+        let surface = known.unwrap_or(0);
+        if let Some(&number) = self.kind.placing.get(&(surface, arity)) {
+            return number;
+        }
+        let size = match arity {
+            0 => Program::constant(1.0),
+            _ => of_argument("x"),
+        };
+        let number = self.add_symbol(PLACES, arity, vec![Action::Surface(surface, size)]);
+        self.kind.placing.insert((surface, arity), number);
         number
     }
 
@@ -55,6 +110,14 @@ impl Resolver<OfLSystem> {
             '+' => Action::Turn(argument_or(self.kind.angle)),
             '-' if has_argument => Action::Turn(of_argument("-x")),
             '-' => Action::Turn(constant(-self.kind.angle)),
+            '&' => Action::Pitch(argument_or(self.kind.angle)),
+            '^' if has_argument => Action::Pitch(of_argument("-x")),
+            '^' => Action::Pitch(constant(-self.kind.angle)),
+            '/' => Action::Roll(argument_or(self.kind.angle)),
+            '\\' if has_argument => Action::Roll(of_argument("-x")),
+            '\\' => Action::Roll(constant(-self.kind.angle)),
+            '$' if self.kind.is_in_space => Action::Level,
+            '%' => Action::Cut,
             '|' => Action::Turn(constant(180.0)),
             '[' => Action::Push,
             ']' => Action::Pop,
@@ -113,6 +176,10 @@ impl Resolver<OfLSystem> {
             ActionDocument::Glide(number) => Action::Glide(steps(number)),
             ActionDocument::Turn(number) => Action::Turn(self.program(number, scope)),
             ActionDocument::Rotate(number) => Action::Rotate(self.program(number, scope)),
+            ActionDocument::Pitch(number) => Action::Pitch(self.program(number, scope)),
+            ActionDocument::Roll(number) => Action::Roll(self.program(number, scope)),
+            ActionDocument::Level => Action::Level,
+            ActionDocument::Cut => Action::Cut,
             ActionDocument::Swap => Action::Swap,
             ActionDocument::Push => Action::Push,
             ActionDocument::Pop => Action::Pop,

@@ -86,7 +86,7 @@ impl Resolver<OfRule<Frame2>> {
     }
 }
 
-impl<F: ResolvedFrame> Resolver<OfRule<F>> {
+impl<K> Resolver<K> {
     /// Reports a base element whose `from` and `to` are one point.
     pub(super) fn report_no_base(&mut self, document: &BaseElementDocument) {
         let place = { document.from.as_ref().or(document.to.as_ref()) }.map(|point| &point.place);

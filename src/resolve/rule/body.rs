@@ -9,8 +9,6 @@ use crate::geometry::{
 use crate::resolve::{Resolver, whole_number};
 use crate::rule::{BaseElement, Body, Surface, newell};
 
-use super::OfRule;
-
 /// Number of chords of a curve of an outline in space.
 const CHORDS: u32 = 16;
 
@@ -32,12 +30,17 @@ struct Pieces {
     tube: Option<f64>,
 }
 
-impl Resolver<OfRule<Frame3>> {
-    /// Resolves a base element in space. Reports mistakes and returns `None`.
-    pub(super) fn body(&mut self, document: &BaseElementDocument) -> Option<Body> {
+impl<K> Resolver<K> {
+    /// Resolves a base element in space. Lines are tubes of a width, as a multiple of the element's length, if one is given.
+    /// Reports mistakes and returns `None`.
+    pub(in crate::resolve) fn body(
+        &mut self,
+        document: &BaseElementDocument,
+        tube: Option<f64>,
+    ) -> Option<Body> {
         let before = self.mistakes;
         let mut pieces = Pieces {
-            tube: self.tube(document),
+            tube: self.tube(document, tube),
             ..Pieces::default()
         };
         if document.pieces.is_some() {
@@ -98,13 +101,13 @@ impl Resolver<OfRule<Frame3>> {
         body
     }
 
-    /// Returns the width of lines, in the base element's own coordinates: its own, or that of the style.
-    fn tube(&mut self, document: &BaseElementDocument) -> Option<f64> {
+    /// Returns the width of lines, in the base element's own coordinates: its own, or that of a `tube`.
+    fn tube(&mut self, document: &BaseElementDocument, tube: Option<f64>) -> Option<f64> {
         let own = self.optional(document.width.as_ref()).flatten();
         if let Some(width) = own.filter(|_| document.lines.is_some()) {
             return Some(width).filter(|width| *width > 0.0);
         }
-        let width = self.kind.tube?;
+        let width = tube?;
         let from = self.constant_in_space(document.from.as_ref(), DVec3::ZERO)?;
         let to = self.constant_in_space(document.to.as_ref(), DVec3::X)?;
         Some(width * from.distance(to))

@@ -185,7 +185,7 @@ impl ResolvedFrame for Frame3 {
         resolver: &mut Resolver<OfRule<Self>>,
         document: &BaseElementDocument,
     ) -> Option<Body> {
-        resolver.body(document)
+        resolver.body(document, resolver.kind.tube)
     }
 }
 

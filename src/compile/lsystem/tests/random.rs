@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use crate::compile::lsystem::effects::Effects;
+use crate::geometry::Frame2;
 use crate::graph::Graph;
 
 use super::{assert_reported, assert_same, system};
@@ -67,7 +68,7 @@ proptest! {
     #[test]
     fn systems_draw_what_their_words_draw(text in text(false)) {
         let system = system(&text);
-        let effects = Effects::of_system(&system, 4).unwrap();
+        let effects = Effects::<Frame2>::of_system(&system, 4).unwrap();
         let graph = Graph::of_levels(effects, 4).unwrap();
         for steps in 0..=4 {
             if Graph::of_derived_word(&system, steps, 0, 2_000).is_ok() {
@@ -80,7 +81,7 @@ proptest! {
     #[test]
     fn drawn_systems_do_so_too(text in text(true), seed in 0u64..100) {
         let system = system(&text);
-        let Ok(graph) = Effects::of_system(&system, 4)
+        let Ok(graph) = Effects::<Frame2>::of_system(&system, 4)
             .and_then(|effects| Graph::of_levels(effects, 4)) else {
             return Ok(());
         };
