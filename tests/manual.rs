@@ -179,7 +179,7 @@ fn bash_completes() {
         ("kfrac grow koch --cap ''", "round butt square"),
         (
             "kfrac check hilbert-",
-            "hilbert-in-space hilbert-lsystem hilbert-cup",
+            "hilbert-in-space hilbert-lsystem hilbert-lsystem-in-space hilbert-cup",
         ),
         ("kfrac cat swaying-", "swaying-roof"),
         (

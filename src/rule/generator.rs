@@ -57,7 +57,7 @@ pub struct Move<F: RuleFrame = Frame2> {
     /// Numbers of the points that move; moves of equal points share the allocation.
     pub(crate) points: Arc<[usize]>,
     /// Numbers of the normals that move: those of elements both ends of which move.
-    pub(crate) normals: Vec<usize>,
+    pub(crate) normals: Arc<[usize]>,
 }
 
 impl<F: RuleFrame> Move<F> {

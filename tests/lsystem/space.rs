@@ -189,7 +189,7 @@ fn tropism_bends_by_its_formula() {
 /// Hilbert in space (ABOP, fig. 1.19): 8ⁿ cells, each visited once by unit steps.
 #[test]
 fn hilbert_visits_all_cells_of_a_cube_once() {
-    let model = of_library("hilbert-in-space");
+    let model = of_library("hilbert-lsystem-in-space");
     for steps in 1..=4 {
         let lines = frames(&model, steps);
         let cells = 8_usize.pow(steps);
@@ -231,7 +231,10 @@ fn the_trees_of_hart_have_their_lines_and_one_shape() {
         }
     }
     // Of far steps, too, no word is written down.
-    for (model, steps) in [(apices, 400), (of_library("hilbert-in-space"), 1000)] {
+    for (model, steps) in [
+        (apices, 400),
+        (of_library("hilbert-lsystem-in-space"), 1000),
+    ] {
         let graph = model.graph_in_space(steps).unwrap().unwrap();
         assert_eq!(graph.depth(), Some(steps));
     }
@@ -241,7 +244,7 @@ fn the_trees_of_hart_have_their_lines_and_one_shape() {
 #[test]
 fn compiled_systems_draw_what_the_word_does() {
     for name in [
-        "hilbert-in-space",
+        "hilbert-lsystem-in-space",
         "bush-in-space",
         "flowering-plant",
         "hart-tree-lsystem",
@@ -249,7 +252,7 @@ fn compiled_systems_draw_what_the_word_does() {
         "phyllotaxis-cone",
         "conifer",
         "umbel",
-        "dragon-in-space",
+        "dragon-lsystem-in-space",
         "spiral-stair",
     ] {
         let compiled = of_library(name);
@@ -358,7 +361,7 @@ fn polygons_need_not_be_flat() {
         let graph = drawn.unwrap().unwrap().graph;
         let elements = Elements::of(&graph, &Growth::steps(0));
         let solid = |object: usize| &graph.base_elements()[graph.objects()[object].base_element];
-        let areas = elements.map(|it| solid(it.unwrap().1.object).signed_area() / 2.0);
+        let areas = elements.map(|it| solid(it.unwrap().1.object).signed_area());
         areas.collect::<Vec<_>>()
     };
     // A square, and a dart that is not convex.

@@ -201,8 +201,8 @@ fn read_surfaces(
             value: key.name.clone(),
             place: key.place.clone(),
         };
-        let surface = BaseElementDocument::from_node(reader, node);
-        surfaces.extend(surface.map(|surface| (name, surface)));
+        let surface = Box::<BaseElementDocument>::from_node(reader, node);
+        surfaces.extend(surface.map(|surface| (name, *surface)));
     }
     surfaces
 }

@@ -11,7 +11,7 @@ use crate::geometry::Point as _;
 use super::{OfRule, ResolvedFrame};
 use crate::resolve::Resolver;
 use crate::rule::{
-    Generator, ListedAttitude, ListedElement, Origin, Part, Placement, Selection, constant,
+    Generator, ListedAttitude, ListedElement, Move, Origin, Part, Placement, Selection, constant,
 };
 
 impl<F: ResolvedFrame> Resolver<OfRule<F>> {
@@ -79,10 +79,8 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         let mut moves = self.moves(document, &scope, written.len(), inner);
         let listed = parts.iter_mut().flat_map(|part| &mut part.elements);
         self.append_vectors(listed, &mut written);
-        for moving in &mut moves {
-            let elements = parts.iter().flat_map(|part| &part.elements);
-            moving.normals = normals_of(elements, &moving.points);
-        }
+        let elements = parts.iter().flat_map(|part| &part.elements);
+        move_normals(&mut moves, &normals_of(elements), written.len());
         let points: Vec<_> = written
             .iter()
             .map(|point| F::point_in(self, point, &scope))
@@ -175,23 +173,44 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     }
 }
 
-/// Returns the numbers of the normals of elements both ends of which are among some points.
-fn normals_of<'a>(
-    elements: impl Iterator<Item = &'a ListedElement>,
-    points: &[usize],
-) -> Vec<usize> {
-    let moves = |element: &&ListedElement| {
-        [element.from, element.to]
-            .iter()
-            .all(|end| points.contains(end))
-    };
-    let normals = elements
-        .filter(moves)
-        .filter_map(|element| match element.attitude {
-            ListedAttitude::Normal(number) => Some(number),
-            _ => None,
-        });
+/// Returns the normals of elements: the ends of the element, and the number of the normal.
+fn normals_of<'a>(elements: impl Iterator<Item = &'a ListedElement>) -> Vec<([usize; 2], usize)> {
+    let normals = elements.filter_map(|element| match element.attitude {
+        ListedAttitude::Normal(number) => Some(([element.from, element.to], number)),
+        _ => None,
+    });
     normals.collect()
+}
+
+/// Lets moves take the normals of the elements both ends of which they move. Moves that share a list of points share the
+/// list of normals.
+fn move_normals<F: ResolvedFrame>(
+    moves: &mut [Move<F>],
+    normals: &[([usize; 2], usize)],
+    points: usize,
+) {
+    if normals.is_empty() {
+        return;
+    }
+    let mut before: Option<&Move<F>> = None;
+    for moving in moves {
+        moving.normals = match before {
+            Some(before) if Arc::ptr_eq(&before.points, &moving.points) => {
+                Arc::clone(&before.normals)
+            }
+            _ => {
+                let mut moved = vec![false; points];
+                moving
+                    .points
+                    .iter()
+                    .for_each(|&number| moved[number] = true);
+                let normals = normals.iter();
+                let normals = normals.filter(|(ends, _)| ends.iter().all(|&end| moved[end]));
+                normals.map(|&(_, number)| number).collect()
+            }
+        };
+        before = Some(&*moving);
+    }
 }
 
 /// Returns whether the lengths along every cycle of generators have a product below 1, for every choice

@@ -166,7 +166,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             shift,
             about,
             points,
-            normals: Vec::new(),
+            normals: Arc::default(),
         }
     }
 }
