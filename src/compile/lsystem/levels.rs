@@ -35,7 +35,7 @@ const FARTHEST: f64 = 1e150;
 struct ObjectKey {
     of: Master,
     paint: Paint,
-    /// What tubes inherit.
+    /// State that tubes inherit from the line before.
     worn: Worn,
 }
 

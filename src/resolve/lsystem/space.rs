@@ -1,4 +1,4 @@
-//! What L-systems in space have beside those of the plane.
+//! Frames, tropism and surfaces of L-systems in space.
 
 use crate::document::{LSystemDocument, TropismDocument, WrittenPoint};
 use crate::expression::degrees;
