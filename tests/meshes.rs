@@ -170,7 +170,8 @@ fn shell_of_rule(name: &str, steps: u32) -> Read {
     read_obj(&bytes)
 }
 
-/// Koch surfaces stay closed: the faces around a bump replace the one below it. Their volumes have a closed form.
+/// Koch surfaces stay closed: the faces around a bump, or in a pit, replace the one between. Their fronts are outside, and
+/// their volumes have a closed form.
 #[test]
 fn koch_surfaces_are_closed() {
     // Regular tetrahedron of edge 1, and icosahedron.
@@ -214,7 +215,7 @@ fn koch_surfaces_are_closed() {
             let [volume, _] = sizes(&read);
             let expected = whole + bumps;
             assert!(
-                (volume.abs() - expected).abs() < 1e-4 * whole,
+                (volume - expected).abs() < 1e-4 * whole,
                 "{name} {steps}: {volume} {expected}"
             );
         }
@@ -291,6 +292,8 @@ fn faces_of_a_ply_have_the_colours_of_their_elements() {
     // Four maps of ten go to corners.
     assert_eq!(size.elements, 1000);
     let sides = usize::try_from(size.faces).unwrap() / 1000;
+    let (faces, _) = read_ply(&write("menger", 1, MeshFormat::Ply, false, 1).1);
+    assert!(faces.1.len() == 240 && faces.1.iter().all(|face| face.len() == 3));
     assert_eq!(
         counts.into_values().collect::<Vec<_>>(),
         [600 * sides, 400 * sides]

@@ -243,6 +243,16 @@ impl Solid {
         }
     }
 
+    /// Returns the image under an affine map, without a front.
+    #[must_use]
+    pub fn image(&self, map: &DAffine3) -> Self {
+        if let Some(round) = self.round {
+            return Self::round(round, *map * self.place);
+        }
+        let corners = { self.corners.iter() }.map(|corner| map.transform_point3(*corner));
+        Self::hull(&corners.collect::<Vec<_>>())
+    }
+
     /// Returns the image under a similarity.
     #[must_use]
     pub fn transformed(&self, map: &DAffine3) -> Self {

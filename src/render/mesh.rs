@@ -28,7 +28,7 @@ pub enum MeshFormat {
     Stl,
     /// Wavefront OBJ: polygons as text. y points up.
     Obj,
-    /// Binary PLY: polygons with colours. y points up.
+    /// Binary PLY: triangles with colours, as not all readers take other polygons. y points up.
     Ply,
 }
 
@@ -71,7 +71,7 @@ pub struct Meshed {
     /// Number of corners; those that several elements have in common are counted once for each, except in a
     /// shell.
     pub corners: u64,
-    /// Number of faces; in STL, of triangles.
+    /// Number of faces; in STL and PLY, of triangles.
     pub faces: u64,
 }
 

@@ -97,8 +97,7 @@ impl<K> Resolver<K> {
                 SolidDocument::Mesh(mesh) => self.mesh(document, mesh)?,
                 solid => vec![self.solid(document, solid)?],
             },
-            // Reported when the file was read.
-            FormDocument::Fractal(_) => return None,
+            FormDocument::Fractal(fractal) => self.fractal_in_space(fractal)?,
         };
         Some(solids.into())
     }

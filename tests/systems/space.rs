@@ -3,7 +3,7 @@
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::{Document, Setting};
-use kfrac::geometry::{DVec3, Frame3, Round};
+use kfrac::geometry::{DVec3, Frame3, Outline as _, Round, Solid};
 use kfrac::graph::Graph;
 use kfrac::grow::{Elements, Growth};
 use std::sync::Arc;
@@ -261,4 +261,40 @@ fn meshes_are_read_from_files() {
     );
     let drawn = Elements::of(&structure(arrow), &Growth::steps(1)).count();
     assert_eq!(drawn, 2);
+}
+
+/// Fractals as sets have the solids of their elements: of space as they are, of the plane as lines and polygons.
+#[test]
+fn fractals_are_sets_in_space() {
+    let sets = |set: &str| {
+        let graph = graph(&format!("maps: [{{scale: 1/2}}]\ninitial: {set}\n"));
+        let growth = Growth::steps(0);
+        let elements = Elements::of(&graph, &growth).map(|element| element.unwrap().1);
+        let solids = elements.map(|element| {
+            let solid = &graph.base_elements()[graph.objects()[element.object].base_element];
+            solid.image(element.frame.map())
+        });
+        solids.collect::<Vec<_>>()
+    };
+    let cubes =
+        sets("{fractal: menger-cubes, steps: 1, map: {scale: [2, 1, 1], shift: [1, 0, 0]}}");
+    assert_eq!(cubes.len(), 20);
+    let area: f64 = cubes.iter().map(|solid| solid.signed_area()).sum();
+    // Boxes of 2/3 by 1/3 by 1/3.
+    assert!((area - 20.0 * 10.0 / 9.0).abs() < 1e-9, "{area}");
+    let reach = |solids: &[Solid]| {
+        let corners = solids.iter().flat_map(|solid| solid.corners().to_vec());
+        corners.fold(DVec3::MIN, DVec3::max) - DVec3::X
+    };
+    assert!((reach(&cubes).x - 2.0).abs() < 1e-12);
+    let curve = sets("{fractal: koch, steps: 2, map: {scale: 1, rotate: {x: 90}}}");
+    assert_eq!(curve.len(), 16);
+    let top = reach(&curve);
+    assert!(
+        (top - DVec3::new(0.0, 0.0, 3f64.sqrt() / 6.0)).length() < 1e-12,
+        "{top}"
+    );
+    let tiles =
+        sets("{fractal: {initiator: segment, base_element: triangle, generator: koch}, steps: 1}");
+    assert_eq!(tiles.len(), 4);
 }

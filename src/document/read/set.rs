@@ -208,10 +208,6 @@ fn hint(reader: &Reader) -> &'static str {
 /// the plane.
 fn misplaced(name: &str, is_in_space: bool) -> Option<(String, &'static str)> {
     match (name, is_in_space) {
-        ("fractal", true) => Some((
-            "the set `fractal` is known in the plane only".into(),
-            "in space, sets are solids, polygons, lines and points",
-        )),
         (_, true) | ("point" | "segment" | "polyline" | "polygon", false) => None,
         ("disk" | "ellipse" | "fractal", false) => None,
         (_, false) => {

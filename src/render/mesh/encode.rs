@@ -7,7 +7,7 @@ use crate::geometry::{DAffine3, DVec3, Mesh};
 use super::super::space::SpaceError;
 use super::{MeshFormat, Meshed};
 
-/// Largest number of corners of a polygon: lists of PLY count them in a byte.
+/// Largest number of corners of a polygon: lists of faces count them in a byte.
 const MAX_CORNERS: usize = 255;
 
 /// Mesh of a base element, prepared for a format.
@@ -19,7 +19,7 @@ impl Shape {
     pub(super) fn new(mesh: &Mesh, format: MeshFormat) -> Self {
         let is_long = |face: &Vec<usize>| face.len() > MAX_CORNERS;
         let mut mesh = mesh.clone();
-        if format == MeshFormat::Stl || mesh.faces.iter().any(is_long) {
+        if format != MeshFormat::Obj || mesh.faces.iter().any(is_long) {
             mesh.faces = mesh.triangles().into_iter().map(Vec::from).collect();
         }
         Self { mesh }
