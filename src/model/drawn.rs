@@ -54,10 +54,10 @@ pub fn for_pixels(color_by: ColorBy) -> ColorBy {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawnError {
-    /// It cannot be compiled.
+    /// The model cannot be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
-    /// It cannot be grown.
+    /// The model cannot be grown.
     #[error(transparent)]
     Walk(#[from] WalkError<Infallible>),
 }

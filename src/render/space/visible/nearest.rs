@@ -29,7 +29,7 @@ pub(super) struct Nearest {
 pub(super) enum Visibility {
     Visible,
     Hidden,
-    /// It is too small for samples, and those around it do not hide it.
+    /// The polygon is too small for samples, and those around it do not hide it.
     Unknown,
 }
 

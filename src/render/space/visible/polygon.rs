@@ -93,15 +93,15 @@ pub(super) struct Polygon {
 /// Order of two polygons where both are seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// They do not overlap on the picture.
+    /// Polygons that do not overlap on the picture.
     Apart,
-    /// The first is nearer to the viewer.
+    /// The first polygon is nearer to the viewer.
     Before,
-    /// The second is nearer.
+    /// The second polygon is nearer.
     Behind,
-    /// They lie in one plane.
+    /// Polygons in one plane.
     Level,
-    /// They cross each other.
+    /// Polygons that cross each other.
     Crossing,
 }
 
