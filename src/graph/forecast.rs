@@ -10,11 +10,13 @@ use crate::count::Count;
 use crate::geometry::{Direction, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
-use super::{Alternative, Chain, Graph, Instance, Object, Replacement};
+use super::{Alternative, Chain, Graph, Instance, Replacement};
 
 mod levels;
+mod outlines;
 
 use levels::Totals;
+use outlines::Outlines;
 
 /// Size of an approximant.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,16 +142,6 @@ impl AddAssign for Sums {
 /// Largest difference of lengths that count as equal, in powers of two.
 const SAME_LENGTH: f64 = 1.0 / 16.0;
 
-/// Kind of the outlines that a graph draws.
-#[derive(Clone, Copy, PartialEq)]
-enum Outlines {
-    /// All base elements are closed.
-    ClosedElements,
-    /// Every fractal is one closed path.
-    ClosedPaths,
-    Other,
-}
-
 impl<F: Frame> Graph<F> {
     /// Returns the forecast of the approximants, as far as the graph is resolved; `None` if the sizes are
     /// not known without a walk: for irregular rules, and if numbers of elements depend on draws.
@@ -188,35 +180,6 @@ impl<F: Frame> Graph<F> {
         alternatives
             .windows(2)
             .all(|pair| census(&pair[0]) == census(&pair[1]))
-    }
-
-    /// Returns whether every fractal is one closed path of stroked elements at every step.
-    #[must_use]
-    pub fn draws_closed_paths(&self) -> bool {
-        self.outlines() == Outlines::ClosedPaths
-    }
-
-    fn outlines(&self) -> Outlines {
-        let mut visible = self.objects.iter().filter(|object| object.visible);
-        if visible.all(|object| self.base_elements()[object.base_element].is_closed()) {
-            return Outlines::ClosedElements;
-        }
-        let closed = |chain: &Chain<F>| chain.is_joined() && chain.is_ring();
-        let seeds = |object: &Object<F>| match &object.replacement {
-            Replacement::Fixed(successor) => successor.seeds.iter().all(|seed| closed(&seed.chain)),
-            Replacement::Kept | Replacement::Unresolved => true,
-            Replacement::Evaluated(_) => false,
-        };
-        let encloses = F::Point::ZERO.triangle(F::Point::ZERO).is_some();
-        if encloses
-            && self.starts().all(closed)
-            && self.objects.iter().all(seeds)
-            && self.keeps_lines()
-        {
-            Outlines::ClosedPaths
-        } else {
-            Outlines::Other
-        }
     }
 }
 
