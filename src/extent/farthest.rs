@@ -12,6 +12,9 @@ use super::Bounded;
 /// Limit of the number of instances that are replaced, for a direction.
 const MAX_WORK: usize = 1 << 17;
 
+/// Limit of the number of instances in each other that are searched for a first value.
+const MAX_DEPTH: usize = 1 << 10;
+
 /// Relative error of the box.
 const TOLERANCE: f64 = 1e-13;
 
@@ -63,6 +66,45 @@ impl<F: Bounded> Graph<F> {
         }
         let bounds = Bounds::new(ends[1], ends[0]);
         bounds.is_finite().then_some(bounds)
+    }
+
+    /// Returns a value of a linear functional that the limit set reaches: that of the farthest instance, of the farthest in it,
+    /// and so on. Few instances reach farther than that.
+    fn reached(&self, axis: F::Point, alive: &[bool], reaches: &[f64]) -> f64 {
+        let mut instances: Vec<&Instance<F>> = self.initiator(0).instances.iter().collect();
+        let (mut outer, mut start) = (axis, 0.0);
+        let mut surely = f64::NEG_INFINITY;
+        for _ in 0..MAX_DEPTH {
+            let mut best: Option<Node<F>> = None;
+            let is_replaced = |object: usize| {
+                let replacement = &self.objects()[object].replacement;
+                alive[object] && matches!(replacement, Replacement::Fixed(_))
+            };
+            for instance in instances.iter().filter(|it| is_replaced(it.object)) {
+                let object = instance.object;
+                let vector = instance.frame.pullback(outer);
+                let offset = start + outer.dot(instance.frame.origin());
+                let radius = vector.length() * reaches[object];
+                let middle = offset + vector.dot(self.middle());
+                let farthest = middle + radius;
+                if radius.is_finite() && best.as_ref().is_none_or(|it| farthest > it.farthest) {
+                    surely = surely.max(middle - radius);
+                    best = Some(Node {
+                        object,
+                        vector,
+                        offset,
+                        farthest,
+                    });
+                }
+            }
+            let Some(node) = best else { break };
+            let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {
+                break;
+            };
+            instances = { successor.placed_instances() }.map(|(_, it)| it).collect();
+            (outer, start) = (node.vector, node.offset);
+        }
+        surely
     }
 
     /// Returns the greatest value of a linear functional on the limit set.
@@ -121,6 +163,7 @@ impl<F: Bounded> Graph<F> {
         }
         let mut work = 0;
         let size = heap.peek().map_or(0.0, |node| node.farthest - surely);
+        surely = surely.max(self.reached(axis, alive, reaches));
         while let Some(node) = heap.pop() {
             let tolerance = TOLERANCE * (size + surely.abs());
             if node.farthest <= surely + tolerance {
