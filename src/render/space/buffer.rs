@@ -73,23 +73,34 @@ impl Buffer {
 
     /// Returns whether all samples of a rectangle, without its last column and row, are strictly nearer than a
     /// depth.
+    #[inline]
     pub(super) fn hides(&self, [left, top, right, bottom]: [usize; 4], depth: u32) -> bool {
         let least = depth << CLASS_BITS;
         let extent = (right - left).max(bottom - top);
         // Blocks of which few cover the rectangle, then finer ones.
-        let coarse = BLOCKS.iter().position(|exponent| extent <= 2 << exponent);
-        let coarse = coarse.unwrap_or(BLOCKS.len() - 1);
-        let hidden = |level: usize| {
-            let exponent = BLOCKS[level];
-            let side = SIDE >> exponent;
-            let columns = left >> exponent..=(right - 1) >> exponent;
-            let mut rows = top >> exponent..=(bottom - 1) >> exponent;
-            rows.all(|row| {
-                let row = &self.pyramid[level][row * side..(row + 1) * side];
-                row[columns.clone()].iter().all(|key| *key < least)
-            })
-        };
-        hidden(coarse) || (coarse > 0 && hidden(coarse - 1))
+        let mut coarse = 0;
+        while coarse + 1 < BLOCKS.len() && extent > 2 << BLOCKS[coarse] {
+            coarse += 1;
+        }
+        self.is_hidden(coarse, [left, top, right, bottom], least)
+            || (coarse > 0 && self.is_hidden(coarse - 1, [left, top, right, bottom], least))
+    }
+
+    /// Returns whether all blocks of a level that a rectangle meets are nearer than a key.
+    #[inline(always)]
+    fn is_hidden(&self, level: usize, [left, top, right, bottom]: [usize; 4], least: u32) -> bool {
+        let exponent = BLOCKS[level];
+        let side = SIDE >> exponent;
+        let (first, last) = (left >> exponent, (right - 1) >> exponent);
+        let blocks = &self.pyramid[level];
+        for row in top >> exponent..=(bottom - 1) >> exponent {
+            for key in &blocks[row * side + first..=row * side + last] {
+                if *key >= least {
+                    return false;
+                }
+            }
+        }
+        true
     }
 
     /// Returns the least rectangle within one that contains its samples which are not strictly nearer than a depth;

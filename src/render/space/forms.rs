@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use crate::geometry::{DMat3, DVec3};
+use crate::geometry::{Bounds, DMat3, DVec3};
 
 use super::camera::{Placement, Projection};
 use super::scene::{Child, ClassBy, End, Part};
@@ -41,6 +41,10 @@ pub(super) struct Form {
     pub(super) middle: DVec3,
     /// Half sides of the box.
     pub(super) half: DVec3,
+    /// Middle of the box of the hull, from the origin of the object.
+    pub(super) centre: DVec3,
+    /// Largest side across the view of the box of the hull, by which the size of an instance is judged.
+    across: f64,
     /// Places of its instances in the table, if they are known.
     steps: Option<Range<usize>>,
     /// Number of elements of which it consists; 0 if it is not known to the last, or has too many.
@@ -72,6 +76,8 @@ impl Form {
             length,
             middle,
             half,
+            centre: middle,
+            across: 2.0 * half.x.max(half.y),
             steps: None,
             elements: 0,
             stamps: None,
@@ -86,8 +92,7 @@ impl Form {
     /// Returns whether the form is too small to be replaced. `scale` is the number of samples a unit.
     #[inline]
     pub(super) fn is_small(&self, end: &End, scale: f64) -> bool {
-        let across = 2.0 * self.half.x.max(self.half.y);
-        across.min(self.length * end.unit) * scale <= end.detail * (1.0 + ROUNDING)
+        self.across.min(self.length * end.unit) * scale <= end.detail * (1.0 + ROUNDING)
     }
 }
 
@@ -160,7 +165,8 @@ impl Forms {
                 class: None,
             });
         }
-        finder.forms.sort_start();
+        finder.forms.start.reverse();
+        sort(&mut finder.forms.start, &finder.forms.known);
         let mut next = 0;
         while next < finder.forms.known.len() && finder.forms.known.len() < MAX_FORMS {
             let form = &finder.forms.known[next];
@@ -171,6 +177,7 @@ impl Forms {
         }
         let mut forms = finder.forms;
         if let Projection::Parallel = placement.projection {
+            forms.tighten();
             forms.count(parts, end);
             if has_stamps {
                 forms.admit_stamps(pad);
@@ -185,7 +192,35 @@ impl Forms {
         form.steps.clone().map(|steps| &self.steps[steps])
     }
 
-    fn sort_start(&mut self) {
+    /// Replaces the boxes of forms by those around the boxes of their instances, the inner ones first: boxes of turned hulls are
+    /// larger than what they contain. Parallel pictures never draw the hull of a form whose instances are known.
+    fn tighten(&mut self) {
+        let mut moved = vec![DVec3::ZERO; self.known.len()];
+        for number in (0..self.known.len()).rev() {
+            let Some(range) = self.known[number].steps.clone().filter(|it| !it.is_empty()) else {
+                continue;
+            };
+            let steps = &mut self.steps[range];
+            let mut bounds = Bounds::EMPTY;
+            for step in &mut *steps {
+                step.offset += moved[step.form];
+                let half = self.known[step.form].half;
+                bounds.add(step.offset - half);
+                bounds.add(step.offset + half);
+            }
+            let form = &mut self.known[number];
+            // The hull limits the box, too.
+            let (min, max) = (bounds.min().max(-form.half), bounds.max().min(form.half));
+            let middle = (min + max) / 2.0;
+            moved[number] = middle;
+            form.middle += middle;
+            form.half = ((max - min) / 2.0).max(DVec3::ZERO);
+            steps.iter_mut().for_each(|step| step.offset -= middle);
+            sort(steps, &self.known);
+        }
+        for step in &mut self.start {
+            step.offset += moved[step.form];
+        }
         sort(&mut self.start, &self.known);
     }
 
@@ -278,6 +313,7 @@ impl Finder<'_> {
                 });
             }
         }
+        steps.reverse();
         sort(&mut steps, &self.forms.known);
         let first = self.forms.steps.len();
         self.forms.steps.extend(steps);
@@ -285,10 +321,9 @@ impl Finder<'_> {
     }
 }
 
-/// Sorts instances: the nearest last; of those that are equally near, the first.
+/// Sorts instances: the nearest last. Equally near ones keep their order.
 fn sort(steps: &mut [Step], forms: &[Form]) {
     let near = |step: &Step| step.offset.z + forms[step.form].half.z;
-    steps.reverse();
     steps.sort_by(|a, b| near(a).total_cmp(&near(b)));
 }
 

@@ -114,9 +114,10 @@ impl Stamp {
         if left < right {
             let start = (corner[1] + top) * STRIDE + corner[0] + left / PIECE * PIECE;
             let keys = &mut buffer.with_margin()[start..];
-            blit(keys, stamp.columns, &stamp.pieces, &copy);
-            let [x, y] = corner;
-            buffer.refresh_with_margin([x + left, y + top, x + right, y + bottom]);
+            if blit(keys, stamp.columns, &stamp.pieces, &copy) {
+                let [x, y] = corner;
+                buffer.refresh_with_margin([x + left, y + top, x + right, y + bottom]);
+            }
         }
         Some(stamp)
     }
@@ -140,25 +141,29 @@ fn bias(roots: &Roots<'_>, view: &View<'_>) -> f64 {
     (view.depths.steps() * (1.0 + roots.pad)).ceil()
 }
 
-/// Draws a copy; `keys` begin at its corner.
+/// Draws a copy, whose corner is that of `keys`; returns whether it is seen.
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "the numbers are clamped"
 )]
-fn blit(keys: &mut [u32], columns: usize, pieces: &[Piece], copy: &Copy) {
+fn blit(keys: &mut [u32], columns: usize, pieces: &[Piece], copy: &Copy) -> bool {
     const LAST: i32 = STEPS as i32;
+    let mut seen = 0;
     for (row, pieces) in keys.chunks_mut(STRIDE).zip(pieces.chunks_exact(columns)) {
         for (keys, piece) in row.chunks_exact_mut(PIECE).zip(pieces) {
             for (x, key) in keys.iter_mut().enumerate() {
                 let change = piece.slope[0][x] * copy.shift[0] + piece.slope[1][x] * copy.shift[1];
                 let depth = (piece.depth[x] + change + copy.fraction) as i32;
                 let depth = (depth + copy.base).clamp(0, LAST) as u32;
-                *key = (*key).min(depth << CLASS_BITS | copy.class | piece.class[x]);
+                let new = depth << CLASS_BITS | copy.class | piece.class[x];
+                seen |= u32::from(new < *key);
+                *key = (*key).min(new);
             }
         }
     }
+    seen > 0
 }
 
 /// Draws the elements of a form.
@@ -230,8 +235,8 @@ impl<'a> Builder<'a> {
         match roots.lit.and_then(|lit| Some((lit, lit.bits()?))) {
             None => self.planes.set(projection, faces, &mut Classes::One(class)),
             Some((lit, bits)) => {
-                let mut of = |normal| lit.class(class, normal, bits);
-                let classes = &mut Classes::OfNormals(&mut of);
+                let (lit, of) = (&lit, &mut |level| class << bits | level);
+                let classes = &mut Classes::OfLevels { lit, bits, of };
                 self.planes.set(projection, faces, classes);
             }
         }

@@ -138,6 +138,8 @@ impl Turned {
         }
         let cell = Cell::of(&form.linear, form.length, size)?;
         let number = self.sets[form.object] * CELLS + cell.number();
+        // Stamps have the hull in their middle.
+        let at = at - form.middle + form.centre;
         let stamp = self.stamps[number].get_or_init(|| {
             let length = cell.size() / roots.end.unit;
             let form = Form::new(roots.parts, (form.object, 0), cell.turn() * length, length);
