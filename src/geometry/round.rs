@@ -61,6 +61,7 @@ impl Round {
     /// Returns the numbers a, b and c of the quadratic surface x² + z² + a y² + 2 b y + c = 0. A point with a
     /// value of at most 0 that lies between the [caps](Self::caps) belongs to the primitive.
     #[must_use]
+    #[inline]
     pub fn quadric(self) -> [f64; 3] {
         match self {
             Self::Ball => [1.0, 0.0, -1.0],

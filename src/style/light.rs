@@ -65,6 +65,7 @@ impl Light {
     }
 
     /// Returns the intensity on a surface: `cosine` is that of the angle between its normal and the light.
+    #[inline]
     pub(crate) fn intensity(&self, cosine: f64) -> f64 {
         let ambient = self.ambient.clamp(0.0, 1.0);
         ambient + (1.0 - ambient) * cosine.max(0.0)

@@ -71,6 +71,17 @@ pub(super) struct Roots<'a> {
 }
 
 impl Roots<'_> {
+    /// Returns the instances of the initiator that may be seen in the row of tiles of a view.
+    pub(super) fn start(&self, view: &View<'_>) -> Vec<usize> {
+        let may_be_seen = |number: &usize| {
+            let step = &self.forms.start[*number];
+            let half = self.forms.known[step.form].half;
+            let pad = self.pad / view.scale_of_box(step.offset.z + half.z);
+            view.has_in_row(step.offset, half + pad)
+        };
+        (0..self.forms.start.len()).filter(may_be_seen).collect()
+    }
+
     /// Returns whether the classes of samples are colours that are found tile by tile.
     pub(super) fn finds_colours(&self) -> bool {
         let by_face = self.lit.is_some_and(|lit| lit.bits().is_none());
@@ -89,8 +100,14 @@ impl Roots<'_> {
 }
 
 impl Descent {
-    /// Draws all that is seen on a tile.
-    pub(super) fn run(&mut self, roots: &Roots<'_>, view: &View<'_>, buffer: &mut Buffer) {
+    /// Draws all that is seen on a tile. `start` are the instances of the initiator that may be seen there.
+    pub(super) fn run(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        start: &[usize],
+    ) {
         self.stack.clear();
         self.own.clear();
         self.tints.clear();
@@ -98,7 +115,7 @@ impl Descent {
             self.copies.get_or_insert_with(Copies::new).clear();
         }
         let forms = roots.forms;
-        for step in &forms.start {
+        for step in start.iter().map(|number| &forms.start[*number]) {
             let form = &forms.known[step.form];
             let paint = self.paint(roots, Paint::default(), form.object, None);
             let form = (form, step.form);
@@ -278,8 +295,8 @@ impl Descent {
                 None => draw(buffer, Classes::One(class)),
                 Some(lit) => match lit.bits() {
                     Some(bits) => {
-                        let mut of = |normal| lit.class(class, normal, bits);
-                        draw(buffer, Classes::OfNormals(&mut of));
+                        let (lit, of) = (&lit, &mut |level| class << bits | level);
+                        draw(buffer, Classes::OfLevels { lit, bits, of });
                     }
                     None => {
                         let colour = match roots.class_by {
@@ -291,15 +308,23 @@ impl Descent {
                             None => solid.faces().len(),
                         };
                         tints.make_room(faces + view.cuts.len(), buffer);
-                        let mut of = |normal| {
-                            let level = lit.level(normal, FINE);
-                            let colour = match roots.class_by {
-                                ClassBy::Normal => lit.colour_of_normal(normal, roots.inks),
-                                _ => colour,
+                        if roots.class_by == ClassBy::Normal {
+                            let mut of = |normal| {
+                                let level = lit.level(normal, FINE);
+                                let colour = lit.colour_of_normal(normal, roots.inks);
+                                tints.class(colour.dimmed(intensity(level, FINE)))
                             };
-                            tints.class(colour.dimmed(intensity(level, FINE)))
-                        };
-                        draw(buffer, Classes::OfNormals(&mut of));
+                            draw(buffer, Classes::OfNormals(&mut of));
+                        } else {
+                            let mut known = [None; 1 << FINE];
+                            let mut of = |level| {
+                                *known[usize::from(level)].get_or_insert_with(|| {
+                                    tints.class(colour.dimmed(intensity(level, FINE)))
+                                })
+                            };
+                            let (lit, bits, of) = (&lit, FINE, &mut of);
+                            draw(buffer, Classes::OfLevels { lit, bits, of });
+                        }
                     }
                 },
             }

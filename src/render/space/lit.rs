@@ -7,6 +7,7 @@ use crate::geometry::DVec3;
 use crate::style::{Camera, CameraError, Colour, Light};
 
 use super::buffer::MAX_CLASS;
+use super::solid::whole;
 
 /// Least number of bits of levels of intensity that are parts of classes.
 const LEAST: u32 = 7;
@@ -52,15 +53,21 @@ impl Lit {
 
     /// Returns the level of a face, of as many as there are with a number of bits: 0 is the brightest. The normal may have
     /// any length.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "intensities lie between 0 and 1"
-    )]
     pub(super) fn level(&self, normal: DVec3, bits: u32) -> u16 {
-        let cosine = normal.normalize_or_zero().dot(self.towards);
+        self.level_of_cosine(normal.normalize_or_zero().dot(self.towards), bits)
+    }
+
+    /// Returns the level of a face by the cosine of the angle between its normal and the light.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "there are few levels")]
+    pub(super) fn level_of_cosine(&self, cosine: f64, bits: u32) -> u16 {
         let dark = 1.0 - self.light.intensity(cosine);
-        (dark * f64::from((1_u32 << bits) - 1)).round() as u16
+        whole(dark * f64::from((1_u32 << bits) - 1) + 0.5) as u16
+    }
+
+    /// Returns the unit vector towards the light.
+    pub(super) fn towards(&self) -> DVec3 {
+        self.towards
     }
 
     /// Returns the colour of a face, of as many as colours run from downwards to upwards.
@@ -75,11 +82,6 @@ impl Lit {
         let last = colours.len() - 1;
         colours[((share * last as f64).round() as usize).min(last)]
     }
-
-    /// Returns the class of a face: that of its colour, and its level.
-    pub(super) fn class(&self, colour: u16, normal: DVec3, bits: u32) -> u16 {
-        colour << bits | self.level(normal, bits)
-    }
 }
 
 /// Returns the intensity of a level.
@@ -91,6 +93,13 @@ pub(super) fn intensity(level: u16, bits: u32) -> f64 {
 pub(super) enum Classes<'a> {
     /// All faces have the same.
     One(u16),
+    /// A face has that of its level of intensity.
+    OfLevels {
+        lit: &'a Lit,
+        /// Number of bits of a level.
+        bits: u32,
+        of: &'a mut dyn FnMut(u16) -> u16,
+    },
     /// A face has that of its normal.
     OfNormals(&'a mut dyn FnMut(DVec3) -> u16),
 }
@@ -100,6 +109,7 @@ impl Classes<'_> {
     pub(super) fn of(&mut self, normal: DVec3) -> u16 {
         match self {
             Self::One(class) => *class,
+            Self::OfLevels { lit, bits, of } => of(lit.level(normal, *bits)),
             Self::OfNormals(of) => of(normal),
         }
     }

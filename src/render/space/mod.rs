@@ -43,6 +43,7 @@ pub use visible::write_visible;
 pub use crate::style::{Camera, CameraError, Light, Shade, Slice};
 
 use std::io::Write;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use tiny_skia::{Pixmap, PremultipliedColorU8};
@@ -116,6 +117,8 @@ struct Tile<'a> {
     scene: &'a Scene<'a>,
     /// Column and row of the tile.
     at: [u32; 2],
+    /// Instances of the initiator that may be seen in the row.
+    start: Arc<[usize]>,
     buffer: Buffer,
     descent: Descent,
     /// Premultiplied colours and depths of the pixels, in rows.
@@ -136,33 +139,34 @@ impl Scene<'_> {
     fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|it| it.load(Ordering::Relaxed))
     }
+
+    /// Returns the view of the tile in a column and a row.
+    fn view(&self, at: [u32; 2]) -> View<'_> {
+        #[expect(clippy::cast_precision_loss, reason = "a tile has few samples")]
+        let side = SIDE as f64;
+        View {
+            projection: self.placement.projection,
+            depths: Depths::new(self.placement.range),
+            cuts: &self.cuts,
+            corner: at.map(|tile| f64::from(tile) * side),
+        }
+    }
 }
 
 impl Tile<'_> {
     fn draw(&mut self) {
-        let Scene {
-            roots,
-            placement,
-            inks,
-            ..
-        } = self.scene;
+        let Scene { roots, inks, .. } = self.scene;
         self.colours.clear();
         self.depths.clear();
         if self.scene.is_cancelled() {
             return;
         }
-        #[expect(clippy::cast_precision_loss, reason = "a tile has few samples")]
-        let side = SIDE as f64;
-        let view = View {
-            projection: placement.projection,
-            depths: Depths::new(placement.range),
-            cuts: &self.scene.cuts,
-            corner: self.at.map(|tile| f64::from(tile) * side),
-        };
+        let view = self.scene.view(self.at);
         self.buffer.clear();
         self.descent.drawn = 0;
         self.descent.deepest = 0;
-        self.descent.run(roots, &view, &mut self.buffer);
+        self.descent
+            .run(roots, &view, &mut self.buffer, &self.start);
         let is_tinted = roots.finds_colours();
         if is_tinted {
             self.descent.tints.settle(&mut self.buffer);
@@ -287,16 +291,19 @@ fn draw(
     with_team(options.threads, |team| {
         let mut line = team.line(Tile::draw);
         for row in 0..height.div_ceil(TILE_SIZE) {
+            let start: Arc<[usize]> = scene.roots.start(&scene.view([0, row])).into();
             for column in 0..width.div_ceil(TILE_SIZE) {
                 let mut tile = line.spare().unwrap_or_else(|| Tile {
                     scene: &scene,
                     at: [0, 0],
+                    start: Arc::default(),
                     buffer: Buffer::new(),
                     descent: Descent::default(),
                     colours: Vec::new(),
                     depths: Vec::new(),
                 });
                 tile.at = [column, row];
+                tile.start = Arc::clone(&start);
                 line.hand_on(tile, &mut take)?;
             }
         }

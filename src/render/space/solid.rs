@@ -41,21 +41,32 @@ impl Depths {
     }
 
     /// Returns the depth of a point in steps, 0 at the near end.
-    #[inline]
+    #[inline(always)]
     pub(super) fn exact(&self, z: f64) -> f64 {
         (self.near - z) * self.steps
     }
 
     /// Returns the depth of a point in whole steps.
-    #[inline]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the value is clamped"
-    )]
+    #[inline(always)]
     pub(super) fn of(&self, z: f64) -> u32 {
-        self.exact(z).clamp(0.0, STEPS) as u32
+        let exact = self.exact(z);
+        let exact = if exact > 0.0 { exact } else { 0.0 };
+        whole(if exact < STEPS { exact } else { STEPS })
     }
+}
+
+/// Returns the whole part of a number from 0 to 2³¹, by operations that vectors have.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the low bits are the number"
+)]
+pub(super) fn whole(value: f64) -> u32 {
+    // Of this size, numbers are whole.
+    const LARGE: f64 = (1_u64 << 52) as f64;
+    let near = (value + LARGE) - LARGE;
+    let below = if near > value { near - 1.0 } else { near };
+    (below + LARGE).to_bits() as u32
 }
 
 /// Returns the map of a solid before it is placed to the coordinates of the projection, at least as thick as a
@@ -193,6 +204,7 @@ impl Planes {
 #[derive(Default)]
 pub(super) struct Pencil {
     planes: Planes,
+    row: round::Row,
 }
 
 impl Pencil {
@@ -209,7 +221,16 @@ impl Pencil {
     ) {
         if let Some(primitive) = solid.primitive() {
             let place = placed(solid, map, view);
-            round::draw(buffer, view, primitive, &place, rectangle, &mut classes);
+            let row = &mut self.row;
+            round::draw(
+                buffer,
+                view,
+                primitive,
+                &place,
+                rectangle,
+                &mut classes,
+                row,
+            );
             buffer.refresh(rectangle);
             return;
         }
@@ -220,8 +241,8 @@ impl Pencil {
         for y in top..bottom {
             let row = &mut buffer.row_mut(y)[left..right];
             match classes {
-                Classes::One(class) => self.planes.draw_row::<false>(row, view, [left, y], class),
-                Classes::OfNormals(_) => self.planes.draw_row::<true>(row, view, [left, y], 0),
+                Classes::One(class) => draw_row::<false>(&self.planes, row, view, [left, y], class),
+                _ => draw_row::<true>(&self.planes, row, view, [left, y], 0),
             }
         }
         buffer.refresh(rectangle);
@@ -231,59 +252,67 @@ impl Pencil {
 /// Samples that are drawn together.
 const LANES: usize = 8;
 
-impl Planes {
-    /// Draws the solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
-    /// are `LIT`, or else all have `class`.
-    #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-    pub(super) fn draw_row<const LIT: bool>(
-        &self,
-        row: &mut [u32],
-        view: &View<'_>,
-        [left, y]: [usize; 2],
-        class: u16,
-    ) {
-        let [corner_x, corner_y] = view.corner;
-        let at_y = corner_y + y as f64 + 0.5;
-        for (number, keys) in row.chunks_mut(LANES).enumerate() {
-            let first = corner_x + (left + number * LANES) as f64 + 0.5;
-            let at = |plane: &Plane| plane.z + plane.y * at_y + plane.x * first;
-            let mut highest = [f64::INFINITY; LANES];
-            let mut classes = [u32::from(class); LANES];
-            for (plane, own) in self.front.iter().zip(&self.classes) {
-                let start = at(plane);
-                for (step, highest) in highest.iter_mut().enumerate() {
-                    let z = start + plane.x * step as f64;
-                    if LIT && z < *highest {
-                        classes[step] = u32::from(*own);
-                    }
-                    *highest = if z < *highest { z } else { *highest };
-                }
-            }
-            let mut lowest = [f64::NEG_INFINITY; LANES];
-            for plane in &self.back {
-                let start = at(plane);
-                for (step, lowest) in lowest.iter_mut().enumerate() {
-                    let z = start + plane.x * step as f64;
-                    *lowest = if z > *lowest { z } else { *lowest };
-                }
-            }
-            for plane in &self.edges {
-                let start = at(plane);
-                for (step, lowest) in lowest.iter_mut().enumerate() {
-                    let is_beyond = start + plane.x * step as f64 > 0.0;
-                    *lowest = if is_beyond { f64::INFINITY } else { *lowest };
-                }
-            }
-            let classes = classes.iter().zip(lowest);
-            for ((key, highest), (class, lowest)) in keys.iter_mut().zip(highest).zip(classes) {
-                if highest >= lowest && highest < f64::INFINITY {
-                    let z = match view.projection {
-                        Projection::Parallel => highest,
-                        Projection::Central { .. } => -1.0 / highest,
+/// Draws a solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
+/// are `LIT`, or else all have `class`.
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+pub(super) fn draw_row<const LIT: bool>(
+    planes: &Planes,
+    row: &mut [u32],
+    view: &View<'_>,
+    [left, y]: [usize; 2],
+    class: u16,
+) {
+    let is_parallel = matches!(view.projection, Projection::Parallel);
+    let [corner_x, corner_y] = view.corner;
+    let at_y = corner_y + y as f64 + 0.5;
+    for (number, keys) in row.chunks_mut(LANES).enumerate() {
+        let first = corner_x + (left + number * LANES) as f64 + 0.5;
+        let at = |plane: &Plane| plane.z + plane.y * at_y + plane.x * first;
+        let mut highest = [f64::INFINITY; LANES];
+        let mut classes = [u32::from(class); LANES];
+        for (plane, own) in planes.front.iter().zip(&planes.classes) {
+            let start = at(plane);
+            for (step, highest) in highest.iter_mut().enumerate() {
+                let z = start + plane.x * step as f64;
+                if LIT {
+                    classes[step] = if z < *highest {
+                        u32::from(*own)
+                    } else {
+                        classes[step]
                     };
-                    *key = (*key).min(view.depths.of(z) << CLASS_BITS | class);
                 }
+                *highest = if z < *highest { z } else { *highest };
             }
+        }
+        let mut lowest = [f64::NEG_INFINITY; LANES];
+        for plane in &planes.back {
+            let start = at(plane);
+            for (step, lowest) in lowest.iter_mut().enumerate() {
+                let z = start + plane.x * step as f64;
+                *lowest = if z > *lowest { z } else { *lowest };
+            }
+        }
+        for plane in &planes.edges {
+            let start = at(plane);
+            for (step, lowest) in lowest.iter_mut().enumerate() {
+                let is_beyond = start + plane.x * step as f64 > 0.0;
+                *lowest = if is_beyond { f64::INFINITY } else { *lowest };
+            }
+        }
+        let mut own = [EMPTY; LANES];
+        for lane in 0..LANES {
+            let (high, low) = (highest[lane], lowest[lane]);
+            let z = if is_parallel { high } else { -1.0 / high };
+            let key = view.depths.of(z) << CLASS_BITS | classes[lane];
+            own[lane] = if (high >= low) & (high < f64::INFINITY) {
+                key
+            } else {
+                EMPTY
+            };
+        }
+        for (key, own) in keys.iter_mut().zip(own) {
+            *key = (*key).min(own);
         }
     }
 }
@@ -331,19 +360,14 @@ impl View<'_> {
         }
     }
 
-    /// Returns the samples of the tile that a box about a point meets; `None` if there are none.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "the values are clamped"
-    )]
-    pub(super) fn rectangle(&self, middle: DVec3, half: DVec3) -> Option<[usize; 4]> {
-        let spans: [[f64; 2]; 2] = match self.projection {
-            Projection::Parallel => [
+    /// Returns the extents of the picture of a box about a point, across and down, in samples; `None` if it is behind the viewer.
+    #[inline]
+    fn spans(&self, middle: DVec3, half: DVec3) -> Option<[[f64; 2]; 2]> {
+        match self.projection {
+            Projection::Parallel => Some([
                 [middle.x - half.x, middle.x + half.x],
                 [middle.y - half.y, middle.y + half.y],
-            ],
+            ]),
             Projection::Central {
                 focus,
                 middle: axis,
@@ -351,7 +375,8 @@ impl View<'_> {
                 let (near, far) = (-(middle.z + half.z), -(middle.z - half.z));
                 if near <= 0.0 {
                     // The box reaches behind the viewer, who may see any part of it.
-                    return (far > 0.0).then_some([0, 0, SIDE, SIDE]);
+                    let all = [f64::NEG_INFINITY, f64::INFINITY];
+                    return (far > 0.0).then_some([all; 2]);
                 }
                 let span = |at: f64, half: f64, axis: f64| {
                     let seen = |side: f64, end: f64| axis + focus * side / end;
@@ -361,16 +386,36 @@ impl View<'_> {
                         seen(high, near).max(seen(high, far)),
                     ]
                 };
-                [
+                Some([
                     span(middle.x, half.x, axis[0]),
                     span(middle.y, half.y, axis[1]),
-                ]
+                ])
             }
-        };
+        }
+    }
+
+    /// Returns whether a box about a point may be seen in the row of tiles of this one.
+    #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+    pub(super) fn has_in_row(&self, middle: DVec3, half: DVec3) -> bool {
+        let side = SIDE as f64;
+        { self.spans(middle, half) }.is_some_and(|[_, [top, bottom]]| {
+            top <= self.corner[1] + side && bottom >= self.corner[1]
+        })
+    }
+
+    /// Returns the samples of the tile that a box about a point meets; `None` if there are none.
+    #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "the values are clamped"
+    )]
+    pub(super) fn rectangle(&self, middle: DVec3, half: DVec3) -> Option<[usize; 4]> {
+        let spans = self.spans(middle, half)?;
         let [[left, right], [top, bottom]] = [0, 1].map(|axis| {
             let corner = self.corner[axis];
             let [low, high] = spans[axis].map(|end| end - corner);
-            #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
             let side = SIDE as f64;
             // Samples lie in the middle of their squares.
             let low = (low - 0.5).clamp(0.0, side);

@@ -205,7 +205,8 @@ fn a_descent_agrees_with_drawing_everything() {
                 turned: None,
             };
             let mut descended = Buffer::new();
-            Descent::default().run(&roots, &view, &mut descended);
+            let start = roots.start(&view);
+            Descent::default().run(&roots, &view, &mut descended, &start);
             let mut all = Buffer::new();
             let mut pencil = solid::Pencil::default();
             for element in Elements::of(&within, &Growth::steps(steps)) {

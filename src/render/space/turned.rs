@@ -15,7 +15,7 @@ use super::descent::Roots;
 use super::forms::{Form, Forms, MAX_FORMS};
 use super::lit::Classes;
 use super::scene::{Child, ClassBy, End, Part, ends};
-use super::solid::{Depths, Planes, View, faces};
+use super::solid::{Depths, Planes, View, draw_row, faces};
 use super::stamp::{PIECE, WIDTH};
 
 /// Longest side of the box of an instance that is a copy, in samples.
@@ -343,8 +343,7 @@ impl<'a> Builder<'a> {
         for y in top..bottom.min(WIDTH) {
             let row = &mut self.keys[y * WIDTH..(y + 1) * WIDTH];
             let row = &mut row[left.min(WIDTH)..right.min(WIDTH)];
-            self.planes
-                .draw_row::<false>(row, &self.view, [left, y], class);
+            draw_row::<false>(&self.planes, row, &self.view, [left, y], class);
         }
     }
 
@@ -456,7 +455,8 @@ mod tests {
         };
         assert!(turned.is_some());
         let mut buffer = Buffer::new();
-        Descent::default().run(&roots, &view, &mut buffer);
+        let start = roots.start(&view);
+        Descent::default().run(&roots, &view, &mut buffer, &start);
         (buffer, view.depths.steps())
     }
 
