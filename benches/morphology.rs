@@ -14,7 +14,9 @@ use std::num::NonZero;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use kfrac::import::Raster;
-use kfrac::morphology::{Disk, DistanceMap, Sequence, Skeleton, SkeletonOptions, SkeletonSubsets};
+use kfrac::morphology::{
+    DiskFamily, DistanceMap, Sequence, Skeleton, SkeletonOptions, SkeletonSubsets,
+};
 use kfrac::render::Size;
 use kfrac::{Bits, Fractal};
 
@@ -50,7 +52,7 @@ fn distance(bencher: Bencher<'_, '_>, side: u32) {
 fn opening_of_64(bencher: Bencher<'_, '_>, side: u32) {
     let opening: Sequence = "open:64".parse().unwrap();
     run(bencher, side, |bits| {
-        opening.apply(bits, Disk::Euclid, threads())
+        opening.apply(bits, DiskFamily::Euclid, threads())
     });
 }
 
@@ -58,7 +60,7 @@ fn opening_of_64(bencher: Bencher<'_, '_>, side: u32) {
 fn opening_by_64_squares(bencher: Bencher<'_, '_>, side: u32) {
     let opening: Sequence = "open:64".parse().unwrap();
     run(bencher, side, |bits| {
-        opening.apply(bits, Disk::Square, threads())
+        opening.apply(bits, DiskFamily::Square, threads())
     });
 }
 
@@ -71,9 +73,9 @@ fn skeleton(bencher: Bencher<'_, '_>, side: u32) {
     run(bencher, side, |bits| Skeleton::of(bits, &options));
 }
 
-#[divan::bench(args = Disk::ALL.map(Disk::name), sample_count = 5)]
+#[divan::bench(args = DiskFamily::ALL.map(DiskFamily::name), sample_count = 5)]
 fn subsets_at_1024(bencher: Bencher<'_, '_>, name: &str) {
-    let disk = Disk::ALL
+    let disk = DiskFamily::ALL
         .into_iter()
         .find(|disk| disk.name() == name)
         .unwrap();

@@ -1,10 +1,12 @@
 //! Draws the systems of the library, fits systems to their pictures, and compares.
 //!
-//!     cargo run --release --example fits -- [--size 128] [--free] [--save FOLDER] [NAME ...]
+//!     cargo run --release --example fits -- [--size 128] [--free] [--method auto] [--save FOLDER] [NAME ...]
+//!     cargo run --release --example fits -- --random 35
 //!
 //! The table is Markdown: the number of maps of the library and of the fit, intersection over union, along the
-//! boundaries too, Hausdorff distance in per cent of the longer side, whether the picture is matched exactly, and the
-//! time on one thread. With `--free` the number of maps is not given to the fit.
+//! boundaries too, the share of the fit within 2 pixels of the picture, Hausdorff distance in per cent of the longer side,
+//! whether the picture is matched exactly, the method, and the time on one thread. With `--free` the number of maps is not
+//! given to the fit. With `--random` the systems are random: 2 to 8 affine maps with singular values from 0.2 to 0.7.
 
 #![allow(clippy::print_stdout, reason = "it says what it has found")]
 #![allow(
@@ -22,7 +24,7 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::convert::{Keeps, convert};
 use kfrac::diagnostic::Diagnostics;
 use kfrac::document::Document;
-use kfrac::fit::{Candidate, FitOptions, Shape};
+use kfrac::fit::{Candidate, FitOptions, Method, Shape};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::ifs::System;
@@ -33,6 +35,8 @@ use kfrac::{Kind, fit};
 fn main() -> Result<(), Box<dyn Error>> {
     let mut size = 128;
     let mut free = false;
+    let mut method = Method::Collage;
+    let mut drawn = 0;
     let mut folder = None;
     let mut names = Vec::new();
     let mut arguments = std::env::args().skip(1);
@@ -40,14 +44,26 @@ fn main() -> Result<(), Box<dyn Error>> {
         match argument.as_str() {
             "--size" => size = arguments.next().ok_or("--size N")?.parse()?,
             "--free" => free = true,
+            "--random" => drawn = arguments.next().ok_or("--random COUNT")?.parse()?,
+            "--method" => {
+                let name = arguments.next().ok_or("--method NAME")?;
+                let named = Method::ALL.into_iter().find(|it| it.name() == name);
+                method = named.ok_or("auto, skeleton, collage or moments")?;
+            }
             "--save" => folder = arguments.next(),
             _ => names.push(argument),
         }
     }
-    println!("| name | maps | fitted | IoU | boundary | Hausdorff % | exact | s |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!(
+        "| name | maps | fitted | IoU | boundary | within 2 | Hausdorff % | exact | method | s |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let mut rows = Vec::new();
-    for (name, candidate) in systems(&names)? {
+    let all = match drawn {
+        0 => systems(&names)?,
+        count => random_systems(count),
+    };
+    for (name, candidate) in all {
         let Some(placed) = placed(&candidate, size) else {
             continue;
         };
@@ -59,7 +75,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         };
         let count = candidate.maps.len();
-        let options = FitOptions::default().threads(NonZero::<usize>::MIN);
+        let options = FitOptions::default()
+            .method(method)
+            .threads(NonZero::<usize>::MIN);
         let options = if free {
             options
         } else {
@@ -71,10 +89,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let away = 100.0 * found.score.hausdorff / frame[0].max(frame[1]) as f64;
         let exact = if found.exact { "yes" } else { "" };
         println!(
-            "| {name} | {count} | {} | {:.3} | {:.3} | {away:.2} | {exact} | {seconds:.2} |",
+            "| {name} | {count} | {} | {:.3} | {:.3} | {:.3} | {away:.2} | {exact} | {} | {seconds:.2} |",
             found.candidate.maps.len(),
             found.score.iou,
             found.score.boundary_iou,
+            found.score.coverage,
+            found.method.name(),
         );
         if let Some(folder) = &folder {
             let drawn = found.candidate.attractor(frame, None)?.pixels;
@@ -86,6 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             found.score.iou,
             away,
             found.exact,
+            found.score.coverage,
         ));
     }
     let share = |count: usize| 100.0 * count as f64 / rows.len().max(1) as f64;
@@ -93,8 +114,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     ious.sort_by(f64::total_cmp);
     let mut aways: Vec<f64> = rows.iter().map(|row| row.3).collect();
     aways.sort_by(f64::total_cmp);
+    let within = rows.iter().map(|row| row.5).sum::<f64>() / rows.len().max(1) as f64;
     println!(
-        "\n{} systems: median IoU {:.3}, {:.0} % at 0.95 or more, median Hausdorff {:.2} %, {} exact, maps within + 1 in {:.0} %",
+        "\n{} systems: median IoU {:.3}, {:.0} % at 0.95 or more, median Hausdorff {:.2} %, {} exact, maps within + 1 in {:.0} %, {within:.3} within 2 pixels in the mean",
         rows.len(),
         ious.get(ious.len() / 2).unwrap_or(&0.0),
         share(rows.iter().filter(|row| row.2 >= 0.95).count()),
@@ -103,6 +125,35 @@ fn main() -> Result<(), Box<dyn Error>> {
         share(rows.iter().filter(|row| row.1 <= row.0 + 1).count()),
     );
     Ok(())
+}
+
+/// Returns systems of 2 to 8 affine maps, drawn by an additive sequence whose bits are mixed (SplitMix).
+fn random_systems(count: u64) -> Vec<(String, Candidate)> {
+    let mut state = 1u64;
+    let mut unit = move || {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = (state ^ state >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ bits >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((bits ^ bits >> 31) >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut systems = Vec::new();
+    for number in 0..count {
+        let maps = (0..2 + number % 7).map(|_| {
+            let [one, other] = [unit(), unit()].map(|it| DMat2::from_angle(it * 7.0));
+            let factors = DVec2::new(0.2 + 0.5 * unit(), 0.2 + 0.5 * unit());
+            let matrix = one * DMat2::from_diagonal(factors) * other;
+            DAffine2::from_mat2_translation(matrix, DVec2::new(unit(), unit()) - 0.5)
+        });
+        let candidate = Candidate::of_maps(maps.collect());
+        // About a point of the attractor, in a unit that holds it.
+        let reach = { candidate.maps.iter() }
+            .map(|map| map.translation.length() / (1.0 - 0.7))
+            .fold(0.0, f64::max);
+        let scale = DMat2::from_diagonal(DVec2::splat(0.5 / reach));
+        let there = DAffine2::from_mat2_translation(scale, DVec2::ZERO);
+        systems.push((format!("random {number}"), candidate.moved(&there)));
+    }
+    systems
 }
 
 /// Returns the systems of the library that are a union of maps of the plane.

@@ -7,20 +7,26 @@
     reason = "pictures are small"
 )]
 
+mod methods;
+
 use std::fs;
 use std::num::NonZero;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use assert_cmd::Command;
-use kfrac::fit::{Candidate, Certificate, Fit, FitError, FitOptions, Score, Shape};
+use kfrac::fit::{
+    Candidate, Certificate, Disk, Fit, FitError, FitOptions, FitProgress, Method, Score, Shape,
+};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::about;
 use kfrac::{Bits, Fractal, fit};
+use proptest::collection::vec;
+use proptest::{array, option, prelude::*};
 
 /// Returns Sierpiński's gasket with its corners in a picture of 64 x 56 pixels.
 fn gasket() -> Candidate {
     let half = DMat2::from_diagonal(DVec2::splat(0.5));
-    let corners = [(2.3, 2.2), (61.6, 2.2), (32.1, 53.4)];
+    let corners = [(2.3, 2.2), (61.6, 2.2), (31.95, 53.555306)];
     Candidate::of_maps(corners.map(|(x, y)| about(half, DVec2::new(x, y))).into())
 }
 
@@ -57,6 +63,9 @@ fn the_gasket_is_found() {
         .map(|map| map.matrix2.determinant().abs().sqrt());
     assert!(ratios.all(|ratio| (ratio - 0.5).abs() < 1e-12), "{found:?}");
     assert!(found.exact, "{found:?}");
+    let dimension = found.dimension.as_ref().unwrap();
+    assert_eq!(dimension.closed_form.as_deref(), Some("log(3)/log(2)"));
+    assert!((72..=240).contains(&found.bits), "{}", found.bits);
 }
 
 #[test]
@@ -125,6 +134,82 @@ fn pictures_without_a_shape_are_refused() {
     );
 }
 
+#[test]
+fn huge_pictures_are_refused() {
+    let huge = Shape::new(Bits::new(1 << 16, 2)).unwrap_err();
+    assert!(matches!(huge, FitError::TooLarge { .. }), "{huge}");
+}
+
+/// A fit of the picture of an exact fit is exact again.
+#[test]
+fn a_fit_of_a_fit_is_exact() {
+    let (_, found) = quick();
+    let shape = picture(&found.candidate, [64, 56]);
+    let again = fit(&shape, &options()).unwrap();
+    assert!(again.exact && again.score.hausdorff <= 1.0, "{again:?}");
+    assert!(again.score.iou > 0.95, "{again:?}");
+}
+
+/// Margins change nothing. A picture that is turned or doubled has a system that is turned or doubled: their pictures are
+/// compared, as maps may turn by the symmetries of the set.
+#[test]
+fn moved_pictures_have_moved_maps() {
+    let (shape, found) = quick();
+    let [width, height] = shape.size();
+    let bits = shape.bits();
+    let moved = Bits::of(width + 9, height + 7, |column, row| {
+        column >= 5
+            && row >= 4
+            && column < width + 5
+            && row < height + 4
+            && bits.get(column - 5, row - 4)
+    });
+    let shift = DAffine2::from_translation(DVec2::new(5.0, 3.0));
+    let other = fit(&Shape::new(moved).unwrap(), &options()).unwrap();
+    for (one, other) in found
+        .candidate
+        .moved(&shift)
+        .maps
+        .iter()
+        .zip(&other.candidate.maps)
+    {
+        assert!(one.abs_diff_eq(*other, 1e-9), "{one} {other}");
+    }
+    let turned = Bits::of(height, width, |column, row| {
+        bits.get(row, height - 1 - column)
+    });
+    let doubled = Bits::of(2 * width, 2 * height, |column, row| {
+        bits.get(column / 2, row / 2)
+    });
+    let quarter = DAffine2::from_mat2_translation(
+        DMat2::from_cols(DVec2::NEG_Y, DVec2::X),
+        DVec2::new(0.0, width as f64),
+    );
+    let double = DAffine2::from_scale(DVec2::splat(2.0));
+    for (bits, there) in [(turned, quarter), (doubled, double)] {
+        let shape = Shape::new(bits).unwrap();
+        let other = fit(&shape, &options()).unwrap();
+        let moved = found.candidate.moved(&there);
+        let [one, other] = [&moved, &other.candidate]
+            .map(|candidate| candidate.attractor(shape.size(), None).unwrap().pixels);
+        let score = Score::new(&one, &other);
+        assert!(score.hausdorff <= 3.0 && score.iou > 0.6, "{score:?}");
+    }
+}
+
+#[test]
+fn progress_is_reported() {
+    let progress = Arc::new(FitProgress::default());
+    let (shape, _) = quick();
+    let options = options()
+        .method(Method::Collage)
+        .progress(Some(progress.clone()));
+    let found = fit(shape, &options).unwrap();
+    assert_eq!(progress.evaluated(), found.evaluations);
+    let best = progress.best().unwrap();
+    assert!(best.maps == 3 && best.iou > 0.8, "{best:?}");
+}
+
 /// A line one pixel wide is a shape like any other.
 #[test]
 fn a_line_is_fitted() {
@@ -153,22 +238,37 @@ fn files_are_grown_in_place() {
     assert!(fractal.set("bend", 10.0).is_ok());
 }
 
-#[test]
-fn the_bound_holds_for_any_candidate() {
-    let shape = picture(&gasket(), [64, 56]);
-    for (number, factor) in [0.5, 0.7, 0.9].into_iter().enumerate() {
-        let turn = DMat2::from_angle(number as f64) * factor;
-        let wrong = Candidate::of_maps(vec![
-            about(turn, DVec2::new(20.0, 20.0)),
-            about(
-                DMat2::from_cols(DVec2::new(0.4, 0.3), DVec2::new(-0.6, 0.1)),
-                DVec2::new(40.0, 30.0),
-            ),
-        ]);
-        let drawn = wrong.attractor([64, 56], None).unwrap().pixels;
-        let score = Score::new(shape.bits(), &drawn);
-        let bound = Certificate::new(&shape, &wrong).bound;
-        assert!(bound >= score.hausdorff, "{bound} {score:?}");
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn the_bound_holds_for_any_candidate(
+        maps in vec((array::uniform4(-0.65..0.65f64), array::uniform2(4.0..60.0f64)), 2..5),
+        disk in option::of((array::uniform2(5.0..50.0f64), 0.0..12.0f64)),
+    ) {
+        let maps = maps.into_iter().map(|(matrix, fixed)| {
+            about(DMat2::from_cols_array(&matrix), DVec2::from(fixed))
+        });
+        let mut wrong = Candidate::of_maps(maps.collect());
+        wrong.disks.extend(disk.map(|(centre, radius)| Disk {
+            centre: centre.into(),
+            radius,
+        }));
+        let (shape, _) = quick();
+        // Points outside the picture count for the attractor, which is drawn in a larger one.
+        let roomy = DVec2::splat(128.0);
+        let there = DAffine2::from_translation(roomy);
+        let Ok(drawn) = wrong.moved(&there).attractor([320, 312], None) else {
+            return Ok(());
+        };
+        prop_assume!(!drawn.leaves);
+        let bits = shape.bits();
+        let own = Bits::of(320, 312, |column, row| {
+            (128..192).contains(&column) && (128..184).contains(&row) && bits.get(column - 128, row - 128)
+        });
+        let score = Score::new(&own, &drawn.pixels);
+        let bound = Certificate::new(shape, &wrong).bound;
+        prop_assert!(bound >= score.hausdorff, "{bound} {score:?}");
     }
 }
 
@@ -190,6 +290,16 @@ fn the_command_writes_a_file() {
     assert!(report["iou"].as_f64().unwrap() > 0.7, "{report}");
     assert!(report["bound"].as_f64() >= report["hausdorff"].as_f64());
     Fractal::open(&rule).unwrap();
+
+    let damaged = fs::read(&picture).unwrap();
+    fs::write(&picture, &damaged[..damaged.len() / 2]).unwrap();
+    let mut command = Command::cargo_bin("kfrac").unwrap();
+    let output = command.arg("fit").arg(&picture).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        String::from_utf8_lossy(&output.stderr).contains("PNG cannot be read"),
+        "{output:?}"
+    );
 
     fs::write(&picture, Fractal::named("gasket").unwrap().svg().unwrap()).unwrap();
     let mut command = Command::cargo_bin("kfrac").unwrap();

@@ -51,6 +51,8 @@ fn examples_work() {
         let drawn = kfrac::Fractal::named("gasket").unwrap().png(24).unwrap();
         fs::write(folder.path().join(picture), drawn).unwrap();
     }
+    let island = kfrac::Fractal::named("koch-snowflake").unwrap().png(150);
+    fs::write(folder.path().join("island.png"), island.unwrap()).unwrap();
     let mut pages = vec![printed(&["--help"])];
     pages.extend(commands().iter().map(|name| printed(&[name, "--help"])));
     for page in &pages {

@@ -1,28 +1,32 @@
 //! `kfrac fit`: finds a system of maps whose attractor is a picture.
 
-use std::fmt::Write as _;
-use std::io::Read as _;
+mod report;
+
 use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
 use clap::ValueHint;
 use clap::builder::PossibleValue;
-use serde::Serialize;
 
-use crate::Bits;
-use crate::catalogue::open_file;
-use crate::fit::{Fit, FitOptions, Method, Shape};
-use crate::import::{Channel, Raster};
+use crate::fit::{BranchPoints, FitError, FitOptions, FitProgress, Method, Shape};
+use crate::geometry::DVec2;
 
-use super::{Failure, growth, help, input, number, output, text};
+use self::report::Report;
+use super::pixels::PixelArguments;
+use super::{Failure, growth, help, number, output, progress, readable, text};
 
 /// Finds a system of maps whose attractor is a picture, and writes it as a file
 ///
 /// The pixels that are dark, or opaque where the picture has transparent ones, are the shape. Smaller copies of the
-/// shape that cover it are searched (Barnsley's collage), and refined on their attractor. The file is of the kind ifs;
+/// shape that cover it are searched and refined on their attractor (Barnsley's collage), or placed at branch points of
+/// its skeleton (Libeskind-Hadas & Maragos 1987), or found by the picture's moments. The file is of the kind ifs;
 /// `kfrac grow` draws it in the place of the picture, and its parameter `bend` turns all copies.
+///
+/// Lines of a pen hide what is thinner: draw approximants without strokes, as `kfrac grow --method chaos` and
+/// `--detail 1 --stroke none` do, or raise --threshold.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -32,7 +36,7 @@ pub(super) struct Arguments {
     /// File to write, or - for standard output [default: only the measures are printed]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
-    /// Draws shape, attractor, difference and copies into a PNG file
+    /// Draws shape, skeleton, attractor, difference, copies and collage into a PNG file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     report: Option<PathBuf>,
     /// Number of maps, or a range of numbers of which the least description length chooses
@@ -41,19 +45,23 @@ pub(super) struct Arguments {
     /// How the system is found
     #[arg(long, value_name = "METHOD", default_value = "auto", value_parser = method())]
     method: Method,
+    /// Central branch point of the skeleton, in pixels from the lower left corner, with y up: the largest copy's [default:
+    /// the branch point with the largest radius]
+    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
+    centre: Option<DVec2>,
+    /// Branch point of the skeleton that is the centre of a copy; may be given several times [default: those whose copies
+    /// explain the boundary]
+    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
+    branch: Vec<DVec2>,
     /// Admits only similarities
     #[arg(long)]
     similar: bool,
-    /// Number of condensation disks
+    /// Number of condensation disks; by the skeleton, the largest number [default there: as many as are needed]
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = number::whole("a number of disks", 0..=32_usize))]
     disks: usize,
-    /// Least darkness or opacity, from 1 to 255, of a pixel of the shape; or otsu, for the best separation of the pixels
-    /// (Otsu 1979)
-    #[arg(long, value_name = "T", default_value = "otsu", value_parser = threshold)]
-    threshold: Threshold,
-    /// Fits the light or transparent pixels instead
-    #[arg(long)]
-    invert: bool,
+    /// Fits the weights of the maps to the darkness or opacity of the pixels, for random iteration
+    #[arg(long, conflicts_with = "disks")]
+    density: bool,
     /// Number of systems that are evaluated for each number of maps, approximately
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = number::whole("a number of evaluations", 100..=100_000_000_usize))]
     effort: usize,
@@ -70,12 +78,16 @@ pub(super) struct Arguments {
     /// complement. collage is the distance of the shape from its collage, contraction the largest factor of a map, and
     /// bound the largest distance that they allow. bits is the number of bits of all numbers if each has so few that iou
     /// falls by at most 0.005. exact is true if the pictures are the same, but for pixels that the attractor only
-    /// touches.
+    /// touches. description is the length by which methods are compared, in bits; others are the methods that lost, with
+    /// theirs. dimension is that of the attractor, with an upper bound where it is not decided. density has the weights of
+    /// the maps and the share of the mass that lies elsewhere.
     #[arg(long)]
     json: bool,
     /// Prints only errors
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    pixels: PixelArguments,
 }
 
 const MORE: &str = "\
@@ -84,23 +96,11 @@ Examples:
       Fits 2 to 8 maps to the dark pixels of a picture
   kfrac fit gasket.png --maps 3 --similar -o gasket.yaml
       Fits three similarities
-  kfrac fit leaf.png --maps 4 --report compare.png --json
-      Draws shape, attractor, difference and copies, and prints the measures
+  kfrac fit island.png --method skeleton --similar --report compare.png
+      Places copies at branch points of the skeleton, and draws what was found
+  kfrac fit island.png --centre 75,75 --branch 75,121 --branch 35,98 --branch 115,98
+      Places copies at three branch points that are known
 ";
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Threshold {
-    Otsu,
-    Value(u8),
-}
-
-fn threshold(text: &str) -> Result<Threshold, String> {
-    match text.parse() {
-        _ if text == "otsu" => Ok(Threshold::Otsu),
-        Ok(value @ 1..) => Ok(Threshold::Value(value)),
-        _ => Err("expected otsu or a number from 1 to 255".into()),
-    }
-}
 
 fn maps(text: &str) -> Result<RangeInclusive<usize>, String> {
     let (least, most) = text.split_once("..").unwrap_or((text, text));
@@ -108,6 +108,15 @@ fn maps(text: &str) -> Result<RangeInclusive<usize>, String> {
         (Ok(least), Ok(most)) if 2 <= least && least <= most && most <= 32 => Ok(least..=most),
         _ => Err("expected a number from 2 to 32, or a range such as 2..8".into()),
     }
+}
+
+fn point(text: &str) -> Result<DVec2, String> {
+    let numbers = text.split_once(',').and_then(|(x, y)| {
+        let [x, y] = [x, y].map(|it| it.trim().parse::<f64>().ok());
+        Some(DVec2::new(x?, y?))
+    });
+    let finite = numbers.filter(|point| point.is_finite());
+    finite.ok_or_else(|| "expected two numbers, as in 64,40.5".into())
 }
 
 fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
@@ -120,67 +129,24 @@ fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
     })
 }
 
-#[derive(Serialize)]
-struct Report<'a> {
-    picture: &'a str,
-    width: usize,
-    height: usize,
-    threshold: u8,
-    pixels: u64,
-    method: &'static str,
-    maps: usize,
-    disks: usize,
-    exact: bool,
-    iou: f64,
-    boundary_iou: f64,
-    hausdorff: f64,
-    hausdorff95: f64,
-    mean_distance: f64,
-    coverage: f64,
-    collage: f64,
-    contraction: f64,
-    bound: f64,
-    bits: u64,
-    bits_per_pixel: f64,
-    evaluations: usize,
-    seed: u64,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (name, raster) = read(&arguments.picture)?;
-    let raster = if arguments.invert {
-        raster.inverted()
-    } else {
-        raster
-    };
-    let threshold = match arguments.threshold {
-        Threshold::Otsu => raster.otsu(),
-        Threshold::Value(value) => value,
-    };
-    let bits = Bits::of_bytes(&raster.values, raster.width, raster.height, threshold);
-    let quality = match raster.channel {
-        Channel::Darkness => "dark",
-        Channel::Alpha => "opaque",
-    };
-    let shape = Shape::new(bits).map_err(|error| {
-        anyhow!(
-            "{name}: {error} ({quality} pixels, threshold {threshold}); try --threshold or --invert"
-        )
-    })?;
-    let options = FitOptions::default()
-        .method(arguments.method)
-        .maps(arguments.maps.clone())
-        .similar(arguments.similar)
-        .disks(arguments.disks)
-        .effort(arguments.effort)
-        .seed(arguments.seed);
-    let options = match arguments.threads {
-        Some(threads) => options.threads(threads),
-        None => options,
-    };
-    let fit = crate::fit(&shape, &options).with_context(|| name.clone())?;
+    let set = arguments.pixels.read(&arguments.picture)?;
+    let explain = |error: FitError| anyhow!("{}: {error} ({})", set.name, set.description);
+    let mut shape = Shape::new(set.bits.clone()).map_err(explain)?;
+    if arguments.density {
+        shape = shape.with_values(&set.values).map_err(explain)?;
+    }
+    let progress = Arc::new(FitProgress::default());
+    let options = arguments.options().progress(Some(progress.clone()));
+    let is_shown = !arguments.quiet;
+    let fit = progress::watched_as(
+        is_shown,
+        || described(&progress),
+        || crate::fit(&shape, &options),
+    );
+    let fit = fit.map_err(explain)?;
     if let Some(path) = &arguments.output {
-        output::write_text(path, &fit.yaml(&shape, &title(&name)))?;
+        output::write_text(path, &fit.yaml(&shape, &title(&set.name)))?;
     }
     if let Some(path) = &arguments.report {
         output::write(path, true, |out, _| {
@@ -188,138 +154,69 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             Ok(drawn.with_context(|| output::called(path))?)
         })?;
     }
-    let report = Report::new(&name, &shape, threshold, &fit, arguments.seed);
+    let report = Report::new(&set, &shape, &fit, arguments.seed);
+    let is_free = arguments.output.as_deref() != Some(Path::new("-"));
     if arguments.json {
         output::print_json(&report)?;
-    } else if !arguments.quiet {
-        let is_free = arguments.output.as_deref() != Some(Path::new("-"));
-        if is_free {
-            output::print(&report.described(quality))?;
-        }
-        if let Some(path) = arguments.output.as_deref().filter(|_| is_free) {
-            let (path, [width, height]) = (path.display(), shape.size());
-            text::print_message(&format!(
-                "{path}: {} maps; `kfrac grow {path} --size {width}x{height}` draws them",
-                report.maps
-            ));
-        }
+    } else if !arguments.quiet && is_free {
+        output::print(&report.described(&set.description))?;
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
+    if let Some(path) = arguments
+        .output
+        .as_deref()
+        .filter(|_| is_free && !arguments.json)
+    {
+        let (path, [width, height]) = (path.display(), shape.size());
+        text::print_message(&format!(
+            "{path}: {}; `kfrac grow {path} --size {width}x{height}` draws it",
+            report.system()
+        ));
+    }
+    if let Some(warning) = &set.warning {
+        text::print_message(&format!("warning: {warning}"));
     }
     Ok(())
 }
 
-/// Returns the name and the values of a picture.
-fn read(path: &Path) -> Result<(String, Raster), Failure> {
-    const MAX_BYTES: u64 = 1 << 31;
-    let is_standard = path == Path::new("-");
-    let name = if is_standard {
-        "standard input".into()
-    } else {
-        path.display().to_string()
-    };
-    input::note(path);
-    let mut bytes = Vec::new();
-    let read = if is_standard {
-        std::io::stdin()
-            .lock()
-            .take(MAX_BYTES)
-            .read_to_end(&mut bytes)
-    } else {
-        open_file(path)?.take(MAX_BYTES).read_to_end(&mut bytes)
-    };
-    read.with_context(|| format!("{name} cannot be read"))?;
-    let raster = Raster::read(&bytes, None).with_context(|| name.clone())?;
-    Ok((name, raster))
+impl Arguments {
+    fn options(&self) -> FitOptions {
+        let options = FitOptions::default()
+            .method(self.method)
+            .maps(self.maps.clone())
+            .similar(self.similar)
+            .disks(self.disks)
+            .branch_points(BranchPoints {
+                centre: self.centre,
+                branches: self.branch.clone(),
+            })
+            .effort(self.effort)
+            .seed(self.seed);
+        match self.threads {
+            Some(threads) => options.threads(threads),
+            None => options,
+        }
+    }
+}
+
+/// Describes the best candidate so far.
+fn described(progress: &FitProgress) -> String {
+    let evaluated = readable::grouped(&progress.evaluated().into());
+    match progress.best() {
+        Some(best) => format!(
+            "{evaluated} systems evaluated, best: {} maps by {}, overlap {:.4}",
+            best.maps,
+            best.method.name(),
+            best.iou
+        ),
+        None => format!("{evaluated} systems evaluated"),
+    }
 }
 
 /// Returns the name of a picture without its folder.
 fn title(name: &str) -> String {
     let file = Path::new(name).file_name();
     file.map_or_else(|| name.into(), |file| file.to_string_lossy().into_owned())
-}
-
-impl<'a> Report<'a> {
-    fn new(name: &'a str, shape: &Shape, threshold: u8, fit: &Fit, seed: u64) -> Self {
-        let [width, height] = shape.size();
-        let score = &fit.score;
-        Self {
-            picture: name,
-            width,
-            height,
-            threshold,
-            pixels: shape.bits().count(),
-            method: fit.method.name(),
-            maps: fit.candidate.maps.len(),
-            disks: fit.candidate.disks.len(),
-            exact: fit.exact,
-            iou: score.iou,
-            boundary_iou: score.boundary_iou,
-            hausdorff: score.hausdorff,
-            hausdorff95: score.hausdorff95,
-            mean_distance: score.mean_distance,
-            coverage: score.coverage,
-            collage: fit.certificate.collage,
-            contraction: fit.certificate.contraction,
-            bound: fit.certificate.bound,
-            bits: fit.bits,
-            bits_per_pixel: fit.bits_per_pixel(shape),
-            evaluations: fit.evaluations,
-            seed,
-        }
-    }
-
-    /// Describes the fit in text.
-    fn described(&self, quality: &str) -> String {
-        let mut text = String::new();
-        let mut line = |label: &str, value: &str| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{label:<14}{value}");
-        };
-        let Self {
-            width,
-            height,
-            pixels,
-            threshold,
-            ..
-        } = self;
-        line(
-            "shape",
-            &format!("{pixels} {quality} pixels of {width} x {height} (threshold {threshold})"),
-        );
-        let disks = match self.disks {
-            0 => String::new(),
-            count => format!(" and {count} disks"),
-        };
-        line(
-            "system",
-            &format!("{} maps{disks}, by {}", self.maps, self.method),
-        );
-        let exact = if self.exact { ": the same picture" } else { "" };
-        line(
-            "overlap",
-            &format!(
-                "{:.4} of the union, {:.4} along the boundaries{exact}",
-                self.iou, self.boundary_iou
-            ),
-        );
-        line(
-            "distance",
-            &format!(
-                "{:.2} pixels at most, {:.2} for 95 %, {:.3} in the mean",
-                self.hausdorff, self.hausdorff95, self.mean_distance
-            ),
-        );
-        line(
-            "collage",
-            &format!(
-                "{:.2} pixels, contraction {:.4}: at most {:.2} pixels by the collage theorem",
-                self.collage, self.contraction, self.bound
-            ),
-        );
-        line(
-            "size",
-            &format!("{} bits, {:.4} a pixel", self.bits, self.bits_per_pixel),
-        );
-        line("evaluations", &self.evaluations.to_string());
-        text
-    }
 }

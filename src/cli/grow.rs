@@ -2,6 +2,7 @@
 
 mod chaos;
 mod drawing;
+mod morphed;
 mod plan;
 mod plot;
 mod scene;
@@ -39,6 +40,7 @@ use super::rule::{Loaded, RuleArguments};
 use super::{Failure, format, help, output, readable, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
+use morphed::MorphArguments;
 use plan::{Format, Plan};
 use plot::PlotArguments;
 use scene::SceneArguments;
@@ -111,6 +113,8 @@ pub(super) struct Arguments {
     scene: SceneArguments,
     #[command(flatten)]
     chaos: ChaosArguments,
+    #[command(flatten)]
+    morphed: MorphArguments,
 }
 
 const MORE: &str = "\
@@ -151,6 +155,8 @@ Examples:
       Lists the first elements as CSV
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
       Draws an iterated function system by random iteration, into barnsley-fern.png
+  kfrac grow maple-leaf --method chaos --morph close:2,open:3 -o leaf.png
+      Fills gaps between the points of a picture, and removes what is thin
   kfrac grow menger --from 35,20 --perspective 40 -o menger.png
       Draws a set in space, to the pixel
   kfrac grow menger --method chaos --points 20M -o menger.png
@@ -284,7 +290,7 @@ impl Arguments {
             } => Drawing::new(self, loaded, *format, shown, path)?.write(*is_light),
             Plan::Chaos(table) => {
                 let game = chaos::PlaneGame::new(self, &loaded)?;
-                self.growth.write(path, |out, progress| match table {
+                self.write_picture(path, |out, progress| match table {
                     Some(format) => game.list(*format, progress, out, path),
                     None => game.draw(progress, out, path),
                 })

@@ -1,14 +1,16 @@
 //! `kfrac morph`: erosion, dilation, opening and closing of pictures.
 
+use std::io::Write;
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::ValueHint;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::Bits;
 use crate::export::write_bits;
-use crate::morphology::{Disk, NotApplied, Sequence};
+use crate::morphology::{DiskFamily, NotApplied, Sequence};
 use crate::parallel::all_cores;
 
 use super::pixels::PixelArguments;
@@ -30,7 +32,7 @@ pub(super) struct Arguments {
     operations: Sequence,
     /// Family of disks
     #[arg(long, default_value = "euclid", value_parser = disk())]
-    disk: Disk,
+    disk: DiskFamily,
     /// File of the result, a PNG, or - for standard output
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: PathBuf,
@@ -53,40 +55,52 @@ Examples:
 ";
 
 /// Parses the name of a family of disks.
-pub(super) fn disk() -> impl TypedValueParser<Value = Disk> {
-    let values = Disk::ALL.map(|disk| {
+pub(super) fn disk() -> impl TypedValueParser<Value = DiskFamily> {
+    let values = DiskFamily::ALL.map(|disk| {
         PossibleValue::new(disk.name()).help(match disk {
-            Disk::Plus => "A pixel and its four neighbours, added up: |x| + |y| <= size",
-            Disk::Square => "Squares of 2 size + 1 pixels",
-            Disk::Octagon => "Octagons of 4 size + 1 pixels, the sums of both",
-            Disk::Euclid => "Pixels at a distance of at most size, which may have a fraction",
+            DiskFamily::Plus => "A pixel and its four neighbours, added up: |x| + |y| <= size",
+            DiskFamily::Square => "Squares of 2 size + 1 pixels",
+            DiskFamily::Octagon => "Octagons of 4 size + 1 pixels, the sums of both",
+            DiskFamily::Euclid => "Pixels at a distance of at most size, which may have a fraction",
         })
     });
     PossibleValuesParser::new(values).map(|name| {
-        let found = Disk::ALL.into_iter().find(|disk| disk.name() == name);
+        let found = DiskFamily::ALL.into_iter().find(|disk| disk.name() == name);
         found.unwrap_or_default()
     })
 }
 
 /// Returns the failure to apply a sequence.
-pub(super) fn failed(error: &NotApplied) -> Failure {
+fn failed(error: &NotApplied) -> Failure {
     match error {
         NotApplied::Fraction { .. } => Failure::Usage(error.to_string()),
         _ => anyhow::anyhow!("{error}").into(),
     }
 }
 
+/// Applies operations to a set of pixels, and writes the result as a PNG. Returns it.
+pub(super) fn write(
+    set: &Bits,
+    operations: &Sequence,
+    disk: DiskFamily,
+    threads: NonZero<usize>,
+    path: &Path,
+    out: &mut impl Write,
+) -> Result<Bits, Failure> {
+    let result = operations.apply(set, disk, threads);
+    let result = result.map_err(|error| failed(&error))?;
+    let written = write_bits(&result, out);
+    written.with_context(|| format!("{} cannot be written", output::called(path)))?;
+    Ok(result)
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let set = arguments.pixels.read(&arguments.picture)?;
     let threads = arguments.threads.unwrap_or_else(all_cores);
-    let result = arguments
-        .operations
-        .apply(&set.bits, arguments.disk, threads);
-    let result = result.map_err(|error| failed(&error))?;
     let path = &arguments.output;
-    let (_, bytes) = output::write(path, true, |out, _| {
-        let written = write_bits(&result, out);
-        Ok(written.with_context(|| format!("{} cannot be written", output::called(path)))?)
+    let (operations, disk) = (&arguments.operations, arguments.disk);
+    let (result, bytes) = output::write(path, true, |mut out, _| {
+        write(&set.bits, operations, disk, threads, path, &mut out)
     })?;
     if !arguments.quiet {
         if let Some(warning) = set.warning {

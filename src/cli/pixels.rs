@@ -13,21 +13,36 @@ use crate::import::{Channel, Raster};
 use super::{Failure, input};
 
 /// Options for pictures.
-#[derive(clap::Args, Clone, Copy)]
+#[derive(clap::Args, Clone, Copy, Default)]
 #[command(next_help_heading = "Pictures")]
 pub(super) struct PixelArguments {
     /// Property of a pixel that decides whether it belongs to the set [default: opacity, if any pixel is
     /// transparent, or else darkness]
     #[arg(long, value_parser = channel())]
     pub(super) channel: Option<Channel>,
-    /// Least darkness or opacity, from 1 to 255, of a pixel of the set [default: the best separation of the
-    /// pixels (Otsu 1979)]
-    #[arg(long, value_name = "T")]
-    #[arg(value_parser = clap::value_parser!(u8).range(1..))]
-    pub(super) threshold: Option<u8>,
+    /// Least darkness or opacity, from 1 to 255, of a pixel of the set; or otsu, for the best separation of the pixels
+    /// (Otsu 1979)
+    #[arg(long, value_name = "T", default_value = "otsu", value_parser = threshold)]
+    pub(super) threshold: Threshold,
     /// Takes the light or transparent pixels instead
     #[arg(long)]
     pub(super) invert: bool,
+}
+
+/// The least value of a pixel of the set.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Threshold {
+    #[default]
+    Otsu,
+    Value(u8),
+}
+
+fn threshold(text: &str) -> Result<Threshold, String> {
+    match text.parse() {
+        _ if text == "otsu" => Ok(Threshold::Otsu),
+        Ok(value @ 1..) => Ok(Threshold::Value(value)),
+        _ => Err("expected otsu or a number from 1 to 255".into()),
+    }
 }
 
 fn channel() -> impl clap::builder::TypedValueParser<Value = Channel> {
@@ -50,6 +65,10 @@ pub(super) struct PixelSet {
     /// The name of the picture.
     pub(super) name: String,
     pub(super) bits: Bits,
+    /// Darkness or opacity of every pixel, in rows from the top.
+    pub(super) values: Vec<u8>,
+    /// Least value of a pixel of the set.
+    pub(super) threshold: u8,
     /// Number, quality and threshold of the pixels.
     pub(super) description: String,
     /// A remark if most of the picture belongs to the set.
@@ -83,7 +102,10 @@ impl PixelArguments {
             true => picture.inverted(),
             false => picture,
         };
-        let threshold = self.threshold.unwrap_or_else(|| picture.otsu());
+        let threshold = match self.threshold {
+            Threshold::Otsu => picture.otsu(),
+            Threshold::Value(value) => value,
+        };
         let (width, height) = (picture.width, picture.height);
         let bits = Bits::of_bytes(&picture.values, width, height, threshold);
         let (set, all) = (bits.count(), picture.values.len() as u64);
@@ -99,7 +121,7 @@ impl PixelArguments {
             );
             return Err(anyhow!(message).into());
         }
-        let is_most = set > all / 2 && self.threshold.is_none();
+        let is_most = set > all / 2 && self.threshold == Threshold::Otsu;
         let warning = is_most.then(|| {
             format!(
                 "{:.0} % of all pixels are {quality}: with --invert, the others are taken",
@@ -109,6 +131,8 @@ impl PixelArguments {
         Ok(PixelSet {
             name,
             bits,
+            values: picture.values,
+            threshold,
             description: format!(
                 "{set} {quality} pixels of {width} x {height} (threshold {threshold})"
             ),

@@ -9,7 +9,7 @@ use anyhow::anyhow;
 use clap::ValueHint;
 
 use crate::figure::skeleton;
-use crate::morphology::{Disk, NoDistances, Skeleton, SkeletonOptions, SkeletonSubsets};
+use crate::morphology::{DiskFamily, NoDistances, Skeleton, SkeletonOptions, SkeletonSubsets};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels};
 use crate::style::{Named, Style};
@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     format: Option<Format>,
     /// Computes the centres of the maximal disks of a family
     #[arg(long, value_parser = morph::disk())]
-    disk: Option<Disk>,
+    disk: Option<DiskFamily>,
     /// Least angle in degrees at which the nearest points outside are seen from the end of a branch; larger ones leave
     /// fewer branches
     #[arg(long, value_name = "DEGREES", default_value_t = 60.0, value_parser = angle)]

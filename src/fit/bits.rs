@@ -1,33 +1,50 @@
 //! The number of bits that the numbers of a candidate need.
 
+use std::sync::atomic::AtomicBool;
+
+use crate::Bits;
+
 use super::collage::Form;
-use super::orbit::{Level, Orbit};
 use super::refine::Numbers;
-use super::{Candidate, Shape};
+use super::{Candidate, FitError, Shape, score};
 
 /// Fall of the intersection over union that rounding may cause.
 const FALL: f64 = 0.005;
+/// Largest number of bits of a number.
+const MOST: u32 = 24;
 
 /// Returns the least number of bits a number for which the intersection over union falls by at most [`FALL`], times
-/// the number of numbers.
+/// the number of numbers; `drawn` is the attractor.
 ///
-/// Numbers are images of points of the shape, from twice the longer side of the picture below 0 to twice that above.
+/// Stored are the images of points of the shape, from twice the longer side of the picture below 0 to twice that above,
+/// and centres and radii of disks. The attractor of the rounded numbers is drawn exactly.
 #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
-pub(super) fn of(shape: &Shape, candidate: &Candidate, form: Form) -> u64 {
-    const MOST: u32 = 24;
-    let numbers = Numbers::new(shape, candidate, form);
+pub(super) fn of(
+    shape: &Shape,
+    candidate: &Candidate,
+    drawn: &Bits,
+    cancel: Option<&AtomicBool>,
+) -> Result<u64, FitError> {
+    let numbers = Numbers::new(shape, candidate, Form::of(candidate));
     let exact = numbers.of(candidate);
-    let level = Level::new(shape, 256);
-    let mut orbit = Orbit::new(&level);
-    let whole = orbit.iou(candidate, &level);
+    let whole = score::iou(shape.bits(), drawn);
     let range = 4.0 * shape.size()[0].max(shape.size()[1]) as f64;
-    let enough = (4..MOST).find(|&bits| {
+    let mut enough = MOST;
+    for bits in 5..MOST {
         let step = range / f64::from(1u32 << bits);
-        let rounded: Vec<f64> = exact
-            .iter()
+        let rounded: Vec<f64> = { exact.iter() }
             .map(|value| (value / step).round() * step)
             .collect();
-        orbit.iou(&numbers.candidate(&rounded), &level) >= whole - FALL
-    });
-    u64::from(enough.unwrap_or(MOST)) * exact.len() as u64
+        // Rounded coarsely, maps need not contract.
+        let iou = match numbers.candidate(&rounded).attractor(shape.size(), cancel) {
+            Ok(attractor) => score::iou(shape.bits(), &attractor.pixels),
+            Err(FitError::DoesNotContract) => continue,
+            Err(error) => return Err(error),
+        };
+        if iou >= whole - FALL {
+            enough = bits;
+            break;
+        }
+    }
+    Ok(u64::from(enough) * exact.len() as u64)
 }

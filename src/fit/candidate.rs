@@ -70,6 +70,29 @@ impl Candidate {
         self.maps.iter().filter_map(fixed_point)
     }
 
+    /// Returns the candidate with its maps in the order in which their copies of a point lie around it, counterclockwise from
+    /// the right in eighths of a turn; in an eighth, from the left and from below.
+    pub(super) fn ordered(mut self, middle: DVec2) -> Self {
+        let key = |map: &DAffine2| {
+            let away = map.transform_point2(middle) - middle;
+            let eighth = libm::atan2(away.y, away.x) / std::f64::consts::FRAC_PI_4;
+            let hundredth = |value: f64| (value * 100.0).round();
+            (
+                eighth.round().rem_euclid(8.0),
+                hundredth(away.x),
+                hundredth(away.y),
+            )
+        };
+        self.maps.sort_by(|one, other| {
+            let (one, other) = (key(one), key(other));
+            let first = one.0.total_cmp(&other.0);
+            first
+                .then(one.1.total_cmp(&other.1))
+                .then(one.2.total_cmp(&other.2))
+        });
+        self
+    }
+
     /// Returns the candidate with every map f replaced by g ∘ f ∘ g⁻¹ and every disk by its image, where g is a
     /// similarity.
     #[must_use]

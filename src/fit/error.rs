@@ -23,6 +23,21 @@ pub enum FitError {
         /// Height of the picture.
         height: usize,
     },
+    /// There are not as many values as pixels.
+    #[error("there are {values} values for {width} x {height} pixels")]
+    Values {
+        /// Number of values.
+        values: usize,
+        /// Width of the picture.
+        width: usize,
+        /// Height of the picture.
+        height: usize,
+    },
+    /// No branch point of the skeleton is the place of a copy.
+    #[error(
+        "no copy of the shape lies at a branch point of its skeleton: name branch points, or take another method"
+    )]
+    NoCopies,
     /// The maps of a candidate do not contract.
     #[error("the maps do not contract in any norm of ellipses")]
     DoesNotContract,

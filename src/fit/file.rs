@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::geometry::{DAffine2, DVec2};
+use crate::measure::exact::Hausdorff;
 
 use super::candidate::is_similar;
 use super::snap::nearest_ratio;
@@ -33,12 +34,22 @@ impl Fit {
         let score = &self.score;
         let middle = shape.middle();
         let [width, height] = shape.size();
+        let disks = match self.candidate.disks.len() {
+            0 => String::new(),
+            1 => " and a disk".into(),
+            count => format!(" and {count} disks"),
+        };
+        let dimension = match &self.dimension {
+            Some(dimension) => format!("; dimension {}", described(dimension)),
+            None => String::new(),
+        };
         writeln!(text, "title: \"Fit of {name}\"")?;
         writeln!(
             text,
-            "about: \"{} maps. Intersection over union {:.4}, Hausdorff distance {:.2} pixels; collage {:.2} pixels, \
-             contraction {:.4}.\"",
+            "about: \"{} maps{disks}, by {}{dimension}. Intersection over union {:.4}, Hausdorff distance {:.2} pixels; \
+             collage {:.2} pixels, contraction {:.4}.\"",
             self.candidate.maps.len(),
+            self.method.name(),
             score.iou,
             score.hausdorff,
             self.certificate.collage,
@@ -63,7 +74,10 @@ impl Fit {
         let there = DAffine2::from_translation(-middle);
         let own = self.candidate.moved(&there);
         let names = names(&own.maps, shape.radius());
-        let weights = weights(&own.maps);
+        let weights = match &self.density {
+            Some(density) => density.weights.clone(),
+            None => weights(&own.maps),
+        };
         for ((map, name), weight) in own.maps.iter().zip(names).zip(weights) {
             writeln!(
                 text,
@@ -86,6 +100,23 @@ impl Fit {
             text,
             "view: {{window: [{left}, {bottom}, {width}, {height}], margin: 0}}"
         )
+    }
+}
+
+/// Describes a dimension: its value and closed form, or its bound.
+pub(super) fn described(dimension: &Hausdorff) -> String {
+    let value = |value: f64| decimal(value, 6);
+    match (
+        dimension.value,
+        &dimension.closed_form,
+        dimension.upper_bound,
+    ) {
+        (Some(exact), Some(form), _) if *form != value(exact) => {
+            format!("{form} = {}", value(exact))
+        }
+        (Some(exact), ..) => value(exact),
+        (None, _, Some(bound)) => format!("at most {}", value(bound)),
+        (None, _, None) => "unknown".into(),
     }
 }
 
@@ -182,7 +213,7 @@ fn names(maps: &[DAffine2], radius: f64) -> Vec<String> {
 }
 
 /// Returns weights in proportion to the areas of copies, none below a hundredth.
-fn weights(maps: &[DAffine2]) -> Vec<f64> {
+pub(super) fn weights(maps: &[DAffine2]) -> Vec<f64> {
     let areas = maps.iter().map(|map| map.matrix2.determinant().abs());
     let total: f64 = areas.clone().sum();
     areas

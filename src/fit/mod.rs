@@ -3,10 +3,15 @@
 //! A [`Shape`] is the set of the pixels of a picture; a [`Candidate`] has affine maps and condensation disks. [`fit`]
 //! searches the candidate whose [attractor](Candidate::attractor) is closest to the shape.
 //!
-//! The search is that of *collages* (Barnsley, Ervin, Hardin & Lancaster, "Solution of an inverse problem for fractals
-//! and other sets", 1986): similar copies of the shape that lie inside it are enumerated, those that cover it together
-//! are chosen by exchange, the maps are improved by least squares on pairs of nearest points, and the best candidates
-//! are refined on their attractors by CMA-ES.
+//! [`Method::Collage`] searches *collages* (Barnsley, Ervin, Hardin & Lancaster, "Solution of an inverse problem for
+//! fractals and other sets", 1986): similar copies of the shape that lie inside it are enumerated, those that cover it
+//! together are chosen by exchange, the maps are improved by least squares on pairs of nearest points, and the best
+//! candidates are refined on their attractors by CMA-ES.
+//!
+//! [`Method::Skeleton`] is the method of Libeskind-Hadas & Maragos (1987) without a person who points: copies at branch
+//! points of the skeleton, and maximal disks. It suits shapes whose copies have a body, such as islands and leaves.
+//!
+//! [`Method::Moments`] begins with systems whose invariant measure has the moments of the picture (Vrscay & Roehrig 1989).
 
 mod attractor;
 mod bits;
@@ -14,28 +19,38 @@ mod candidate;
 mod certificate;
 mod cma;
 mod collage;
+mod density;
 mod error;
 mod file;
+mod methods;
+mod moments;
 mod options;
 mod orbit;
+mod progress;
 mod refine;
 mod report;
 mod score;
 mod shape;
+mod skeleton;
 mod snap;
 mod symmetry;
 
 pub use attractor::Attractor;
 pub use candidate::{Candidate, Disk};
 pub use certificate::Certificate;
+pub use density::Density;
 pub use error::FitError;
 pub use options::{FitOptions, Method};
+pub use progress::{BestSoFar, FitProgress};
 pub use report::ReportError;
 pub use score::Score;
 pub use shape::Shape;
+pub use skeleton::BranchPoints;
 
-use collage::{Collage, Form};
-use refine::Refined;
+use crate::geometry::DAffine2;
+use crate::measure::exact::{Effort, GraphDirectedSystem, Hausdorff, dimensions_within};
+
+use methods::Found;
 
 /// A system that was fitted to a shape, with its measures.
 #[derive(Clone, Debug)]
@@ -54,8 +69,32 @@ pub struct Fit {
     pub bits: u64,
     /// The collage theorem's bound.
     pub certificate: Certificate,
+    /// Dimension of the attractor as far as it is known exactly; `None` if a map does not contract.
+    pub dimension: Option<Hausdorff>,
+    /// Weights of the maps and the distance of their measure from the picture's, if the shape [has
+    /// values](Shape::with_values).
+    pub density: Option<Density>,
+    /// Description length in bits: 10 for each number, and 6 for each cell in which attractor and shape differ by more
+    /// than a cell, of at most 160 along a side.
+    pub description: f64,
+    /// Results of the other methods that [`Method::Auto`] tried, shortest description first.
+    pub others: Vec<Rival>,
     /// Number of candidates that were evaluated.
     pub evaluations: usize,
+}
+
+/// The result of a method that another one surpassed.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Rival {
+    /// The method.
+    pub method: Method,
+    /// Its candidate.
+    pub candidate: Candidate,
+    /// Its measures.
+    pub score: Score,
+    /// Its description length in bits.
+    pub description: f64,
 }
 
 /// Fits a system of maps to a shape.
@@ -83,45 +122,64 @@ pub struct Fit {
 ///
 /// # Errors
 ///
-/// Returns an error if the number of maps is not from 2 to 32, or if the work is cancelled.
+/// Returns an error if the number of maps is not from 2 to 32, if [`Method::Skeleton`] finds no copies, or if the work is
+/// cancelled.
 pub fn fit(shape: &Shape, options: &FitOptions) -> Result<Fit, FitError> {
     let (least, most) = (*options.maps.start(), *options.maps.end());
     if least < 2 || most > 32 || least > most {
         return Err(FitError::Maps(if least < 2 { least } else { most }));
     }
-    let collage = Collage::new(shape, options)?;
-    let all = collage.search()?;
+    // Margins change nothing: pictures that are moved have maps that are moved.
+    let (cropped, there) = shape.cropped();
+    let options = options.moved(&there.inverse());
+    let (mut found, evaluations) = methods::found(&cropped, &options)?;
     let cancel = options.cancel.as_deref();
-    let mut found = all[0].clone();
-    let mut attractor = found.candidate.attractor(shape.size(), cancel)?;
-    let iou = |drawn: &Attractor| score::iou(shape.bits(), &drawn.pixels);
-    let before = iou(&attractor);
-    let is_similar = |it: &&Refined| it.form == Form::Similar && it.candidate.disks.is_empty();
-    if let Some(similar) = all.iter().find(is_similar) {
-        let simple =
-            symmetry::simplified(&similar.candidate, &symmetry::symmetries(collage.ground()));
-        let mut snapped = snap::snap(shape, collage.fine(), &simple, before, cancel)?;
-        let is_exact = |it: &(Candidate, Attractor)| it.1.is(shape.bits());
-        if simple != similar.candidate && !snapped.as_ref().is_some_and(is_exact) {
-            let other = snap::snap(shape, collage.fine(), &similar.candidate, before, cancel)?;
-            snapped = other.or(snapped);
-        }
-        if let Some((candidate, drawn)) = snapped {
-            found = Refined {
-                candidate,
-                ..similar.clone()
-            };
-            attractor = drawn;
-        }
-    }
+    let mut rivals = found.split_off(1);
+    rivals.sort_by(|one, other| one.description.total_cmp(&other.description));
+    let others = { rivals.into_iter() }
+        .map(|rival| rival.measured(shape, &there, cancel))
+        .collect::<Result<_, _>>()?;
+    let Found {
+        candidate,
+        method,
+        description,
+    } = found.swap_remove(0);
+    // Branch points that are given keep their order.
+    let candidate = match options.branch_points.branches.is_empty() {
+        true => candidate.ordered(cropped.middle()),
+        false => candidate,
+    };
+    let candidate = candidate.moved(&there);
+    let attractor = candidate.attractor(shape.size(), cancel)?;
     Ok(Fit {
         score: Score::new(shape.bits(), &attractor.pixels),
         exact: attractor.is(shape.bits()),
-        method: Method::Collage,
-        bits: bits::of(shape, &found.candidate, found.form),
-        certificate: Certificate::new(shape, &found.candidate),
-        candidate: found.candidate,
-        evaluations: collage.evaluations(),
+        bits: bits::of(shape, &candidate, &attractor.pixels, cancel)?,
+        certificate: Certificate::new(shape, &candidate),
+        dimension: dimension(&candidate),
+        density: Density::of(shape, &candidate),
+        candidate,
+        method,
+        description,
+        others,
+        evaluations,
+    })
+}
+
+/// Returns the dimension of a candidate's attractor.
+fn dimension(candidate: &Candidate) -> Option<Hausdorff> {
+    let copies = candidate.maps.iter().map(|map: &DAffine2| (0, 0, *map));
+    let system = GraphDirectedSystem::plane(copies)?;
+    let of_maps = dimensions_within(&system, Effort::Full)?.hausdorff;
+    if candidate.disks.is_empty() {
+        return Some(of_maps);
+    }
+    Some(Hausdorff {
+        value: Some(2.0),
+        closed_form: Some("2".into()),
+        upper_bound: Some(2.0),
+        method: "the disks have an area".into(),
+        ..of_maps
     })
 }
 
@@ -132,5 +190,18 @@ impl Fit {
     pub fn bits_per_pixel(&self, shape: &Shape) -> f64 {
         let [width, height] = shape.size();
         self.bits as f64 / (width * height) as f64
+    }
+
+    /// Describes the dimension in words: its value and closed form, or its bound; `None` if there is none.
+    #[must_use]
+    pub fn dimension_in_words(&self) -> Option<String> {
+        self.dimension.as_ref().map(file::described)
+    }
+
+    /// Returns by how many bits the description of the best other method is longer; `None` if there is none.
+    #[must_use]
+    pub fn margin(&self) -> Option<f64> {
+        let best = self.others.first()?;
+        Some(best.description - self.description)
     }
 }

@@ -3,8 +3,9 @@
 use std::num::NonZero;
 
 use crate::Bits;
-use crate::geometry::{Bounds, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::morphology::DistanceMap;
+use crate::saturating::whole;
 
 use super::FitError;
 
@@ -19,6 +20,8 @@ pub struct Shape {
     bits: Bits,
     points: Vec<DVec2>,
     bounds: Bounds,
+    /// Values of the points, if they have any.
+    values: Option<Vec<f64>>,
 }
 
 /// Limit of the number of pixels of a picture.
@@ -54,7 +57,69 @@ impl Shape {
             bits,
             points,
             bounds,
+            values: None,
         })
+    }
+
+    /// Returns the shape with a value of each pixel of the picture, in rows from the top: a measure, which is 0 outside the
+    /// shape. The weights of the maps are then fitted to it.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if there are not as many values as pixels, or if all values of the shape are 0.
+    pub fn with_values(mut self, values: &[u8]) -> Result<Self, FitError> {
+        let [width, height] = self.size();
+        if values.len() != width * height {
+            return Err(FitError::Values {
+                values: values.len(),
+                width,
+                height,
+            });
+        }
+        let own = self.bits.set_boxes();
+        let own: Vec<f64> = own
+            .map(|[column, row]| f64::from(values[row * width + column]))
+            .collect();
+        if own.iter().all(|&value| value == 0.0) {
+            return Err(FitError::Empty);
+        }
+        self.values = Some(own);
+        Ok(self)
+    }
+
+    /// Returns whether the pixels have values.
+    #[must_use]
+    pub fn has_values(&self) -> bool {
+        self.values.is_some()
+    }
+
+    /// Iterates over the centres of the pixels of the shape with their values, 1 where they have none.
+    pub(super) fn masses(&self) -> impl Iterator<Item = (DVec2, f64)> {
+        let values = self.values.as_deref();
+        let value = move |number| values.map_or(1.0, |values: &[f64]| values[number]);
+        let points = self.points.iter().enumerate();
+        points.map(move |(number, &point)| (point, value(number)))
+    }
+
+    /// Returns the shape in a picture without margins, and the shift of its coordinates to those of this one.
+    pub(super) fn cropped(&self) -> (Self, DAffine2) {
+        let height = self.size()[1];
+        let [low, high] = [self.bounds.min() - 0.5, self.bounds.max() + 0.5];
+        let size = (high - low).to_array().map(whole);
+        let top = height - whole(high.y);
+        let corner = [whole(low.x), top].map(usize::cast_signed);
+        let points = self.points.iter().map(|&point| point - low).collect();
+        let mut bounds = Bounds::EMPTY;
+        for corner in [self.bounds.min(), self.bounds.max()] {
+            bounds.add(corner - low);
+        }
+        let cropped = Self {
+            bits: self.bits.window(corner, size[0], size[1]),
+            points,
+            bounds,
+            values: self.values.clone(),
+        };
+        (cropped, DAffine2::from_translation(low))
     }
 
     /// Returns the pixels, in rows from the top.

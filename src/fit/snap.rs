@@ -24,6 +24,11 @@ const FAR: f64 = 6.0;
 const RATIO: f64 = 0.03;
 /// Largest change of an angle, in degrees.
 const ANGLE: f64 = 3.0;
+/// Steps of a pixel to which places are rounded, if the picture stays exact.
+const ROUND: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+/// Number of exact pictures that are drawn to find a place, if at most a pixel in this many is wrong.
+const DRAWN: usize = 150;
+const FEW: usize = 40;
 /// Number of snapped systems whose place is searched.
 const TRIED: usize = 3;
 
@@ -94,6 +99,11 @@ pub(super) fn snap(
         }
     }
     Ok(best.map(|(_, candidate, drawn)| (candidate, drawn)))
+}
+
+/// Returns simple ratios near ratios, of which near ones share one; `None` if a ratio is not near a simple one.
+pub(super) fn shared_ratios(ratios: &[f64]) -> Option<Vec<f64>> {
+    ratio::shared(ratios, RATIO)
 }
 
 /// Returns pairs of fixed points that are far from each other, as origins and units of frames.
@@ -200,6 +210,7 @@ impl Snapped {
     }
 
     /// Returns the system with its exact picture, moved until their pixels are those of the shape, or as many as can be.
+    #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
     fn polished(
         &self,
         shape: &Shape,
@@ -243,6 +254,55 @@ impl Snapped {
                     break;
                 }
                 moves += 1;
+            }
+        }
+        let few = shape.points().len() / FEW;
+        if best.0 > 0 && best.0 <= few as u64 {
+            let mut failed = None;
+            let numbers = |numbers: &[f64]| {
+                let along = (
+                    frame[1].normalize_or_zero(),
+                    frame[1].perp().normalize_or_zero(),
+                );
+                let origin = frame[0] + DVec2::new(numbers[0], numbers[1]);
+                let unit = frame[1] + size * (numbers[2] * along.0 + numbers[3] * along.1);
+                [origin, unit]
+            };
+            let mut search = Cma::new(vec![0.0; 4], 0.1, Pcg::new(13, 5));
+            let found = search.minimise(DRAWN, 0.005, |point| match draw(numbers(point)) {
+                Ok(drawn) => drawn.0 as f64,
+                Err(error) => {
+                    failed = Some(error);
+                    0.0
+                }
+            });
+            if let Some(error) = failed {
+                return Err(error);
+            }
+            let moved = numbers(&found.point);
+            let drawn = draw(moved)?;
+            if drawn.0 < best.0 {
+                (best, frame) = (drawn, moved);
+            }
+        }
+        // Of the frames with the same picture, one with round numbers.
+        for step in ROUND {
+            if best.0 > 0 {
+                break;
+            }
+            let round = |point: DVec2| (point / step).round() * step;
+            let [origin, unit] = frame;
+            let end = round(origin + unit);
+            let upright = [origin.x - (origin + unit).x, origin.y - (origin + unit).y];
+            let rounded = match upright.map(|away| away.abs() < 1e-9) {
+                // Upright frames stay upright.
+                [true, _] | [_, true] => [round(origin), end - round(origin)],
+                _ => [round(origin), unit],
+            };
+            let drawn = draw(rounded)?;
+            if drawn.0 == 0 {
+                best = drawn;
+                break;
             }
         }
         Ok((best.1, best.2))

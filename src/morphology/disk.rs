@@ -9,7 +9,7 @@ use super::shifts::{Both, step};
 /// The discrete disk of size r is r D = D ⊕ … ⊕ D, r times; that of size 0 is one pixel (Libeskind-Hadas & Maragos
 /// 1987).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Disk {
+pub enum DiskFamily {
     /// D is a pixel and its four neighbours: r D are the pixels with |x| + |y| ≤ r.
     Plus,
     /// D is a square of 3 × 3 pixels: r D are the pixels with |x| ≤ r and |y| ≤ r.
@@ -22,7 +22,7 @@ pub enum Disk {
     Euclid,
 }
 
-impl Disk {
+impl DiskFamily {
     /// All families.
     pub const ALL: [Self; 4] = [Self::Plus, Self::Square, Self::Octagon, Self::Euclid];
 

@@ -13,7 +13,7 @@ mod shifts;
 mod skeleton;
 mod subsets;
 
-pub use disk::Disk;
+pub use disk::DiskFamily;
 pub use distance::{DistanceMap, NoDistances};
 pub use operation::{NotApplied, Operation, Sequence, SequenceError};
 pub use skeleton::{Skeleton, SkeletonBranch, SkeletonNode, SkeletonOptions, SkeletonPoint};

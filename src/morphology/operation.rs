@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use crate::bits::Bits;
 
-use super::disk::Disk;
+use super::disk::DiskFamily;
 use super::euclid;
 use super::shifts::Both;
 
@@ -73,7 +73,7 @@ pub enum NotApplied {
         /// Its size.
         size: f64,
         /// The disk.
-        disk: Disk,
+        disk: DiskFamily,
     },
     /// The picture with all that is dilated has too many pixels.
     #[error(
@@ -95,7 +95,7 @@ impl Sequence {
     /// Applies the operations in order, as in the whole plane: pixels outside are not set, sets are dilated beyond
     /// the picture's sides where a later erosion brings them back, and the result has the picture's size.
     ///
-    /// The size of a disk is its radius in pixels for [`Disk::Euclid`], or else the number r of r D.
+    /// The size of a disk is its radius in pixels for [`DiskFamily::Euclid`], or else the number r of r D.
     ///
     /// # Errors
     ///
@@ -103,12 +103,12 @@ impl Sequence {
     pub fn apply(
         &self,
         bits: &Bits,
-        disk: Disk,
+        disk: DiskFamily,
         threads: NonZero<usize>,
     ) -> Result<Bits, NotApplied> {
         let mut margin = 0usize;
         for &(operation, size) in &self.0 {
-            if disk != Disk::Euclid && size.fract() != 0.0 {
+            if disk != DiskFamily::Euclid && size.fract() != 0.0 {
                 return Err(NotApplied::Fraction {
                     operation,
                     size,
@@ -140,8 +140,14 @@ impl Sequence {
 }
 
 /// Erodes or dilates by the disk of a size.
-fn applied(both: Both, mut bits: Bits, disk: Disk, size: f64, threads: NonZero<usize>) -> Bits {
-    if disk == Disk::Euclid {
+fn applied(
+    both: Both,
+    mut bits: Bits,
+    disk: DiskFamily,
+    size: f64,
+    threads: NonZero<usize>,
+) -> Bits {
+    if disk == DiskFamily::Euclid {
         return match both {
             Both::Erosion => euclid::eroded(&bits, size, threads),
             Both::Dilation => euclid::dilated(&bits, size, threads),

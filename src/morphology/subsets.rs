@@ -4,7 +4,7 @@ use std::num::NonZero;
 
 use crate::bits::Bits;
 
-use super::disk::Disk;
+use super::disk::DiskFamily;
 use super::distance::NoDistances;
 use super::interior::Interior;
 use super::power::Power;
@@ -17,7 +17,7 @@ pub struct MaximalDisk {
     pub column: u32,
     /// Row of the centre.
     pub row: u32,
-    /// Size of the disk: r of r D, or for [`Disk::Euclid`] the squared distance to the nearest pixel outside. The
+    /// Size of the disk: r of r D, or for [`DiskFamily::Euclid`] the squared distance to the nearest pixel outside. The
     /// Euclidean disk has the pixels that are nearer than this.
     pub size: u32,
 }
@@ -30,7 +30,7 @@ pub struct MaximalDisk {
 pub struct SkeletonSubsets {
     width: usize,
     height: usize,
-    disk: Disk,
+    disk: DiskFamily,
     disks: Vec<MaximalDisk>,
 }
 
@@ -45,10 +45,10 @@ impl SkeletonSubsets {
     /// # Errors
     ///
     /// Returns an error if the picture is empty, or too large for Euclidean distances.
-    pub fn of(bits: &Bits, disk: Disk, threads: NonZero<usize>) -> Result<Self, NoDistances> {
+    pub fn of(bits: &Bits, disk: DiskFamily, threads: NonZero<usize>) -> Result<Self, NoDistances> {
         let disks = match disk {
             _ if bits.is_empty() => return Err(NoDistances::Empty),
-            Disk::Euclid => euclidean(&Interior::of(bits, threads)?),
+            DiskFamily::Euclid => euclidean(&Interior::of(bits, threads)?),
             _ => discrete(bits, disk),
         };
         Ok(Self {
@@ -61,7 +61,7 @@ impl SkeletonSubsets {
 
     /// Returns the family of the disks.
     #[must_use]
-    pub fn disk(&self) -> Disk {
+    pub fn disk(&self) -> DiskFamily {
         self.disk
     }
 
@@ -80,7 +80,7 @@ impl SkeletonSubsets {
     #[must_use]
     pub fn radius(&self, disk: &MaximalDisk) -> f64 {
         match self.disk {
-            Disk::Euclid => f64::from(disk.size).sqrt(),
+            DiskFamily::Euclid => f64::from(disk.size).sqrt(),
             _ => f64::from(disk.size),
         }
     }
@@ -99,7 +99,7 @@ impl SkeletonSubsets {
     #[must_use]
     pub fn reconstruction(&self) -> Bits {
         let mut bits = Bits::new(self.width, self.height);
-        if self.disk == Disk::Euclid {
+        if self.disk == DiskFamily::Euclid {
             let mut weights = vec![0; self.width * self.height];
             for disk in &self.disks {
                 weights[disk.row as usize * self.width + disk.column as usize] = disk.size;
@@ -131,7 +131,7 @@ impl SkeletonSubsets {
     }
 }
 
-fn discrete(bits: &Bits, disk: Disk) -> Vec<MaximalDisk> {
+fn discrete(bits: &Bits, disk: DiskFamily) -> Vec<MaximalDisk> {
     let mut disks = Vec::new();
     let mut eroded = bits.clone();
     let (mut next, mut opened) = (eroded.clone(), eroded.clone());

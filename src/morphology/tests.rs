@@ -15,18 +15,18 @@ fn threads(count: usize) -> NonZero<usize> {
 }
 
 /// Returns whether a vector lies in the disk r D.
-fn is_in(disk: Disk, size: f64, x: usize, y: usize) -> bool {
+fn is_in(disk: DiskFamily, size: f64, x: usize, y: usize) -> bool {
     let (x, y) = (x as f64, y as f64);
     match disk {
-        Disk::Plus => x + y <= size,
-        Disk::Square => x.max(y) <= size,
-        Disk::Octagon => x.max(y) <= 2.0 * size && x + y <= 3.0 * size,
-        Disk::Euclid => x * x + y * y <= size * size,
+        DiskFamily::Plus => x + y <= size,
+        DiskFamily::Square => x.max(y) <= size,
+        DiskFamily::Octagon => x.max(y) <= 2.0 * size && x + y <= 3.0 * size,
+        DiskFamily::Euclid => x * x + y * y <= size * size,
     }
 }
 
 /// Dilates pixel by pixel, with room on all sides.
-fn dilated(bits: &Bits, disk: Disk, size: f64) -> Bits {
+fn dilated(bits: &Bits, disk: DiskFamily, size: f64) -> Bits {
     let set: Vec<_> = bits.set_boxes().collect();
     Bits::of(bits.width(), bits.height(), |column, row| {
         let near = |[x, y]: &[usize; 2]| is_in(disk, size, x.abs_diff(column), y.abs_diff(row));
@@ -34,7 +34,7 @@ fn dilated(bits: &Bits, disk: Disk, size: f64) -> Bits {
     })
 }
 
-fn eroded(bits: &Bits, disk: Disk, size: f64) -> Bits {
+fn eroded(bits: &Bits, disk: DiskFamily, size: f64) -> Bits {
     dilated(&bits.complement(), disk, size).complement()
 }
 
@@ -44,15 +44,15 @@ fn roomy(bits: &Bits, margin: usize) -> Bits {
     bits.window([away, away], width, height)
 }
 
-fn applied(text: &str, bits: &Bits, disk: Disk) -> Bits {
+fn applied(text: &str, bits: &Bits, disk: DiskFamily) -> Bits {
     let sequence: Sequence = text.parse().unwrap();
     let result = sequence.apply(bits, disk, threads(3)).unwrap();
     assert_eq!(result, sequence.apply(bits, disk, ONE).unwrap());
     result
 }
 
-fn any_disk() -> impl Strategy<Value = Disk> {
-    prop::sample::select(Disk::ALL.to_vec())
+fn any_disk() -> impl Strategy<Value = DiskFamily> {
+    prop::sample::select(DiskFamily::ALL.to_vec())
 }
 
 proptest! {
@@ -63,12 +63,12 @@ proptest! {
         let margin = 24;
         let all = roomy(&bits, margin);
         let size = f64::from(size);
-        let naive = |steps: &[fn(&Bits, Disk, f64) -> Bits]| {
+        let naive = |steps: &[fn(&Bits, DiskFamily, f64) -> Bits]| {
             let result = steps.iter().fold(all.clone(), |bits, step| step(&bits, disk, size));
             result.window([margin.cast_signed(); 2], bits.width(), bits.height())
         };
         for (name, steps) in [
-            ("erode", &[eroded as fn(&Bits, Disk, f64) -> Bits][..]),
+            ("erode", &[eroded as fn(&Bits, DiskFamily, f64) -> Bits][..]),
             ("dilate", &[dilated]),
             ("open", &[eroded, dilated]),
             ("close", &[dilated, eroded]),
@@ -79,8 +79,8 @@ proptest! {
 
     #[test]
     fn a_radius_may_have_a_fraction(bits in random_bits(70, 40), size in 0.0..6.0f64) {
-        let naive = dilated(&bits, Disk::Euclid, size);
-        prop_assert_eq!(applied(&format!("dilate:{size}"), &bits, Disk::Euclid), naive);
+        let naive = dilated(&bits, DiskFamily::Euclid, size);
+        prop_assert_eq!(applied(&format!("dilate:{size}"), &bits, DiskFamily::Euclid), naive);
     }
 
     #[test]
@@ -94,7 +94,7 @@ proptest! {
 
     #[test]
     fn subsets_are_those_of_the_formula(bits in random_bits(36, 24)) {
-        for disk in [Disk::Plus, Disk::Square, Disk::Octagon] {
+        for disk in [DiskFamily::Plus, DiskFamily::Square, DiskFamily::Octagon] {
             let Ok(subsets) = SkeletonSubsets::of(&bits, disk, ONE) else { break };
             let all = roomy(&bits, 4);
             let mut found = Vec::new();
@@ -280,15 +280,18 @@ fn mistakes_have_remedies() {
             .apply(&full, disk, ONE)
             .map_err(|error| error.to_string())
     };
-    let message = apply("open:1.5", Disk::Plus).unwrap_err();
+    let message = apply("open:1.5", DiskFamily::Plus).unwrap_err();
     assert!(
         message.starts_with("open:1.5: the size of a plus is a whole number"),
         "{message}"
     );
-    let message = apply("dilate:1e9", Disk::Euclid).unwrap_err();
+    let message = apply("dilate:1e9", DiskFamily::Euclid).unwrap_err();
     assert!(message.contains("choose smaller disks"), "{message}");
-    assert_eq!(apply("close:3, open:2", Disk::Square), Ok(full.clone()));
-    assert!(apply("erode:1e9", Disk::Square).unwrap().is_empty());
+    assert_eq!(
+        apply("close:3, open:2", DiskFamily::Square),
+        Ok(full.clone())
+    );
+    assert!(apply("erode:1e9", DiskFamily::Square).unwrap().is_empty());
     let sequence: Sequence = " open:3,close:2.5 ,erode:1".parse().unwrap();
     assert_eq!(sequence.to_string(), "open:3, close:2.5, erode:1");
 }

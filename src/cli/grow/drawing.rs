@@ -90,7 +90,7 @@ impl<'a> Drawing<'a> {
         }
         self.note_beforehand(&graph, &options);
         let place = *graph.place();
-        let ((picture, drawn), bytes) = arguments.growth.write(path, |out, progress| {
+        let ((picture, drawn), bytes) = arguments.write_picture(path, |out, progress| {
             let explain = |error| arguments.growth.explain(error, loaded, path);
             if is_light {
                 return self.draw_light(graph, progress, out);

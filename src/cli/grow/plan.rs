@@ -96,6 +96,12 @@ impl Named for Format {
 impl Plan {
     /// Returns the plan of the arguments; an error if they exclude each other.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        let plan = Self::chosen(arguments)?;
+        arguments.morphed.refuse_beside(&plan)?;
+        Ok(plan)
+    }
+
+    fn chosen(arguments: &Arguments) -> Result<Self, Failure> {
         let Arguments {
             chaos,
             plot,

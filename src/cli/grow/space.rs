@@ -68,7 +68,7 @@ pub(super) fn draw(
     let graph = drawn.graph;
     if let Some(game) = game {
         if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {
-            let (summary, bytes) = arguments.growth.write(path, |out, progress| match *plan {
+            let (summary, bytes) = arguments.write_picture(path, |out, progress| match *plan {
                 Plan::Chaos(Some(format)) => game.list(format, progress, out, path),
                 _ => game.write_ply(&graph, &options.style, progress, out, path),
             })?;
@@ -118,7 +118,7 @@ fn write(
     draw: impl FnOnce(Option<&Progress>) -> Result<SpacePicture, Failure>,
 ) -> Result<(Picture, u64), Failure> {
     let write = || {
-        let ((picture, depths), bytes) = arguments.growth.write(path, |out, progress| {
+        let ((picture, depths), bytes) = arguments.write_picture(path, |out, progress| {
             let SpacePicture {
                 pixels,
                 depths,

@@ -5,7 +5,8 @@ mod cover;
 mod ground;
 mod pairs;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::parallel::{self, is_cancelled};
@@ -16,7 +17,7 @@ pub(super) use self::ground::Ground;
 pub(super) use self::pairs::{Form, clamped};
 use super::orbit::{Level, Orbit};
 use super::refine::{Refined, refine};
-use super::{Candidate, Disk, FitError, FitOptions, Shape};
+use super::{Candidate, Disk, FitError, FitOptions, Method, Shape, methods};
 
 /// Cells of the long side at which copies are searched.
 const GROUND: usize = 96;
@@ -27,19 +28,8 @@ const STARTS: usize = 6;
 /// Starts from random maps.
 const RANDOM: usize = 16;
 
-/// Bits of a number, and of a cell that is off, in description lengths.
-const NUMBER: f64 = 10.0;
-const PIXEL: f64 = 6.0;
-
-/// Returns the number of numbers of a candidate.
-#[expect(clippy::cast_precision_loss, reason = "there are few maps")]
-fn numbers(found: &Refined) -> f64 {
-    let map = match found.form {
-        Form::Similar => 4,
-        Form::Affine => 6,
-    };
-    (map * found.candidate.maps.len() + 3 * found.candidate.disks.len()) as f64
-}
+/// Cells of the long side at which candidates are refined last.
+pub(super) const FINE: usize = 160;
 
 /// Shortens a list, best first, to `most` candidates, of which one has similarities if any has.
 fn shorten(list: &mut Vec<Refined>, most: usize) {
@@ -72,7 +62,7 @@ impl<'s> Collage<'s> {
             shape,
             options,
             coarse: Level::new(shape, 72),
-            fine: Level::new(shape, 160),
+            fine: Level::new(shape, FINE),
             evaluations: AtomicUsize::new(0),
         })
     }
@@ -87,54 +77,83 @@ impl<'s> Collage<'s> {
         &self.fine
     }
 
+    /// Returns the options.
+    pub(super) fn options(&self) -> &FitOptions {
+        self.options
+    }
+
+    /// Returns what cancels the search.
+    pub(super) fn cancel(&self) -> Option<&AtomicBool> {
+        self.options.cancel.as_deref()
+    }
+
     /// Returns the number of evaluations so far.
     pub(super) fn evaluations(&self) -> usize {
         self.evaluations.load(Ordering::Relaxed)
     }
 
-    /// Returns candidates, best first, whose number of maps is in the range of the options, by the least description
-    /// length: that of the numbers of the best candidate, and of the cells that are off.
+    /// Returns candidates, best first, whose number of maps is in the range of the options, by the least [description
+    /// length](methods::description).
     pub(super) fn search(&self) -> Result<Vec<Refined>, FitError> {
+        self.search_in(self.options.maps.clone(), Method::Collage, |count| {
+            self.starts(count)
+        })
+    }
+
+    /// Returns candidates, best first, from starts with each number of maps, until three numbers more are no better.
+    pub(super) fn search_in(
+        &self,
+        counts: RangeInclusive<usize>,
+        method: Method,
+        starts: impl Fn(usize) -> Vec<Refined>,
+    ) -> Result<Vec<Refined>, FitError> {
         let mut orbit = Orbit::new(&self.fine);
         let mut best: Option<(f64, Vec<Refined>)> = None;
         let mut worse = 0;
-        for count in self.options.maps.clone() {
-            let found = self.search_with(count, self.options.effort)?;
+        for count in counts {
+            let found = self.refined(count, starts(count))?;
             let Some(first) = found.first() else {
                 continue;
             };
-            let misfit = orbit.misfit(&first.candidate, &self.fine);
-            let length = NUMBER * numbers(first) + PIXEL * misfit;
+            if let Some(progress) = &self.options.progress {
+                let iou = orbit.iou(&first.candidate, &self.fine);
+                progress.note(method, &first.candidate, iou);
+            }
+            let length = methods::description(&first.candidate, &mut orbit, &self.fine);
+            let is_whole = orbit.misfit(&first.candidate, &self.fine) == 0.0;
             worse += 1;
             if best.as_ref().is_none_or(|best| length < best.0) {
                 best = Some((length, found));
                 worse = 0;
             }
-            if misfit == 0.0 || worse == 3 {
+            if is_whole || worse == 3 {
                 break;
             }
         }
         best.map(|(_, found)| found).ok_or(FitError::Cancelled)
     }
 
-    /// Returns the best candidates with a number of maps, best first.
-    fn search_with(&self, count: usize, effort: usize) -> Result<Vec<Refined>, FitError> {
-        let mut starts = self.starts(count);
+    /// Returns the best candidates with a number of maps, best first, refined from starts.
+    fn refined(&self, count: usize, mut starts: Vec<Refined>) -> Result<Vec<Refined>, FitError> {
+        let effort = self.options.effort;
         shorten(&mut starts, 12);
         let stage = |starts: Vec<Refined>, level: &Level, share: usize, step: f64, stage: u64| {
-            self.stage(
-                starts,
-                level,
-                effort / share,
-                step,
-                mix(stage ^ (count as u64).wrapping_mul(GOLDEN)),
-            )
+            let seed = mix(stage ^ (count as u64).wrapping_mul(GOLDEN));
+            self.stage(starts, level, effort / share, step, seed)
         };
         let mut kept = stage(starts, &self.coarse, 60, 2.0, 1)?;
         shorten(&mut kept, 4);
         let mut kept = stage(kept, &self.coarse, 16, 1.0, 2)?;
         shorten(&mut kept, 2);
         stage(kept, &self.fine, 10, 0.5, 3)
+    }
+
+    /// Counts candidates that were evaluated.
+    pub(super) fn count(&self, evaluations: usize) {
+        self.evaluations.fetch_add(evaluations, Ordering::Relaxed);
+        if let Some(progress) = &self.options.progress {
+            progress.count(evaluations);
+        }
     }
 
     /// Refines candidates at a level, best first.
@@ -175,8 +194,7 @@ impl<'s> Collage<'s> {
                     random(),
                 ));
             }
-            self.evaluations
-                .fetch_add(all.iter().map(|it| it.evaluations).sum(), Ordering::Relaxed);
+            self.count(all.iter().map(|it| it.evaluations).sum());
             all
         });
         if is_cancelled(cancel) {
@@ -241,8 +259,7 @@ impl<'s> Collage<'s> {
             best
         });
         let mut starts: Vec<Refined> = starts.into_iter().flatten().collect();
-        self.evaluations
-            .fetch_add(3 * starts.len(), Ordering::Relaxed);
+        self.count(3 * starts.len());
         starts.sort_by(|a, b| a.loss.total_cmp(&b.loss));
         let mut kept: Vec<Refined> = Vec::new();
         for start in starts {
@@ -318,7 +335,7 @@ impl<'s> Collage<'s> {
     }
 
     /// Returns a candidate of random maps.
-    fn random(&self, count: usize, number: u64) -> Candidate {
+    pub(super) fn random(&self, count: usize, number: u64) -> Candidate {
         let mut random = Pcg::new(self.options.seed ^ mix(number), count as u64 * 2 + 1);
         let points = self.ground.points();
         let maps = (0..count).map(|_| {

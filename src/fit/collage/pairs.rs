@@ -2,6 +2,8 @@
 
 use crate::geometry::{DAffine2, DMat2, DVec2, Linear};
 
+use super::super::Candidate;
+use super::super::candidate::is_similar;
 use super::ground::Ground;
 
 /// Form of the maps that are fitted.
@@ -11,6 +13,18 @@ pub(in crate::fit) enum Form {
     Similar,
     /// Affine maps.
     Affine,
+}
+
+impl Form {
+    /// Returns the form of a candidate's maps.
+    pub(in crate::fit) fn of(candidate: &Candidate) -> Self {
+        let are_similar = candidate.maps.iter().all(|map| is_similar(&map.matrix2));
+        if are_similar {
+            Self::Similar
+        } else {
+            Self::Affine
+        }
+    }
 }
 
 /// Largest factor by which a map of a collage stretches.
