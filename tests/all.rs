@@ -44,6 +44,7 @@ mod systems;
 mod terminal;
 mod threads;
 mod tints;
+mod turns;
 mod vectors;
 mod visible;
 mod windows;

@@ -509,6 +509,55 @@ fn folders_of_ones_own_come_before_the_library() {
 }
 
 #[test]
+fn the_library_is_listed_as_a_page_with_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = folder.path().join("mine/rules");
+    fs::create_dir_all(&library).unwrap();
+    let own = "title: Gosper & <mine> \"x\"\ninitiator: segment\ngenerator: [[0, 0], [1/2, 1/3], [1, 0]]\n";
+    fs::write(library.join("my-gosper.yaml"), own).unwrap();
+    fs::write(
+        library.join("bad-gosper.yaml"),
+        "title: Gosper\ninitiator: [",
+    )
+    .unwrap();
+    let listed = [
+        "list",
+        "gosper",
+        "--library",
+        "mine",
+        "--html",
+        "made/gallery",
+    ];
+    let said = stderr(&run(folder.path(), &listed).success());
+    assert!(said.contains("bad-gosper has no picture"), "{said}");
+    let made = folder.path().join("made/gallery");
+    let page = fs::read_to_string(made.join("index.html")).unwrap();
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+    assert!(
+        page.contains("<h3>Gosper &amp; &lt;mine&gt; &quot;x&quot;</h3>"),
+        "{page}"
+    );
+    assert!(page.contains("kfrac grow gosper-lsystem") && !page.contains("<script"));
+    let mut pictures = 0;
+    for part in page.split("<img src=\"").skip(1) {
+        let name = part.split('"').next().unwrap();
+        assert!(
+            fs::read(made.join(name)).unwrap().starts_with(b"\x89PNG"),
+            "{name}"
+        );
+        pictures += 1;
+    }
+    assert_eq!(pictures + 1, page.matches("<li>").count());
+    assert_eq!(pictures, files(&made).len() - 1);
+    assert!(pictures > 2);
+    // A component is shown by a rule that uses it; nothing found makes no page.
+    run(folder.path(), &["list", "koch", "--html", "koch"]).success();
+    assert!(folder.path().join("koch/generators-koch.png").exists());
+    run(folder.path(), &["list", "zzz", "--html", "none"]).failure();
+    assert!(!folder.path().join("none").exists());
+}
+
+#[test]
 fn the_library_is_listed_with_rules_and_components() {
     let folder = tempfile::tempdir().unwrap();
     let list = run(folder.path(), &["list", "--json"]).success();

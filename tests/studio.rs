@@ -226,21 +226,53 @@ fn a_picture_is_the_file_that_its_command_writes() {
     }
 }
 
-#[test]
-fn fast_pictures_have_the_same_pixels() {
-    let page = Page::of(KOCH);
-    let pixels = |reply: Reply| {
-        reply.picture();
-        let decoder = png::Decoder::new(std::io::Cursor::new(reply.body));
-        let mut reader = decoder.read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        pixels
-    };
-    assert_eq!(
-        pixels(page.draw(json!({}))),
-        pixels(page.draw(json!({ "fast": true })))
+/// Returns the pixels of a picture: red, green, blue and alpha.
+fn pixels(reply: &Reply) -> Vec<u8> {
+    reply.picture();
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(&reply.body));
+    decoder.set_transformations(
+        png::Transformations::normalize_to_color8() | png::Transformations::ALPHA,
     );
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    match info.color_type {
+        png::ColorType::Rgba => pixels,
+        png::ColorType::GrayscaleAlpha => pixels
+            .chunks(2)
+            .flat_map(|grey| [grey[0], grey[0], grey[0], grey[1]])
+            .collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn drafts_have_the_same_pixels() {
+    let page = Page::of(KOCH);
+    let draft = |more: Value| {
+        let reply = page.draw(more);
+        assert_eq!(reply.picture()["size"], json!([300, 200]));
+        assert_eq!(reply.body.len(), 4 * 300 * 200);
+        reply.body
+    };
+    page.call("GET", "/numbers", &Value::Null);
+    for options in [
+        json!({}),
+        json!({ "background": "teal" }),
+        json!({ "stroke": "#12345678" }),
+    ] {
+        let look = json!({ "steps": 4, "options": options });
+        let whole = page.draw(json!({ "look": look }));
+        assert!(draft(json!({ "draft": true })) == pixels(&whole), "{look}");
+    }
+    // A draft of a step of 16 million elements has those that are seen.
+    let look = json!({ "steps": 12 });
+    let start = Instant::now();
+    let size = |reply: Value| reply["elements"].as_u64().unwrap();
+    let reply = page.draw(json!({ "look": look, "draft": true }));
+    assert!(size(reply.picture()) < 100_000, "{}", reply.picture());
+    assert!(start.elapsed() < Duration::from_secs(5));
+    assert_eq!(page.state()["look"]["steps"], 12, "the look stays");
 }
 
 #[test]
@@ -679,8 +711,8 @@ fn members_near_the_present_one_are_drawn_and_taken() {
     assert_eq!(page.state()["text"], KOCH, "a preview changes nothing");
     let state = page.call("POST", "/take", &json!({ "variant": 3 })).json();
     assert!(state["text"] != KOCH && state["isGood"] == true, "{state}");
-    let taken = page.draw(json!({ "width": 120, "height": 90, "fast": true }));
-    assert_eq!(taken.body.len(), preview.body.len());
+    let taken = page.draw(json!({ "width": 120, "height": 90 }));
+    assert_eq!(pixels(&taken), pixels(&preview));
     assert_eq!(page.call("POST", "/undo", &json!({})).json()["text"], KOCH);
     // Parameters are set, and the text stays.
     let page = Page::of(TREE);
@@ -755,12 +787,95 @@ fn the_library_opens_as_a_copy() {
 }
 
 #[test]
+fn every_kind_of_file_is_drawn_stepped_turned_and_moved() {
+    for (name, is_in_space) in [
+        ("koch", false),
+        ("gasket", false),
+        ("ternary-tree", false),
+        ("gosper-lsystem", false),
+        ("fern-in-space", true),
+        ("pound-sign-in-space", true),
+        ("tree-of-boxes", true),
+    ] {
+        let page = Page::named(name);
+        let state = page.state();
+        assert_eq!(state["isInSpace"], is_in_space, "{name}");
+        let numbers = page.call("GET", "/numbers", &Value::Null).json();
+        assert!(numbers["proposed"].is_u64(), "{name}: {numbers}");
+        let mut last = page.draw(json!({})).body;
+        let mut differs = |what: &str, asked: Value| {
+            let reply = page.draw(asked);
+            let command = reply.picture()["command"].as_str().unwrap().to_owned();
+            assert!(reply.body != last, "{name}: {what}");
+            assert_eq!(reply.body, run(&command, page.folder.path()), "{command}");
+            last = reply.body;
+            command
+        };
+        differs("a step", json!({ "look": { "steps": 2 } }));
+        let turn = match is_in_space {
+            true => json!({ "from": "10,20", "light": "-40,30" }),
+            false => json!({ "turn": "37" }),
+        };
+        differs("a turn", json!({ "look": { "steps": 2, "options": turn } }));
+        let gesture = json!({ "by": 2.0, "about": [0.1, 0.2], "shift": [0.0, 0.0] });
+        let zoomed = differs("a zoom", json!({ "gesture": gesture }));
+        let gesture = json!({ "by": 1.0, "about": [0.0, 0.0], "shift": [0.1, 0.05] });
+        let moved = differs("a shift", json!({ "gesture": gesture }));
+        let [part, own] = match is_in_space {
+            true => ["--look-at=", "--zoom=2"],
+            false => ["--view=", "--turn=37"],
+        };
+        assert!(
+            [&zoomed, &moved]
+                .iter()
+                .all(|it| it.contains(part) && it.contains(own)),
+            "{moved}"
+        );
+        assert_eq!(page.state()["factor"], 2.0);
+    }
+}
+
+#[test]
+fn a_window_is_shown_whole() {
+    let page = Page::of(KOCH);
+    page.draw(json!({})).picture();
+    let reply = page.draw(json!({ "window": [0.0, 0.0, 0.5, 0.5] }));
+    let command = reply.picture()["command"].as_str().unwrap().to_owned();
+    assert!(command.contains("--view=-0.125,0,0.75,0.5"), "{command}");
+    for wrong in [json!([0, 0, 0, 1]), json!([0, 0, 1, -1])] {
+        assert_eq!(page.draw(json!({ "window": wrong })).status, 422);
+    }
+}
+
+#[test]
+fn a_value_is_written_into_the_text() {
+    let page = Page::of(TREE);
+    page.draw(json!({ "look": { "set": { "angle": "25.5" } } }))
+        .picture();
+    let write = |name: &str| page.call("POST", "/write", &json!({ "name": name }));
+    let state = write("angle").json();
+    assert_eq!(state["text"], TREE.replace("value: 40", "value: 25.5"));
+    assert_eq!(state["look"]["set"], json!({}));
+    assert_eq!(write("angle").status, 422, "nothing is set");
+    assert_eq!(page.call("POST", "/undo", &json!({})).json()["text"], TREE);
+}
+
+#[test]
 fn every_format_is_exported() {
     let export = |page: &Page, name: &str, status: u16| {
         let asked = json!({ "tab": "a", "path": name, "width": 200, "height": 200 });
         let reply = page.call("POST", "/export", &asked);
         assert_eq!(reply.status, status, "{name}: {}", reply.error());
     };
+    let page = Page::of(include_str!("../library/ifs/menger.yaml"));
+    page.draw(json!({ "look": { "steps": 2 } })).picture();
+    for format in [
+        "png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json",
+    ] {
+        let name = format!("a.{format}");
+        export(&page, &name, 200);
+        assert!(!fs::read(page.folder.path().join(name)).unwrap().is_empty());
+    }
     let page = Page::of(TREE);
     page.draw(json!({ "look": { "steps": 4 } })).picture();
     for name in ["a.svg", "a.png", "a.pdf", "a.dxf", "a.csv", "a.json"] {

@@ -27,7 +27,6 @@ impl Component {
     }
 
     /// Returns the component of an entry that has been read.
-    #[cfg(feature = "studio")]
     pub(crate) fn of(entry: LibraryFile, source: Arc<Source>) -> Self {
         Self { entry, source }
     }

@@ -13,16 +13,13 @@ mod watching;
 mod zoom;
 
 use std::path::{Path, PathBuf};
-#[cfg(feature = "studio")]
 use std::sync::Arc;
 use std::time::Instant;
 
 use clap::ValueHint;
-#[cfg(feature = "studio")]
 use clap::{Args, FromArgMatches};
 
 use crate::catalogue::Catalogue;
-#[cfg(feature = "studio")]
 use crate::diagnostic::Source;
 use crate::export;
 use crate::fractal::Goal;
@@ -32,12 +29,11 @@ use crate::style::Named;
 
 use super::camera::{self, SpaceArguments};
 use super::growth::GrowthArguments;
-#[cfg(feature = "studio")]
 use super::held::Held;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, format, help, output, readable, steps, text};
+use super::{Failure, format, help, number, output, readable, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
 use morphed::MorphArguments;
@@ -100,6 +96,12 @@ pub(super) struct Arguments {
     svg: SvgArguments,
     #[command(flatten)]
     zoom: ZoomArguments,
+    /// Turn a set of the plane about the origin, or a zoom about its centre, counter-clockwise
+    ///
+    /// --view is a window of the set that is turned. Sets in space turn with --from and --up.
+    #[arg(long, value_name = "DEGREES", value_parser = number::degrees, allow_hyphen_values = true)]
+    #[arg(help_heading = "Picture")]
+    turn: Option<f64>,
     #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
@@ -194,7 +196,6 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 /// # Errors
 ///
 /// As for the command.
-#[cfg(feature = "studio")]
 pub(crate) fn hold(
     arguments: &[String],
     source: &Arc<Source>,
@@ -282,12 +283,26 @@ impl Arguments {
         path: &Path,
     ) -> Result<(String, u64), Failure> {
         match plan {
-            Plan::Table(format) => self.list(&loaded.grown(&self.growth), *format, path),
+            Plan::Table(format) => {
+                let loaded = loaded.grown(&self.growth).turned(self.turn);
+                self.list(&loaded, *format, path)
+            }
             Plan::Picture {
                 format,
                 shown,
                 is_light,
-            } => Drawing::new(self, loaded, *format, shown, path)?.write(*is_light),
+            } => {
+                self.zoom.check_in_plane()?;
+                let loaded = loaded.turned(self.turn);
+                Drawing::new(self, loaded, *format, shown, path)?.write(*is_light)
+            }
+            Plan::Chaos(_) if self.zoom.is_asked() => {
+                Err(Failure::Usage(plan::NO_ZOOM_OF_POINTS.into()))
+            }
+            Plan::Chaos(_) if self.turn.is_some() => {
+                let message = "--turn is for elements, and random iteration draws points";
+                Err(Failure::Usage(message.into()))
+            }
             Plan::Chaos(table) => {
                 let game = chaos::PlaneGame::new(self, &loaded)?;
                 self.write_picture(path, |out, progress| match table {
@@ -308,6 +323,11 @@ impl Arguments {
                 loaded.name
             ))),
         }
+    }
+
+    /// Returns the turn, if one is given, with its value.
+    fn turn_option(&self) -> Option<(&'static str, String)> {
+        self.turn.map(|turn| ("turn", turn.to_string()))
     }
 
     /// Prints what has been written, unless messages are suppressed.

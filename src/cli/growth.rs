@@ -105,8 +105,9 @@ impl GrowthArguments {
 
     /// Returns the encoding of PNGs.
     pub(super) fn png_encoding(&self) -> PngEncoding {
-        let is_fast = self.held.as_ref().is_some_and(|held| held.is_fast);
-        PngEncoding::default().fast(is_fast)
+        self.held
+            .as_ref()
+            .map_or_else(PngEncoding::default, |held| held.png)
     }
 
     /// Returns whether the limit of the number of elements is given.

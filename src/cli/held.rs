@@ -5,15 +5,16 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::geometry::Homothety;
-use crate::render::{Canvas, Picture};
+use crate::render::space::Sight;
+use crate::render::{Canvas, Picture, PngEncoding};
 
 /// Destination of a command that runs within the program, in place of standard output and standard error.
 #[derive(Debug, Default)]
 pub(crate) struct Held {
     /// Flag that ends the command soon after it is set.
     pub(crate) cancel: AtomicBool,
-    /// Whether PNGs are encoded fast, to the same pixels in more bytes.
-    pub(crate) is_fast: bool,
+    /// Encoding of PNGs.
+    pub(crate) png: PngEncoding,
     /// Largest number of bytes of standard output.
     pub(crate) most: usize,
     done: Mutex<Done>,
@@ -32,16 +33,18 @@ pub(crate) struct Done {
     pub(crate) steps: Option<u32>,
     /// Part of the plane that a picture shows, in the units of its file: lower left corner, width, height.
     pub(crate) window: Option<[f64; 4]>,
+    /// Middle of a picture in space.
+    pub(crate) sight: Option<Sight>,
     /// Width and height of a picture.
     pub(crate) size: [u32; 2],
 }
 
 impl Held {
-    /// Returns a destination of `most` bytes.
-    pub(crate) fn new(most: usize, is_fast: bool) -> Self {
+    /// Returns a destination of `most` bytes, with an encoding of PNGs.
+    pub(crate) fn new(most: usize, png: PngEncoding) -> Self {
         Self {
             most,
-            is_fast,
+            png,
             ..Self::default()
         }
     }
@@ -60,6 +63,11 @@ impl Held {
         let mut done = self.done();
         done.size = canvas.size();
         done.window = Some(place.window(canvas.window()));
+    }
+
+    /// Records what lies in the middle of a picture in space.
+    pub(super) fn note_sight(&self, sight: Sight) {
+        self.done().sight = Some(sight);
     }
 
     /// Records the numbers of a picture. `place` maps the coordinates of its graph to those of the file.

@@ -1,12 +1,15 @@
 //! `kfrac list`: lists the library.
 
+use std::path::PathBuf;
+
+use clap::ValueHint;
 use serde::Serialize;
 
 use crate::catalogue::{Catalogue, LibraryFile, Shelf};
 use crate::diagnostic::{Diagnostic, did_you_mean};
 use crate::document::node::{Node, Value};
 
-use super::{Failure, help, output};
+use super::{Failure, gallery, help, output};
 
 /// Lists the library: rules and components
 #[derive(clap::Args)]
@@ -18,6 +21,9 @@ pub(super) struct Arguments {
     /// Prints the list as JSON
     #[arg(long)]
     json: bool,
+    /// Writes the list as a page with pictures, index.html in a folder, which is made if it is missing
+    #[arg(long, value_name = "DIR", conflicts_with = "json", value_hint = ValueHint::DirPath)]
+    html: Option<PathBuf>,
 }
 
 const MORE: &str = "\
@@ -26,6 +32,8 @@ Examples:
       Lists everything
   kfrac list tree
       Lists the entries with tree in their name, title or tags
+  kfrac list --html gallery
+      Writes a page with pictures, gallery/index.html
   kfrac list --library rules --json
       Lists the library with the files of a folder, as JSON
 ";
@@ -35,9 +43,9 @@ Examples:
 pub(crate) struct ListRow {
     pub(crate) name: String,
     kind: &'static str,
-    title: Option<String>,
-    tags: Vec<String>,
-    source: Option<String>,
+    pub(super) title: Option<String>,
+    pub(super) tags: Vec<String>,
+    pub(super) source: Option<String>,
     path: String,
 }
 
@@ -47,9 +55,17 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let pattern = asked.to_lowercase();
     let rows: Vec<_> = entries
         .iter()
-        .map(|entry| (entry.shelf, row(entry, catalogue)))
+        .map(|entry| (entry, row(entry, catalogue)))
         .filter(|(_, row)| row.matches(&pattern))
         .collect();
+    if let Some(folder) = &arguments.html
+        && !rows.is_empty()
+    {
+        let entries: Vec<_> = { rows.into_iter() }
+            .map(|(entry, row)| (entry.clone(), row))
+            .collect();
+        return gallery::write(folder, &entries, catalogue);
+    }
     if arguments.json {
         let rows: Vec<_> = rows.iter().map(|(_, row)| row).collect();
         return Ok(output::print_json(&rows)?);
@@ -70,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let mut text = String::new();
     for shelf in Shelf::all() {
         let mut heading = Some(shelf.folder().replace('_', " "));
-        for (_, row) in rows.iter().filter(|(of, _)| *of == shelf) {
+        for (_, row) in rows.iter().filter(|(entry, _)| entry.shelf == shelf) {
             if let Some(heading) = heading.take() {
                 if !text.is_empty() {
                     text.push('\n');

@@ -12,6 +12,7 @@ mod dim;
 pub(crate) mod family;
 mod fit;
 mod format;
+pub(crate) mod gallery;
 mod goal;
 pub(crate) mod grow;
 mod growth;
@@ -156,7 +157,6 @@ pub(crate) enum Failure {
     Reported,
 }
 
-#[cfg(feature = "studio")]
 impl Failure {
     /// Returns the failure of reading arguments, without the usage that follows its message.
     fn usage(error: &clap::Error) -> Self {
@@ -166,6 +166,7 @@ impl Failure {
     }
 
     /// Returns the message.
+    #[cfg(feature = "studio")]
     pub(crate) fn message(&self) -> String {
         match self {
             Self::File(diagnostics) => {

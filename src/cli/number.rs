@@ -1,4 +1,4 @@
-//! Whole numbers on the command line.
+//! Numbers on the command line.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -21,4 +21,10 @@ where
             bounds.end()
         )),
     }
+}
+
+/// Parses a number of degrees.
+pub(super) fn degrees(text: &str) -> Result<f64, String> {
+    let degrees = text.parse::<f64>().ok().filter(|it| it.is_finite());
+    degrees.ok_or_else(|| "expected a number of degrees".into())
 }

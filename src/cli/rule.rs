@@ -74,6 +74,8 @@ pub(super) struct Loaded {
     growth: (u64, u64),
     /// Map from the coordinates of compiled graphs to those of the file; [`Model::place`] if `None`.
     place: Option<Homothety>,
+    /// Degrees by which graphs are turned about the origin of the file.
+    turn: f64,
 }
 
 impl Loaded {
@@ -91,6 +93,14 @@ impl Loaded {
         }
     }
 
+    /// Sets the degrees by which graphs are turned about the origin of the file.
+    pub(super) fn turned(self, turn: Option<f64>) -> Self {
+        Self {
+            turn: turn.unwrap_or(0.0),
+            ..self
+        }
+    }
+
     /// Returns [`Model::place`]; an error is reported as an error in the file.
     pub(super) fn place(&self) -> Result<Homothety, Failure> {
         let place = self.model.place().map_err(CompileError::from);
@@ -104,6 +114,11 @@ impl Loaded {
     }
 
     fn graph_of(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
+        let graph = self.graph_as_written(model, steps)?;
+        Ok(graph.turned(self.turn))
+    }
+
+    fn graph_as_written(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
         let (seed, max_elements) = self.growth;
         match &self.place {
             Some(place) => model.compile_within(place, steps, seed, max_elements),
@@ -199,9 +214,11 @@ impl Loaded {
             );
             return Err(anyhow::anyhow!(message).into());
         }
-        let graph = self.model.compile_coloured(color_by, || self.graph(steps));
+        let model = &self.model;
+        let graph = model.compile_coloured(color_by, || self.graph_as_written(model, steps));
         let graph = graph.map_err(|error| self.failure(&error))?;
-        graph.ok_or_else(|| {
+        let turned = graph.map(|graph| graph.turned(self.turn));
+        turned.ok_or_else(|| {
             let name = &self.name;
             let message = "too many maps and sets to distinguish the map that is applied last";
             anyhow::anyhow!("{name} has {message}").into()
@@ -314,6 +331,7 @@ impl RuleArguments {
             omitted: self.omit.clone(),
             growth: (0, Model::MAX_ELEMENTS),
             place: None,
+            turn: 0.0,
         })
     }
 

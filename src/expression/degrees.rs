@@ -33,6 +33,15 @@ pub(crate) fn tan(x: f64) -> f64 {
     sin(x) / cos(x) + 0.0
 }
 
+/// Turns a vector of the plane by `by` degrees, counter-clockwise.
+pub(crate) fn turned([x, y]: [f64; 2], by: f64) -> [f64; 2] {
+    if by == 0.0 {
+        return [x, y];
+    }
+    let (sine, cosine) = (sin(by), cos(by));
+    [cosine * x - sine * y, sine * x + cosine * y]
+}
+
 /// Computes the arc sine in degrees, from -90 to 90; NaN outside -1 to 1.
 pub(crate) fn asin(x: f64) -> f64 {
     whole(libm::asin(x).to_degrees(), x, sin)

@@ -122,6 +122,15 @@ impl Frame2 {
         }
     }
 
+    /// Returns the image under a map of the plane.
+    #[must_use]
+    pub(crate) fn mapped(&self, map: &DAffine2) -> Self {
+        Self {
+            map: *map * self.map,
+            ..*self
+        }
+    }
+
     /// Returns the first and the last point of traversal, p0 and p1.
     #[inline]
     #[must_use]

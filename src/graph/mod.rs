@@ -39,7 +39,8 @@ pub(crate) use source::{Buffers, Source};
 
 use std::sync::Arc;
 
-use crate::geometry::{Bounds, DVec2, Frame, Frame2, Homothety, Point};
+use crate::expression::degrees;
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame, Frame2, Homothety, Point};
 use crate::instancing::Appearance;
 use crate::rule::Part;
 
@@ -327,6 +328,28 @@ impl Graph {
             self.place.exponent() + place.exponent(),
             self.place.point(place.point(DVec2::ZERO)),
         );
+        self
+    }
+
+    /// Turns what is grown about the origin of the model by a number of degrees, counter-clockwise.
+    pub(crate) fn turned(mut self, by: f64) -> Self {
+        if by == 0.0 {
+            return self;
+        }
+        let axis = |vector: [f64; 2]| DVec2::from_array(degrees::turned(vector, by));
+        let turn = DAffine2::from_mat2(DMat2::from_cols(axis([1.0, 0.0]), axis([0.0, 1.0])));
+        let turned = |chain: &mut Chain| {
+            for instance in &mut chain.instances {
+                instance.frame = instance.frame.mapped(&turn);
+            }
+        };
+        self.initiators.iter_mut().for_each(turned);
+        if !self.roots.seeded.is_empty() {
+            let seeded = Arc::make_mut(&mut self.roots).seeded.iter_mut();
+            seeded.for_each(|seeded| turned(&mut seeded.chain));
+        }
+        let shift = turn.transform_point2(self.place.point(DVec2::ZERO));
+        self.place = Homothety::new(self.place.exponent(), shift);
         self
     }
 }

@@ -195,6 +195,17 @@ impl Canvas {
         Ok(())
     }
 
+    /// Returns the canvas of the same size that shows a point in its middle, magnified.
+    pub(super) fn magnified(&self, factor: f64, middle: DVec2) -> Self {
+        let scale = self.scale * factor;
+        let [width, height] = self.size.map(f64::from);
+        Self {
+            scale,
+            corner: middle + DVec2::new(-width, height) / (2.0 * scale),
+            ..*self
+        }
+    }
+
     /// Returns whether a box lies near enough to the picture to be drawn.
     #[must_use]
     pub fn holds(&self, bounds: &Bounds) -> bool {

@@ -179,9 +179,22 @@ pub struct PngEncoding {
     /// Whether pixels are grey levels of 8 bits, by luma (ITU-R BT.709), with an alpha channel of 8 bits unless all
     /// are opaque.
     pub grey: bool,
+    /// Whether the pixels themselves take the place of a PNG: red, green, blue and alpha in a byte each, row after row.
+    pub(crate) raw: bool,
 }
 
 setters!(PngEncoding {
     fast: bool,
     grey: bool
 });
+
+#[cfg(feature = "studio")]
+impl PngEncoding {
+    /// Returns the encoding that leaves pixels as they are.
+    pub(crate) fn raw() -> Self {
+        Self {
+            raw: true,
+            ..Self::default()
+        }
+    }
+}

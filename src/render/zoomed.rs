@@ -2,6 +2,8 @@
 
 use std::io::Write;
 
+use crate::expression::degrees;
+use crate::geometry::DVec2;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::model::Model;
@@ -23,6 +25,8 @@ pub struct ZoomTarget {
     pub factor: Factor,
     /// Point at the centre of the picture.
     pub at: Address,
+    /// Angle in degrees by which the set is turned about that point, counter-clockwise.
+    pub turn: f64,
 }
 
 /// Writes a picture centred on a point, of the size of the picture of the whole set and magnified relative to
@@ -50,8 +54,13 @@ pub fn write_zoomed(
         Width::Pixels(width) => (width * overhang(style), 0.0),
         Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
     };
+    let size = canvas.size();
     let window = ZoomWindow {
-        size: canvas.size(),
+        // A window that is turned lies in the square around its circle.
+        size: match target.turn == 0.0 {
+            true => size,
+            false => around(size),
+        },
         scale: canvas.scale(),
         margin: stroke + 2.0,
         relative_stroke,
@@ -73,13 +82,13 @@ pub fn write_zoomed(
         (None, Some(depth)) => depth,
         (None, None) => found.deepest.saturating_add(growth.steps),
     };
-    let [width, height] = window.size.map(f64::from);
+    let [width, height] = size.map(f64::from);
     let options = Options {
         view: View {
             window: Some([-width / 2.0, -height / 2.0, width, height]),
             margin: 0.0,
         },
-        size: Size::Exactly(window.size[0], window.size[1]),
+        size: Size::Exactly(size[0], size[1]),
         detail: Some(options.detail.unwrap_or(Detail {
             pixels: 1.0,
             decides_steps: true,
@@ -87,7 +96,8 @@ pub fn write_zoomed(
         ..options.clone()
     };
     let growth = Growth { steps, ..*growth };
-    let mut picture = super::write(&found.graph, &growth, &options, out)?;
+    let turned = found.graph.turned(target.turn);
+    let mut picture = super::write(&turned, &growth, &options, out)?;
     picture.window = shown(&canvas, target);
     if let (Some(empty), true, Some(middle)) = (&mut picture.empty, to_limit, target.at.near()) {
         let half = f64::from(canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
@@ -99,9 +109,22 @@ pub fn write_zoomed(
     Ok(picture)
 }
 
+/// Returns the square around the circle around a picture, in pixels.
+fn around([width, height]: [u32; 2]) -> [u32; 2] {
+    let across = libm::hypot(width.into(), height.into()).ceil();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "beyond the range is the largest number"
+    )]
+    let across = across as u32;
+    [across; 2]
+}
+
 /// Returns the window about a point, where doubles hold it.
 fn shown(canvas: &Canvas, look: &ZoomTarget) -> Option<[f64; 4]> {
     let middle = look.at.near()?;
+    let middle = DVec2::from_array(degrees::turned(middle.into(), look.turn));
     let scale = canvas.scale() * libm::exp2(look.factor.log2());
     let [width, height] = canvas.size().map(|side| f64::from(side) / scale);
     let window = [

@@ -9,6 +9,7 @@ use crate::catalogue::Catalogue;
 use crate::cli::grow;
 use crate::cli::held::{Done, Held};
 use crate::diagnostic::Source;
+use crate::render::space::Sight;
 
 use super::answer::Refusal;
 use super::view::View;
@@ -29,6 +30,8 @@ pub(super) struct Shot {
     /// Arguments without rule, size and view.
     pub(super) look: Vec<String>,
     pub(super) view: Option<View>,
+    /// Degrees by which a set of the plane is turned.
+    pub(super) turn: f64,
     pub(super) size: [u32; 2],
     /// Widths that pictures of the whole set show, where they have been drawn.
     pub(super) wholes: Arc<Wholes>,
@@ -47,8 +50,11 @@ pub(super) struct Drawn {
     pub(super) notes: Vec<String>,
     pub(super) elements: Option<u64>,
     pub(super) steps: Option<u32>,
-    #[serde(skip)]
     pub(super) window: Option<[f64; 4]>,
+    #[serde(skip)]
+    pub(super) sight: Option<Sight>,
+    /// Width and height in pixels.
+    size: [u32; 2],
     /// The command that writes the same picture.
     pub(super) command: String,
     pub(super) seconds: f64,
@@ -66,6 +72,8 @@ impl Shot {
             elements: done.elements,
             steps: done.steps,
             window: done.window,
+            sight: done.sight,
+            size: self.size,
             bytes: done.bytes,
             command: self.command(&view),
             seconds: start.elapsed().as_secs_f64(),
@@ -127,7 +135,7 @@ impl Shot {
             return Ok(Vec::new());
         };
         if view.is_plain() {
-            return Ok(view.window(self.size));
+            return Ok(view.window(self.size, self.turn));
         }
         let key = self.arguments(&[]);
         if let Some(whole) = self.wholes.get(&key) {

@@ -12,7 +12,7 @@ use crate::cli::held::Held;
 
 use super::answer::Refusal;
 
-/// Longest time of a job.
+/// Longest time of a job of the studio.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// Largest number of jobs that run or wait.
@@ -22,6 +22,8 @@ const MOST: usize = 64;
 #[derive(Debug)]
 pub(super) struct Jobs {
     turn: Semaphore,
+    /// Longest time of a job.
+    limit: Duration,
     /// Jobs that run or wait, by the name of their tab.
     known: Mutex<BTreeMap<String, Arc<Held>>>,
 }
@@ -52,14 +54,20 @@ impl Drop for Job<'_> {
 
 impl Default for Jobs {
     fn default() -> Self {
-        Self {
-            turn: Semaphore::new(1),
-            known: Mutex::default(),
-        }
+        Self::within(LIMIT)
     }
 }
 
 impl Jobs {
+    /// Returns a queue of jobs that take no longer than a limit.
+    fn within(limit: Duration) -> Self {
+        Self {
+            turn: Semaphore::new(1),
+            limit,
+            known: Mutex::default(),
+        }
+    }
+
     /// Runs `work` on a thread of its own when it is its turn. The older job of the same tab is cancelled.
     pub(super) async fn run<T: Send + 'static>(
         &self,
@@ -74,7 +82,7 @@ impl Jobs {
             return Err(Refusal::replaced());
         }
         let mut work = tokio::task::spawn_blocking(work);
-        let done = match tokio::time::timeout(LIMIT, &mut work).await {
+        let done = match tokio::time::timeout(self.limit, &mut work).await {
             Ok(done) => done,
             Err(_) => {
                 held.cancel.store(true, Ordering::Relaxed);
@@ -82,7 +90,7 @@ impl Jobs {
                 let _ = work.await;
                 return Err(Refusal::wrong(format!(
                     "it takes longer than {} seconds: fewer steps, a coarser detail or a smaller picture may do",
-                    LIMIT.as_secs()
+                    self.limit.as_secs()
                 )));
             }
         };
@@ -113,5 +121,80 @@ impl Jobs {
             tab: tab.to_owned(),
             held: Arc::clone(held),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::catalogue::Catalogue;
+    use crate::cli::grow;
+    use crate::render::PngEncoding;
+
+    /// Draws a rule with options by a job.
+    async fn draw(jobs: &Jobs, tab: &str, rule: &str, options: &[&str]) -> Result<(), Refusal> {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.rule(std::path::Path::new(rule))?;
+        let mut arguments = vec![rule.to_owned(), "--format=png".into(), "--output=-".into()];
+        arguments.extend(options.iter().map(|&option| option.to_owned()));
+        let held = Arc::new(Held::new(64 << 20, PngEncoding::default()));
+        let own = Arc::clone(&held);
+        let work = move || Ok(grow::hold(&arguments, &source, &catalogue, own)?);
+        jobs.run(tab, held, work).await.map(|_| ())
+    }
+
+    /// Work of minutes, of each kind of picture.
+    const LONG: [(&str, &[&str]); 4] = [
+        ("dragon", &["--steps=34", "--max-elements=100000000000"]),
+        (
+            "random-tree",
+            &["--steps=30", "--max-elements=100000000000"],
+        ),
+        ("barnsley-fern", &["--method=chaos", "--points=100G"]),
+        ("romanesco", &["--size=8000", "--detail=0.05"]),
+    ];
+
+    #[test]
+    fn work_ends_at_its_limit_and_gives_way() {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build();
+        runtime.unwrap().block_on(async {
+            let jobs = Jobs::within(Duration::from_millis(300));
+            for (rule, options) in LONG {
+                let start = Instant::now();
+                let refused = draw(&jobs, "a", rule, options).await.unwrap_err();
+                let message = &refused.message;
+                assert!(
+                    message.contains("it takes longer than"),
+                    "{rule}: {message}"
+                );
+                // The work itself has ended, not only the wait for it: the next one has its turn.
+                draw(&jobs, "a", "koch", &["--steps=2"]).await.unwrap();
+                assert!(start.elapsed() < Duration::from_secs(20), "{rule}");
+            }
+            assert!(jobs.known.lock().unwrap().is_empty());
+        });
+    }
+
+    #[test]
+    fn too_many_jobs_are_refused() {
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build();
+        runtime.unwrap().block_on(async {
+            let jobs = Jobs::default();
+            let held = || Arc::new(Held::default());
+            let waiting: Vec<_> = (0..MOST)
+                .map(|number| jobs.begin(&number.to_string(), &held()))
+                .collect();
+            assert!(waiting.iter().all(Result::is_ok));
+            let refused = jobs.run("one more", held(), || Ok(())).await.unwrap_err();
+            assert_eq!(refused.status, StatusCode::TOO_MANY_REQUESTS);
+            drop(waiting);
+            jobs.run("one more", held(), || Ok(())).await.unwrap();
+        });
     }
 }

@@ -6,8 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 
 use crate::catalogue::{Catalogue, LibraryFile, Shelf};
-use crate::cli::component::Component;
-use crate::cli::list;
+use crate::cli::{gallery, list};
 use crate::diagnostic::Source;
 
 use super::answer::Refusal;
@@ -47,11 +46,7 @@ pub(super) fn source(catalogue: &Catalogue, id: &str) -> Result<Arc<Source>, Ref
     let Some(file) = file else {
         return Err(Refusal::wrong(format!("the library has no entry '{id}'")));
     };
-    let source = catalogue.open(file)?;
-    match Shelf::COMPONENTS.contains(&file.shelf) {
-        true => Ok(Component::of(file.clone(), source).in_a_rule()),
-        false => Ok(source),
-    }
+    Ok(gallery::shown(file, catalogue)?)
 }
 
 /// Side of a thumbnail in pixels.
@@ -60,21 +55,17 @@ const SIDE: u32 = 192;
 /// Returns everything that a thumbnail depends on.
 pub(super) fn shot(catalogue: &Catalogue, source: Arc<Source>, id: &str) -> Shot {
     let name = id.rsplit('/').next().unwrap_or(id);
-    let is_component = Shelf::COMPONENTS
-        .iter()
-        .any(|shelf| id.starts_with(shelf.folder()));
-    let steps = is_component.then(|| match id.starts_with(Shelf::Initiators.folder()) {
-        true => "--steps=0".to_owned(),
-        false => "--steps=1".to_owned(),
-    });
+    let folder = id.split('/').next().unwrap_or(id);
+    let shelf = Shelf::all()
+        .into_iter()
+        .find(|shelf| shelf.folder() == folder);
     Shot {
         catalogue: catalogue.clone(),
         source,
         rule: name.to_owned(),
-        look: { steps.into_iter() }
-            .chain(["--threads=1".into(), "--max-elements=3000000".into()])
-            .collect(),
+        look: shelf.map(gallery::options).unwrap_or_default(),
         view: None,
+        turn: 0.0,
         size: [SIDE; 2],
         wholes: Arc::new(Wholes::default()),
     }

@@ -62,10 +62,11 @@ mod decimal {
 /// Options of the plane and of space.
 const BOTH: [&str; 5] = ["stroke", "fill", "background", "color-by", "palette"];
 /// Options of the plane alone.
-const PLANE: [&str; 4] = ["stroke-width", "cap", "join", "margin"];
+const PLANE: [&str; 5] = ["stroke-width", "cap", "join", "margin", "turn"];
 /// Options of space alone.
-const SPACE: [&str; 10] = [
+const SPACE: [&str; 11] = [
     "from",
+    "zoom",
     "up",
     "look-at",
     "perspective",
@@ -80,9 +81,8 @@ const SPACE: [&str; 10] = [
 const DENSITY: [&str; 3] = ["method", "points", "tone"];
 
 impl Look {
-    /// Returns the arguments of everything but rule, size and view, for a set of the plane or of space. `steps` replaces
-    /// the number of steps.
-    pub(super) fn arguments(&self, is_in_space: bool, steps: Option<u32>) -> Vec<String> {
+    /// Returns the arguments of everything but rule, size and view, for a set of the plane or of space.
+    pub(super) fn arguments(&self, is_in_space: bool) -> Vec<String> {
         let is_chaos = self.is_density();
         let mut all: Vec<String> = { self.set.iter() }
             .map(|(name, value)| format!("--set={name}={value}"))
@@ -91,7 +91,7 @@ impl Look {
             all.push(format!("--{name}={value}"));
         };
         if !is_chaos {
-            steps.iter().for_each(|steps| add("steps", steps));
+            self.steps.iter().for_each(|steps| add("steps", steps));
             self.detail.iter().for_each(|detail| add("detail", detail));
         }
         if self.seed != 0 {
@@ -108,6 +108,14 @@ impl Look {
             }
         }
         all
+    }
+
+    /// Returns the angle by which a set of the plane is turned, in degrees.
+    pub(super) fn turn(&self) -> f64 {
+        let given = self.options.get("turn").and_then(|it| it.parse().ok());
+        given
+            .filter(|turn: &f64| turn.is_finite() && !self.is_density())
+            .unwrap_or(0.0)
     }
 
     /// Returns whether points of random iteration are drawn.

@@ -9,15 +9,15 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | `session` | text, last valid model, look, revision |
+//! | `session`, `good` | text, last valid model, look, revision |
 //! | `history` | texts that undo and redo bring back, byte for byte |
 //! | `look` | steps, seed, parameters, style and view, as arguments of `grow` |
-//! | `view` | pan and zoom, in long decimals |
-//! | `drawing`, `jobs` | pictures, one at a time; a newer one cancels the older of its tab |
+//! | `view`, `sight` | pan and zoom: in long decimals in the plane, and in space |
+//! | `shots`, `drawing`, `jobs` | pictures, one at a time; a newer one cancels the older of its tab |
 //! | `numbers` | forecast and dimension |
 //! | `problems`, `complete` | mistakes at their places; completion from the schema |
-//! | `vary` | members near the present one |
-//! | `shelves` | the library, with thumbnails |
+//! | `vary`, `write` | members near the present one; values that are written into the text |
+//! | `library` | the library, with thumbnails |
 //! | `files` | where files may be written |
 //! | `guard`, `server` | requests that are answered, and the answers |
 //!
@@ -33,6 +33,7 @@ mod answer;
 mod complete;
 mod drawing;
 mod files;
+mod good;
 mod guard;
 mod history;
 mod jobs;
@@ -42,8 +43,11 @@ mod numbers;
 mod problems;
 mod server;
 mod session;
+mod shots;
+mod sight;
 mod vary;
 mod view;
+mod write;
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;

@@ -33,6 +33,9 @@ pub(super) struct Numbers {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Step {
     elements: String,
+    /// Number of elements, if it is below 2⁶⁴.
+    #[serde(skip)]
+    count: Option<u64>,
     /// Whether it is grown.
     pub(super) fits: bool,
     bytes: Option<String>,
@@ -68,8 +71,9 @@ impl Numbers {
         let steps: Vec<_> = (0..elements.len())
             .map(|step| Step {
                 elements: grouped(&count(step)),
-                fits: is_in_space || { count(step).parse::<u64>() }
-                    .is_ok_and(|count| count <= BUDGET),
+                count: count(step).parse().ok(),
+                fits: is_in_space || { count(step).parse() }
+                    .is_ok_and(|count: u64| count <= BUDGET),
                 bytes: at(&bytes, step).map(readable::rough_bytes),
                 seconds: at(&seconds, step).map(readable::duration),
             })
@@ -101,6 +105,20 @@ impl Numbers {
             // Beyond the slider, sizes only grow.
             None => self.steps.last().is_none_or(|last| last.fits),
         }
+    }
+
+    /// Returns the last of the steps up to one that has at most `most` elements, where their numbers are known.
+    pub(super) fn deepest(&self, step: u32, most: u64) -> u32 {
+        let known = usize::try_from(step)
+            .ok()
+            .and_then(|step| self.steps.get(..=step));
+        let Some(known) = known else {
+            return step;
+        };
+        let fits = |step: &Step| step.count.is_some_and(|count| count <= most);
+        let last = known.iter().rposition(fits);
+        last.and_then(|last| u32::try_from(last).ok())
+            .unwrap_or(step)
     }
 
     /// Returns the size of a step in words.

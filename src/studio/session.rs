@@ -3,28 +3,26 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::catalogue::{Catalogue, read_file};
-use crate::cli::check;
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
-use crate::document::ParameterDocument;
 use crate::kind::Kind;
-use crate::model::Model;
 use crate::output_file::OutputFile;
-use crate::style::{Named, Width};
 
 use super::Options;
 use super::answer::Refusal;
-use super::drawing::{Shot, Wholes};
+use super::drawing::Wholes;
 use super::files::{Roots, is_rule};
+use super::good::{Checked, Good, Reader};
 use super::history::History;
 use super::look::Look;
 use super::numbers::Numbers;
-use super::problems::{Problem, problems};
+use super::problems::Problem;
+use super::shots::Pace;
+use super::sight::Sight;
 use super::vary::Variant;
-use super::view::{Gesture, View};
+use super::view::View;
 
 /// State of a studio.
 #[derive(Debug)]
@@ -32,7 +30,7 @@ pub(super) struct Session {
     pub(super) catalogue: Catalogue,
     pub(super) roots: Roots,
     /// Name of the rule on the command line, and of its source in messages.
-    name: String,
+    pub(super) name: String,
     source_name: String,
     /// File of the rule; `None` for a copy that is not saved.
     path: Option<PathBuf>,
@@ -49,45 +47,16 @@ pub(super) struct Session {
     problems: Vec<Problem>,
     /// Part of the plane that the last picture showed.
     pub(super) window: Option<[f64; 4]>,
+    /// Part of space that it showed.
+    pub(super) sight: Option<Sight>,
     pub(super) numbers: Option<(Key, Arc<Numbers>)>,
+    pub(super) pace: Pace,
     pub(super) wholes: Arc<Wholes>,
     pub(super) variants: Vec<Variant>,
 }
 
 /// Revision of the text and settings, on which forecast and dimension depend.
 pub(super) type Key = (u64, Vec<String>);
-
-/// A text without mistakes, with what the page has to know of it.
-#[derive(Clone, Debug)]
-pub(super) struct Good {
-    pub(super) source: Arc<Source>,
-    revision: u64,
-    kind: Kind,
-    is_in_space: bool,
-    pub(super) parameters: Vec<ParameterState>,
-    about: Value,
-    style: Value,
-    own_steps: Option<u32>,
-}
-
-/// Parameter of a rule.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct ParameterState {
-    pub(super) name: String,
-    /// Name of the complex parameter of which this is a part.
-    pub(super) whole: Option<String>,
-    pub(super) value: f64,
-    pub(super) min: Option<f64>,
-    pub(super) max: Option<f64>,
-    about: Option<String>,
-}
-
-/// A text that has been read.
-pub(super) struct Checked {
-    text: Arc<str>,
-    good: Option<Good>,
-    problems: Vec<Problem>,
-}
 
 impl Session {
     /// Opens a rule.
@@ -135,7 +104,9 @@ impl Session {
             good: None,
             problems: Vec::new(),
             window: None,
+            sight: None,
             numbers: None,
+            pace: Pace::default(),
             wholes: Arc::default(),
             variants: Vec::new(),
         };
@@ -207,6 +178,7 @@ impl Session {
         self.saved = None;
         self.theirs = None;
         self.window = None;
+        self.sight = None;
         self.look = Look::default();
         self.good = None;
         let text: Arc<str> = source.text().into();
@@ -322,96 +294,17 @@ impl Session {
             .ok_or_else(|| Refusal::wrong("there is nothing to draw: the text has mistakes"))
     }
 
-    /// Applies a gesture to the view.
-    pub(super) fn gesture(&mut self, gesture: &Gesture) -> Result<(), Refusal> {
-        let view = match (&self.look.view, self.window) {
-            (Some(view), _) => view.clone(),
-            (None, Some(window)) => View::of(window),
-            (None, None) => return Err(Refusal::wrong("there is no picture of the plane to move")),
-        };
-        self.look.view = Some(view.moved(gesture)?);
-        Ok(())
+    /// Returns the revision of the last good text.
+    pub(super) fn good_revision(&self) -> u64 {
+        self.good.as_ref().map_or(0, |good| good.revision)
     }
 
-    /// Returns everything that a picture depends on.
-    pub(super) fn shot(&self, look: &Look, size: [u32; 2]) -> Result<Shot, Refusal> {
-        let good = self.good()?;
-        self.shot_of(good, &good.source, look, size)
-    }
-
-    /// Returns everything that the picture of a source depends on.
-    pub(super) fn shot_of(
-        &self,
-        good: &Good,
-        source: &Arc<Source>,
-        look: &Look,
-        size: [u32; 2],
-    ) -> Result<Shot, Refusal> {
-        look.check()?;
-        let view = look.view.clone().filter(|_| !good.is_in_space);
-        let steps = match &view {
-            Some(view) if look.follows => self.followed(good, look, view.factor()),
-            _ => look.steps,
-        };
-        let mut look = look.clone();
-        if view.as_ref().is_some_and(|view| !view.is_plain()) {
-            look.options.remove("margin");
+    /// Returns the magnification of the picture.
+    pub(super) fn factor(&self) -> f64 {
+        match &self.good {
+            Some(good) if good.is_in_space => super::sight::zoom(&self.look),
+            _ => self.look.view.as_ref().map_or(1.0, View::factor),
         }
-        Ok(Shot {
-            catalogue: self.catalogue.clone(),
-            source: Arc::clone(source),
-            rule: self.name.clone(),
-            look: look.arguments(good.is_in_space, steps),
-            view,
-            size,
-            wholes: Arc::clone(&self.wholes),
-        })
-    }
-
-    /// Returns the number of steps at a magnification: elements stay as long in the picture as they are without it.
-    fn followed(&self, good: &Good, look: &Look, factor: f64) -> Option<u32> {
-        if look.detail.is_some() {
-            return look.steps;
-        }
-        let numbers = self.known_numbers();
-        let proposed = || match good.kind {
-            Kind::Rule | Kind::LSystem => numbers.as_ref().map(|it| it.proposed),
-            _ => None,
-        };
-        let steps = look.steps.or(good.own_steps).or_else(proposed)?;
-        let further = numbers.as_ref().and_then(|it| it.further(factor));
-        Some(steps.saturating_add(further.unwrap_or(0)).min(1_000_000))
-    }
-
-    /// Returns what forecast and dimension depend on.
-    pub(super) fn key(&self) -> Key {
-        let settings = { self.look.set.iter() }.map(|(name, value)| format!("{name}={value}"));
-        let revision = self.good.as_ref().map_or(0, |good| good.revision);
-        (revision, settings.collect())
-    }
-
-    /// Returns forecast and dimension, if they have been computed.
-    pub(super) fn known_numbers(&self) -> Option<Arc<Numbers>> {
-        let (key, numbers) = self.numbers.as_ref()?;
-        (*key == self.key()).then(|| Arc::clone(numbers))
-    }
-
-    /// Refuses a step of too many elements, where a whole picture is drawn without a detail.
-    pub(super) fn check_size(&self, look: &Look) -> Result<(), Refusal> {
-        let good = self.good()?;
-        let steps = look
-            .steps
-            .filter(|_| look.detail.is_none() && look.view.is_none());
-        let (Some(steps), Some(numbers)) = (steps, self.known_numbers()) else {
-            return Ok(());
-        };
-        if numbers.fits(steps) || look.is_density() || good.is_in_space {
-            return Ok(());
-        }
-        Err(Refusal::wrong(format!(
-            "step {steps} has {}, more than are grown here: fewer steps, or the detail of a pixel, draw it",
-            numbers.described(steps)
-        )))
     }
 
     /// Returns what the page shows besides pictures and numbers.
@@ -438,96 +331,8 @@ impl Session {
             "style": good.map(|good| &good.style),
             "parameters": good.map(|good| &good.parameters),
             "look": self.look,
-            "factor": self.look.view.as_ref().map(View::factor),
+            "factor": self.factor(),
         })
-    }
-}
-
-/// Reader of the texts of a rule.
-#[derive(Clone, Debug)]
-pub(super) struct Reader {
-    catalogue: Catalogue,
-    name: String,
-}
-
-impl Reader {
-    /// Returns the source of a text.
-    pub(super) fn source(&self, text: &str) -> Arc<Source> {
-        Source::new(self.name.clone(), text)
-    }
-
-    /// Reads a text.
-    pub(super) fn check(&self, text: Arc<str>) -> Checked {
-        let source = self.source(&text);
-        let (good, found) = match source.check_size() {
-            Err(mistake) => (None, mistake.into()),
-            Ok(()) => match check::checked(&source, &self.catalogue) {
-                Err(found) => (None, found),
-                Ok((document, model, found)) => {
-                    let good = Good::of(&source, &document.metadata().params, &model);
-                    ((!found.has_errors()).then_some(good), found)
-                }
-            },
-        };
-        let problems = problems(&found, &source, &text);
-        Checked {
-            text,
-            good,
-            problems,
-        }
-    }
-}
-
-impl Good {
-    fn of(source: &Arc<Source>, parameters: &[ParameterDocument], model: &Model) -> Self {
-        let heading = model.metadata();
-        let described = &heading.description;
-        let style = &heading.style;
-        let parameters = parameters.iter().zip(&heading.parameters);
-        let hex = |colour: Option<crate::style::Colour>| colour.map(|it| format!("{it:#}"));
-        let view = model.space_view();
-        Self {
-            source: Arc::clone(source),
-            revision: 0,
-            kind: model.kind(),
-            is_in_space: model.is_in_space(),
-            parameters: parameters
-                .map(|(written, parameter)| ParameterState {
-                    name: parameter.name.clone(),
-                    whole: written.whole.as_ref().map(|whole| whole.value.clone()),
-                    value: parameter.value,
-                    min: parameter.min,
-                    max: parameter.max,
-                    about: parameter.about.clone(),
-                })
-                .collect(),
-            about: json!({
-                "title": described.title,
-                "about": described.about.as_deref().map(str::trim),
-                "source": described.source.as_deref().map(str::trim),
-                "tags": described.tags,
-            }),
-            style: json!({
-                "stroke": hex(style.stroke),
-                "fill": hex(style.fill),
-                "background": hex(style.background),
-                "stroke-width": match style.width {
-                    Width::Pixels(width) => width.to_string(),
-                    Width::Relative(width) => format!("{}%", width * 100.0),
-                },
-                "color-by": style.color_by.name(),
-                "palette": style.palette.name(),
-                "cap": style.cap.name(),
-                "join": style.join.name(),
-                "from": view.direction(),
-                "light": view.light().from,
-                "perspective": view.perspective,
-                "shade": view.shade.map(|shade| shade.name()),
-                "occlusion": view.occlusion,
-                "shadows": view.shadows,
-            }),
-            own_steps: heading.steps,
-        }
     }
 }
 

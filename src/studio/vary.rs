@@ -9,7 +9,7 @@ use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
 use crate::random::{Pcg, mix};
 
-use super::session::ParameterState;
+use super::good::ParameterState;
 
 /// Share by which a number changes at most.
 const SHARE: f64 = 0.05;

@@ -5,12 +5,14 @@ use std::str::FromStr;
 use dashu_float::DBig;
 use serde::{Deserialize, Serialize};
 
+use crate::expression::degrees::turned;
+
 use super::answer::Refusal;
 
 /// Part of the plane that a picture shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct View {
-    /// Coordinates of the middle, as decimals.
+    /// Coordinates of the middle in the file, before a turn, as decimals.
     pub(super) middle: [String; 2],
     /// Width in the units of the file.
     pub(super) width: f64,
@@ -22,11 +24,11 @@ pub(super) struct View {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub(super) struct Gesture {
     /// Magnification.
-    by: f64,
+    pub(super) by: f64,
     /// Point that stays in its place, from the middle, in widths of the picture; y points up.
-    about: [f64; 2],
+    pub(super) about: [f64; 2],
     /// Shift of the picture in widths of it; y points up.
-    shift: [f64; 2],
+    pub(super) shift: [f64; 2],
 }
 
 /// Smallest and largest magnification: widths stay doubles.
@@ -37,9 +39,9 @@ const MOST: f64 = 1e280;
 const FINE: f64 = 1e-9;
 
 impl View {
-    /// Returns the view of a window: lower left corner, width, height.
-    pub(super) fn of([x, y, width, height]: [f64; 4]) -> Self {
-        let middle = [x + width / 2.0, y + height / 2.0];
+    /// Returns the view of a window of a set that is turned by a number of degrees: lower left corner, width, height.
+    pub(super) fn of([x, y, width, height]: [f64; 4], turn: f64) -> Self {
+        let middle = turned([x + width / 2.0, y + height / 2.0], -turn);
         Self {
             middle: middle.map(|it| it.to_string()),
             width,
@@ -52,19 +54,14 @@ impl View {
         self.whole / self.width
     }
 
-    /// Returns the view after a gesture.
-    pub(super) fn moved(&self, gesture: &Gesture) -> Result<Self, Refusal> {
+    /// Returns the view after a gesture, of a set that is turned by a number of degrees.
+    pub(super) fn moved(&self, gesture: &Gesture, turn: f64) -> Result<Self, Refusal> {
         let Gesture { by, about, shift } = *gesture;
-        let all = [by, about[0], about[1], shift[0], shift[1]];
-        if !all.iter().all(|it| it.is_finite() && it.abs() < 1e6) || by <= 0.0 {
-            return Err(Refusal::wrong(
-                "a gesture is a magnification, a point and a shift",
-            ));
-        }
         let factor = (self.factor() * by).clamp(LEAST, MOST);
         let width = self.whole / factor;
-        let step = |at: usize| about[at] * (self.width - width) - shift[at] * width;
-        let middle = [0, 1].map(|at| self.plus(&self.middle[at], step(at)));
+        let step = [0, 1].map(|at| about[at] * (self.width - width) - shift[at] * width);
+        let step = turned(step, -turn);
+        let middle = [0, 1].map(|at| self.plus(&self.middle[at], step[at]));
         let [x, y] = middle;
         Ok(Self {
             middle: [x?, y?],
@@ -119,9 +116,9 @@ impl View {
         [0, 1].map(|at| self.middle[at].parse().unwrap_or(0.0))
     }
 
-    /// Returns the arguments of the window of a picture. `size` is that of the picture.
-    pub(super) fn window(&self, [width, height]: [u32; 2]) -> Vec<String> {
-        let [x, y] = self.near();
+    /// Returns the arguments of the window of a picture of a set that is turned. `size` is that of the picture.
+    pub(super) fn window(&self, [width, height]: [u32; 2], turn: f64) -> Vec<String> {
+        let [x, y] = turned(self.near(), turn);
         let across = self.width * f64::from(height) / f64::from(width.max(1));
         let corner = [x - self.width / 2.0, y - across / 2.0];
         vec![
@@ -144,6 +141,20 @@ impl View {
     }
 }
 
+impl Gesture {
+    /// Refuses what is no movement.
+    pub(super) fn check(&self) -> Result<(), Refusal> {
+        let Self { by, about, shift } = *self;
+        let all = [by, about[0], about[1], shift[0], shift[1]];
+        match all.iter().all(|it| it.is_finite() && it.abs() < 1e6) && by > 0.0 {
+            true => Ok(()),
+            false => Err(Refusal::wrong(
+                "a gesture is a magnification, a point and a shift",
+            )),
+        }
+    }
+}
+
 fn decimal(text: &str) -> Result<DBig, Refusal> {
     DBig::from_str(text).map_err(|_| Refusal::wrong("a coordinate is a decimal"))
 }
@@ -154,13 +165,13 @@ mod tests {
 
     #[test]
     fn a_zoom_keeps_its_point_in_place() {
-        let view = View::of([0.0, 0.0, 4.0, 2.0]);
+        let view = View::of([0.0, 0.0, 4.0, 2.0], 0.0);
         let gesture = Gesture {
             by: 2.0,
             about: [0.25, 0.125],
             shift: [0.0; 2],
         };
-        let near = view.moved(&gesture).unwrap();
+        let near = view.moved(&gesture, 0.0).unwrap();
         assert_eq!(near.width, 2.0);
         let [x, y] = [0, 1].map(|at| near.middle[at].parse::<f64>().unwrap());
         // The point (3, 1.5) lies a quarter of a width right of the middle, before and after.
@@ -168,32 +179,43 @@ mod tests {
     }
 
     #[test]
-    fn a_thousand_zooms_lose_no_digit() {
-        let mut view = View::of([0.0, 0.0, 3.0, 3.0]);
-        for _ in 0..400 {
-            view = view
-                .moved(&Gesture {
-                    by: 2.0,
+    fn four_hundred_zooms_lose_no_digit() {
+        let mut view = View::of([0.0, 0.0, 3.0, 3.0], 0.0);
+        let mut zoom = |by| {
+            for _ in 0..400 {
+                let gesture = Gesture {
+                    by,
                     about: [1.0 / 3.0, 0.1],
                     shift: [0.0; 2],
-                })
-                .unwrap();
-        }
-        assert!(view.factor() > 1e120 && !view.is_plain());
-        assert!(view.middle[0].len() > 120, "{}", view.middle[0]);
-        for _ in 0..400 {
-            view = view
-                .moved(&Gesture {
-                    by: 0.5,
-                    about: [1.0 / 3.0, 0.1],
-                    shift: [0.0; 2],
-                })
-                .unwrap();
-        }
-        let x = view.middle[0].parse::<f64>().unwrap();
+                };
+                view = view.moved(&gesture, 0.0).unwrap();
+            }
+            view.clone()
+        };
+        let near = zoom(2.0);
+        assert!(near.factor() > 1e120 && !near.is_plain());
+        assert!(near.middle[0].len() > 120, "{}", near.middle[0]);
+        let far = zoom(0.5);
+        let x = far.middle[0].parse::<f64>().unwrap();
         assert!(
-            (x - 1.5).abs() < 1e-12 && (view.width - 3.0).abs() < 1e-12,
-            "{view:?}"
+            (x - 1.5).abs() < 1e-12 && (far.width - 3.0).abs() < 1e-12,
+            "{far:?}"
         );
+    }
+
+    #[test]
+    fn the_middle_is_that_of_the_set_before_it_is_turned() {
+        // Turned by a right angle, the window from (-2, 0) to (0, 2) shows what lies around (1, 1).
+        let view = View::of([-2.0, 0.0, 2.0, 2.0], 90.0);
+        assert_eq!(view.middle, ["1", "1"]);
+        let right = Gesture {
+            by: 1.0,
+            about: [0.0; 2],
+            shift: [-0.5, 0.0],
+        };
+        // The right of the picture is the upper side of the set.
+        let moved = view.moved(&right, 90.0).unwrap();
+        assert_eq!(moved.middle, ["1", "0"]);
+        assert!(moved.window([10, 10], 90.0)[0].starts_with("--view=-1,0,2,2"));
     }
 }

@@ -19,6 +19,9 @@ pub struct Camera {
     pub look_at: Option<DVec3>,
     /// Angle of view across the sphere around the set, in degrees, from 1 to 150; a parallel projection if `None`.
     pub perspective: Option<f64>,
+    /// Magnification relative to the picture of the whole set, about the point in the middle, from 1e-3 to 1e5; `None` shows
+    /// the whole set.
+    pub zoom: Option<f64>,
 }
 
 setters!(Camera {
@@ -26,6 +29,7 @@ setters!(Camera {
     up: Option<DVec3>,
     look_at: Option<DVec3>,
     perspective: Option<f64>,
+    zoom: Option<f64>,
 });
 
 impl Default for Camera {
@@ -35,6 +39,7 @@ impl Default for Camera {
             up: None,
             look_at: None,
             perspective: None,
+            zoom: None,
         }
     }
 }
@@ -52,6 +57,9 @@ pub enum CameraError {
     /// A number is not finite, or the angle of view is not between 1 and 150 degrees.
     #[error("an angle of view is a number of degrees from 1 to 150")]
     Angle,
+    /// A magnification is beyond what the depths of pixels resolve.
+    #[error("a zoom in space is a number from 1e-3 to 1e5")]
+    Zoom,
 }
 
 impl Camera {
@@ -97,10 +105,11 @@ impl Camera {
         Ok(DMat3::from_cols(right, up, ahead).transpose())
     }
 
-    /// Checks the angle of view.
+    /// Checks the angle of view and the magnification.
     pub(crate) fn check(&self) -> Result<(), CameraError> {
-        match self.perspective {
-            Some(angle) if !(1.0..=150.0).contains(&angle) => Err(CameraError::Angle),
+        match (self.perspective, self.zoom) {
+            (Some(angle), _) if !(1.0..=150.0).contains(&angle) => Err(CameraError::Angle),
+            (_, Some(zoom)) if !(1e-3..=1e5).contains(&zoom) => Err(CameraError::Zoom),
             _ => Ok(()),
         }
     }

@@ -82,6 +82,12 @@ impl Factor {
         }
     }
 
+    /// Returns the nearest double; infinity if the factor is beyond the range.
+    #[must_use]
+    pub fn to_f64(&self) -> f64 {
+        self.value.to_f64().value()
+    }
+
     /// Returns the binary logarithm.
     #[must_use]
     pub fn log2(&self) -> f64 {

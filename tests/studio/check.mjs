@@ -112,6 +112,12 @@ try {
   await changes(drag, "a slider changes the picture");
   await browser.until("document.querySelector('#command').textContent.includes('--set=')");
   await shoot("slider");
+  await browser.click("[data-write=angle]");
+  await browser.until("document.querySelector('#file').className.includes('unsaved') && !document.querySelector('#command').textContent.includes('--set=')");
+  check(await browser.value("document.querySelector('[data-write=angle]').hidden"), "the value is written into the file");
+  await browser.key("z", { modifiers: 2 });
+  await browser.until(`document.querySelector('#code').value === ${JSON.stringify(TREE)}`);
+  await browser.until("document.querySelector('#file').className === 'quiet'");
 
   // Drag and wheel on the picture.
   const before = await value("#factor");
@@ -120,6 +126,19 @@ try {
   check(before === "" && (await value("#factor")).startsWith("×"), "the magnification is shown");
   await browser.until("document.querySelector('#command').textContent.includes('--view=')");
   await shoot("zoomed");
+
+  // Turn and window in the plane.
+  await browser.value("document.querySelector('#picture').focus()");
+  await changes(() => browser.key("ArrowLeft", { modifiers: 8 }), "Shift and an arrow key turn the picture");
+  await changes(async () => {
+    await browser.pointer("mousePressed", 700, 300, { modifiers: 8 });
+    for (let y = 300; y < 420; y += 20) await browser.pointer("mouseMoved", 700, y, { modifiers: 8 });
+    await browser.pointer("mouseReleased", 700, 420, { modifiers: 8 });
+  }, "Shift and a drag turn the picture");
+  await browser.until("document.querySelector('#command').textContent.includes('--turn=')");
+  await browser.click("#tab-style");
+  await changes(() => browser.value("(() => { const window = document.querySelector('#style-window'); window.value = '-0.5, 0, 1, 1'; window.dispatchEvent(new Event('change')); })()"), "a window that is typed is shown");
+  await browser.click("#tab-family");
 
   // The keyboard alone: from the top of the page to the slider of steps, and back.
   await open(studio.url);
@@ -228,8 +247,39 @@ try {
   await open(space.url);
   await changes(() => browser.drag([400, 400], [520, 360]), "a drag turns a set in space");
   await browser.until("document.querySelector('#command').textContent.includes('--from=')");
+  const wheel = () => browser.send("Input.dispatchMouseEvent", { type: "mouseWheel", x: 420, y: 380, deltaX: 0, deltaY: -500 });
+  await changes(wheel, "the wheel zooms in space");
+  check((await value("#factor")).startsWith("×"), "the magnification in space is shown");
+  await changes(async () => {
+    await browser.pointer("mousePressed", 400, 400, { modifiers: 2 });
+    for (let x = 400; x < 480; x += 20) await browser.pointer("mouseMoved", x, 400, { modifiers: 2 });
+    await browser.pointer("mouseReleased", 480, 400, { modifiers: 2 });
+  }, "Ctrl and a drag move a set in space");
+  await browser.until("document.querySelector('#command').textContent.includes('--look-at=')");
+  await browser.value("document.querySelector('#picture').focus()");
+  await changes(() => browser.key("ArrowRight", { modifiers: 2 }), "Ctrl and an arrow key move it");
+  await changes(() => browser.key("0"), "0 shows all of it");
   await browser.click("#tab-style");
   await shoot("space");
+
+  // L-systems and structures, opened from the library.
+  const opened = await serve("koch");
+  studios.push(opened);
+  await open(opened.url);
+  for (const [name, kind] of [["gosper-lsystem", "lsystem"], ["ternary-tree", "instancing"], ["pound-sign-in-space", "instancing"]]) {
+    await browser.click("#tab-library");
+    await browser.until("document.querySelectorAll('#entries button').length > 0");
+    await browser.value(`(() => { const search = document.querySelector('#search'); search.value = ${JSON.stringify(name)}; search.dispatchEvent(new Event('input')); })()`);
+    await changes(async () => {
+      await browser.click("#entries button");
+      await browser.until(`document.querySelector('#file').textContent.startsWith(${JSON.stringify(name)}) || document.querySelector('#ask').open`);
+      if (await browser.value("document.querySelector('#ask').open")) await browser.click("#ask-go");
+    }, `${name} is opened`);
+    await browser.until(`document.querySelector('#code').value.includes('kind: ${kind}')`);
+    await browser.until("!document.querySelector('#back').disabled");
+    await changes(() => browser.click("#back"), `${name} steps back`);
+    await shoot(name);
+  }
 
   // Dark, narrow, and with reduced motion.
   await browser.prefer({ "prefers-color-scheme": "dark", "prefers-reduced-motion": "reduce" });

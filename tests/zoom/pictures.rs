@@ -49,6 +49,7 @@ fn zoomed(rule: &Rule, options: &Options, factor: &str, at: &str) -> Vec<u8> {
     let look = ZoomTarget {
         factor: factor.parse().unwrap(),
         at: at.parse().unwrap(),
+        turn: 0.0,
     };
     let mut bytes = Vec::new();
     let growth = Growth::steps(1_000_000);

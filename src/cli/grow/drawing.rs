@@ -47,7 +47,7 @@ impl<'a> Drawing<'a> {
                 check_model(&loaded.model).map_err(|error| output::explain(error.into(), path))?;
                 // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates
                 // of the file.
-                let loaded = loaded.within(Homothety::IDENTITY);
+                let loaded = loaded.within(Homothety::IDENTITY).turned(None);
                 (loaded, Goal::zoomed(steps, detail))
             }
             ShownPart::Nested => {
@@ -280,6 +280,7 @@ impl<'a> Drawing<'a> {
         options.extend(svg.options());
         options.push(("size", size.to_string()));
         options.extend(zoom.options());
+        options.extend(self.arguments.turn_option());
         options.extend(picture.options());
         let Paper { size, unit } = *size;
         let view = picture.view_in(self.loaded.model.metadata(), unit);

@@ -93,6 +93,10 @@ impl Named for Format {
     ];
 }
 
+/// Message for a zoom of random iteration in the plane.
+pub(super) const NO_ZOOM_OF_POINTS: &str =
+    "--zoom magnifies elements, and --method chaos draws points: --view shows a part of them";
+
 impl Plan {
     /// Returns the plan of the arguments; an error if they exclude each other.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
@@ -114,10 +118,7 @@ impl Plan {
         if is_chaos {
             let message = "--detail applies to elements, and --method chaos draws points";
             refuse(has_detail, message)?;
-            refuse(
-                zoom.is_asked(),
-                "--zoom magnifies elements, and --method chaos draws points: --view shows a part of them",
-            )?;
+            refuse(zoom.has_centre(), NO_ZOOM_OF_POINTS)?;
             let lines = [
                 ("--plot", plot.is_asked()),
                 ("--svg instanced", svg.is_instanced()),
@@ -211,13 +212,12 @@ impl Plan {
             is_nested && zoom.is_asked(),
             "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them",
         )?;
-        let target = zoom.target()?;
         refuse(
-            target.is_some() && picture.has_view(),
+            zoom.is_asked() && picture.has_view(),
             "--zoom and --at cannot be combined with --view: each selects what is shown",
         )?;
         refuse(
-            target.is_some() && is_table,
+            zoom.is_asked() && is_table,
             "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
         )?;
         let gives_depth =
@@ -228,7 +228,7 @@ impl Plan {
             Format::Picture(format) => Self::Picture {
                 format,
                 is_light: format == render::Format::Svg && !gives_depth && !is_nested,
-                shown: match target {
+                shown: match zoom.target(arguments.turn) {
                     Some(target) => ShownPart::Zoom(target),
                     None if is_nested => ShownPart::Nested,
                     None => ShownPart::Window,

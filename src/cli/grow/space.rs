@@ -61,7 +61,8 @@ pub(super) fn draw(
         ),
         ..render::Options::default()
     };
-    let space = arguments.space.to_options(&loaded.model.space_view())?;
+    let mut space = arguments.space.to_options(&loaded.model.space_view())?;
+    space.camera.zoom = arguments.zoom.in_space();
     let space = space.keeps_depths(arguments.depth.is_some());
     let drawn = loaded.drawn_in_space(steps, for_pixels(options.style.color_by))?;
     drawn.colour(&mut options.style);
@@ -92,9 +93,6 @@ pub(super) fn draw(
         )
         .map_err(|error| output::explain(error, path))
     })?;
-    if let Some(held) = &arguments.growth.held {
-        held.note_picture(&picture, None);
-    }
     let reached = match steps {
         Some(steps) => format!("step {steps} of {}", loaded.name),
         None => format!(
@@ -123,8 +121,13 @@ fn write(
                 pixels,
                 depths,
                 picture,
+                sight,
                 ..
             } = draw(progress)?;
+            if let Some(held) = &arguments.growth.held {
+                held.note_picture(&picture, None);
+                held.note_sight(sight);
+            }
             let written = pixels.write(options, out);
             written.map_err(|error| output::explain(error, path))?;
             Ok((picture, depths))
@@ -174,6 +177,7 @@ fn options(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static
             .map(|detail| ("detail", detail.to_string())),
     );
     options.push(("size", arguments.size.to_string()));
+    options.extend(arguments.zoom.options());
     options.extend(arguments.picture.options());
     options.extend(arguments.space.options());
     let depth = arguments.depth.iter();
@@ -193,7 +197,8 @@ fn check(arguments: &Arguments, loaded: &Loaded, plan: &Plan) -> Result<&'static
     };
     let refused = [
         ("--svg instanced", arguments.svg.is_instanced()),
-        ("--zoom", arguments.zoom.is_asked()),
+        ("--at", arguments.zoom.has_centre()),
+        ("--turn", arguments.turn.is_some()),
         ("--view", arguments.picture.has_view()),
         ("sizes in millimetres", arguments.size.unit != Unit::Pixel),
     ];

@@ -39,6 +39,11 @@ pub(super) fn draw(
         ("--svg instanced", arguments.svg.is_instanced(), ""),
         ("--zoom", arguments.zoom.is_asked(), ""),
         ("--view", picture.has_view(), ""),
+        (
+            "--turn",
+            arguments.turn.is_some(),
+            ": turn it with --from and --up",
+        ),
     ];
     for (option, is_asked, instead) in refused {
         if is_asked {

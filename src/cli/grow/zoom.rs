@@ -11,11 +11,11 @@ use super::super::{Failure, readable};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct ZoomArguments {
-    /// Magnifies the neighbourhood of the point given by --at: 250, 1e1000, 3^5000
+    /// Magnifies the neighbourhood of the point given by --at, or in space by --look-at: 250, 1e1000, 3^5000
     ///
-    /// All visible elements are grown, as with --detail, which sets their smallest size (1 pixel by default).
+    /// In the plane, all visible elements are grown, as with --detail, which sets their smallest size (1 pixel by default).
     /// A zoom of 1 shows the whole picture, or the window of the rule. The zoom is limited only by the time
-    /// that it takes.
+    /// that it takes; in space, to 1e5 by the depths of the pixels.
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     zoom: Option<Factor>,
     /// Centre of the zoom: an address (a list of positions) such as 0.2.(1), or a point X,Y with any number of digits
@@ -34,19 +34,33 @@ impl ZoomArguments {
         self.zoom.is_some() || self.at.is_some()
     }
 
-    /// Returns the requested zoom, if any.
-    pub(super) fn target(&self) -> Result<Option<ZoomTarget>, Failure> {
-        let factor = self.zoom.clone();
-        match &self.at {
-            Some(at) => Ok(Some(ZoomTarget {
-                factor: factor.unwrap_or_else(Factor::one),
-                at: at.clone(),
-            })),
-            None if factor.is_none() => Ok(None),
-            None => {
+    /// Returns whether a centre is given.
+    pub(super) fn has_centre(&self) -> bool {
+        self.at.is_some()
+    }
+
+    /// Returns the magnification of a set in space.
+    pub(super) fn in_space(&self) -> Option<f64> {
+        self.zoom.as_ref().map(Factor::to_f64)
+    }
+
+    /// Returns the zoom of a set of the plane, if a centre is given: `turn` is the angle in degrees by which it is turned.
+    pub(super) fn target(&self, turn: Option<f64>) -> Option<ZoomTarget> {
+        Some(ZoomTarget {
+            factor: self.zoom.clone().unwrap_or_else(Factor::one),
+            at: self.at.clone()?,
+            turn: turn.unwrap_or(0.0),
+        })
+    }
+
+    /// Returns an error for a zoom of a set of the plane without a centre.
+    pub(super) fn check_in_plane(&self) -> Result<(), Failure> {
+        match self.zoom.is_some() && self.at.is_none() {
+            true => {
                 let message = "--zoom needs --at: the centre, such as 0.(1) or 0.5,0";
                 Err(Failure::Usage(message.into()))
             }
+            false => Ok(()),
         }
     }
 

@@ -22,6 +22,9 @@ pub(in crate::render) fn encode(
     encoding: PngEncoding,
     out: &mut impl Write,
 ) -> io::Result<()> {
+    if encoding.raw {
+        return write_raw(pixmap, out);
+    }
     let colours = Colours::of(pixmap);
     let size = [pixmap.width(), pixmap.height()];
     encode_pieces(size, &colours, labels, encoding, out, |encode| {
@@ -39,6 +42,9 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
     out: &mut impl Write,
     give: impl FnOnce(&mut dyn FnMut(&Pixmap) -> io::Result<()>) -> Result<(), E>,
 ) -> Result<(), E> {
+    if encoding.raw {
+        return give(&mut |pixmap| write_raw(pixmap, out));
+    }
     let mut encoder = Encoder::new(out, width, height);
     let layout = match encoding.grey {
         true => Layout::grey(colours.opaque),
@@ -112,6 +118,17 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
     give(&mut encode)?;
     stream.finish().map_err(io_error)?;
     Ok(writer.finish().map_err(io_error)?)
+}
+
+/// Writes pixels without encoding them.
+fn write_raw(pixmap: &Pixmap, out: &mut impl Write) -> io::Result<()> {
+    let mut row = Vec::with_capacity(4 * pixmap.width() as usize);
+    for pixels in pixmap.pixels().chunks_exact(pixmap.width() as usize) {
+        row.clear();
+        row.extend(pixels.iter().flat_map(|&pixel| rgba(pixel)));
+        out.write_all(&row)?;
+    }
+    Ok(())
 }
 
 type Rgba = [u8; 4];

@@ -138,7 +138,9 @@ mod tests {
             .camera(Camera::default().from(Camera::NAMED[3].1))
             .light(light())
             .shade(Some(Shade::Cosine));
-        draw(graph, Some(steps), &options, &space, None).unwrap().0
+        draw(graph, Some(steps), &options, &space, None)
+            .unwrap()
+            .pixmap
     }
 
     fn light() -> Light {

@@ -33,6 +33,8 @@ mod tints;
 mod turned;
 mod visible;
 
+#[cfg(feature = "cli")]
+pub(crate) use camera::Sight;
 pub use depth_map::DepthMap;
 pub(in crate::render) use eye::Eye;
 pub use options::{SpaceError, SpaceOptions, SpacePicture};
@@ -104,12 +106,27 @@ pub fn pixels_in_space(
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
 ) -> Result<SpacePicture, RenderError> {
-    let (pixmap, depths, picture) = draw(graph, steps, options, space, cancel)?;
+    let Drawn {
+        pixmap,
+        depths,
+        picture,
+        placement,
+    } = draw(graph, steps, options, space, cancel)?;
     Ok(SpacePicture {
         pixels: Pixels::of(pixmap),
         depths: depths.filter(|_| space.keeps_depths),
         picture,
+        sight: placement.sight(space.camera.look_at),
     })
+}
+
+/// Picture in memory.
+#[derive(Debug)]
+struct Drawn {
+    pixmap: Pixmap,
+    depths: Option<DepthMap>,
+    picture: Picture,
+    placement: Placement,
 }
 
 /// Piece of work: a tile of the picture.
@@ -197,7 +214,7 @@ fn draw(
     options: &Options,
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
-) -> Result<(Pixmap, Option<DepthMap>, Picture), RenderError> {
+) -> Result<Drawn, RenderError> {
     const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
     let parts = scene::parts(graph, steps);
@@ -332,7 +349,12 @@ fn draw(
         space,
     )?;
     let picture = described(size, steps.unwrap_or(deepest), drawn);
-    Ok((pixmap, depths, picture))
+    Ok(Drawn {
+        pixmap,
+        depths,
+        picture,
+        placement: scene.placement,
+    })
 }
 
 /// Number of pixels along the long side of a picture from the light, beside that of the picture.
@@ -358,8 +380,7 @@ fn seen_by_light(
         .cuts(space.cuts.clone())
         .shade(Some(Shade::None))
         .keeps_depths(true);
-    let (_, depths, _) = draw(graph, steps, &options, &space, cancel)?;
-    Ok(depths)
+    Ok(draw(graph, steps, &options, &space, cancel)?.depths)
 }
 
 /// Lights the pixels by their depths, and puts them on the background.

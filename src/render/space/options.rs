@@ -6,6 +6,7 @@ use crate::render::{NoRoom, Picture, Pixels};
 use crate::style::{Camera, CameraError, ColorBy, Light, Named, Shade, Slice, SpaceView};
 
 use super::DepthMap;
+use super::camera::Sight;
 
 /// Error of drawing in space.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -132,4 +133,10 @@ pub struct SpacePicture {
     pub depths: Option<DepthMap>,
     /// Description of the picture.
     pub picture: Picture,
+    /// Its middle, and the directions in which it moves.
+    #[cfg_attr(
+        not(feature = "cli"),
+        expect(dead_code, reason = "the studio moves pictures by it")
+    )]
+    pub(crate) sight: Sight,
 }

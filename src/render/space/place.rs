@@ -62,6 +62,10 @@ pub(super) fn place_with(
     let centre = camera.look_at.map_or(middle, |point| rotation * point);
     let Some(angle) = camera.perspective else {
         let canvas = Canvas::fit(&around(&bounds, centre, camera), size, margin)?;
+        let canvas = match camera.zoom {
+            Some(zoom) => canvas.magnified(zoom, centre.truncate()),
+            None => canvas,
+        };
         let samples = canvas.scale() * SAMPLES_A_PIXEL;
         let corner = canvas.to_pixels().translation * SAMPLES_A_PIXEL;
         let linear = DMat3::from_diagonal(DVec3::new(samples, -samples, samples)) * rotation;
@@ -73,18 +77,30 @@ pub(super) fn place_with(
         });
     };
     // The sphere about the centre that contains the box of the set is seen under the angle.
-    let away = (bounds.min() - centre)
-        .abs()
-        .max((bounds.max() - centre).abs());
-    let distance = away.length() / crate::expression::degrees::sin(angle / 2.0);
-    let distance = if distance > 0.0 { distance } else { 1.0 };
+    let distance_of = |centre: DVec3| {
+        let away = (bounds.min() - centre)
+            .abs()
+            .max((bounds.max() - centre).abs());
+        let distance = away.length() / crate::expression::degrees::sin(angle / 2.0);
+        if distance > 0.0 { distance } else { 1.0 }
+    };
+    let distance = distance_of(centre);
     let viewer = centre + DVec3::Z * distance;
+    // A magnification is relative to the picture of the whole set, whatever is in the middle.
+    let [seen_from, away] = match camera.zoom {
+        Some(_) => [middle, DVec3::Z * distance_of(middle)],
+        None => [centre, DVec3::Z * distance],
+    };
     let window = match within {
-        [] => window(rotation, viewer, &bounds, &extent)?,
-        _ => window_of_box(viewer, &bounds),
+        [] => window(rotation, seen_from + away, &bounds, &extent)?,
+        _ => window_of_box(seen_from + away, &bounds),
     };
     let flat = Bounds::new(window.min().extend(0.0), window.max().extend(0.0));
     let canvas = Canvas::fit(&around(&flat, DVec3::ZERO, camera), size, margin)?;
+    let canvas = match camera.zoom {
+        Some(zoom) => canvas.magnified(zoom * distance / away.z, DVec2::ZERO),
+        None => canvas,
+    };
     let focus = canvas.scale() * SAMPLES_A_PIXEL;
     let axis = canvas.pixel(DVec2::ZERO) * SAMPLES_A_PIXEL;
     let flip = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
@@ -148,10 +164,10 @@ fn window_of_box(viewer: DVec3, bounds: &Bounds<DVec3>) -> Bounds {
 const SAMPLES_A_PIXEL: f64 = SAMPLES as f64;
 
 /// Returns the box of the picture: that of the projection, made symmetric about the centre if the camera looks
-/// at a point.
+/// at a point without a magnification.
 fn around(bounds: &Bounds<DVec3>, centre: DVec3, camera: &Camera) -> Bounds {
     let (min, max) = (bounds.min().truncate(), bounds.max().truncate());
-    if camera.look_at.is_none() {
+    if camera.look_at.is_none() || camera.zoom.is_some() {
         return Bounds::new(min, max);
     }
     let centre = centre.truncate();

@@ -47,6 +47,7 @@ pub fn points_in_space(
     let size = [pixmap.width(), pixmap.height()];
     Ok(SpacePicture {
         pixels: Pixels::of(pixmap),
+        sight: depths.placement().sight(space.camera.look_at),
         depths: Some(depths).filter(|_| space.keeps_depths),
         picture: described(size, 0, game.points),
     })

@@ -63,7 +63,7 @@ fn seen_by(
         .view(Window::default())
         .threads(NonZero::new(threads).unwrap());
     let space = SpaceOptions::default().camera(camera);
-    draw(graph, steps, &options, &space, None).unwrap().0
+    draw(graph, steps, &options, &space, None).unwrap().pixmap
 }
 
 /// Returns whether each pixel is paper, in rows.
@@ -349,7 +349,9 @@ fn a_pit_is_occluded_and_a_plane_is_not() {
             .camera(camera.look_at(Some(DVec3::ZERO)))
             .shade(Some(Shade::None))
             .occlusion(true);
-        let seen = draw(&graph, Some(1), &options, &space, None).unwrap().0;
+        let seen = draw(&graph, Some(1), &options, &space, None)
+            .unwrap()
+            .pixmap;
         let middle = (seen.height() / 2 * seen.width() + seen.width() / 2) as usize;
         seen.pixels()[middle].red()
     };
@@ -400,7 +402,9 @@ fn a_ball_throws_a_shadow_on_a_plate() {
             .shade(Some(shade))
             .shadows(true);
         let options = options.clone().threads(NonZero::new(threads).unwrap());
-        draw(&graph, Some(1), &options, &space, None).unwrap().0
+        draw(&graph, Some(1), &options, &space, None)
+            .unwrap()
+            .pixmap
     };
     let seen = drawn(Shade::Cosine, 1);
     assert!(seen == drawn(Shade::Cosine, 3));

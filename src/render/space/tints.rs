@@ -138,7 +138,8 @@ mod tests {
         let space = SpaceOptions::default()
             .camera(camera)
             .shade(Some(Shade::None));
-        let (pixmap, ..) = draw(&graph, Some(1), &options, &space, None).unwrap();
+        let crate::render::space::Drawn { pixmap, .. } =
+            draw(&graph, Some(1), &options, &space, None).unwrap();
         assert_eq!(pixmap.width(), u32::from(SIDE));
         let tint = |[red, green, blue]: [u8; 3]| {
             let colour = Colour::of_rgba([red, green, blue, 255]);

@@ -43,12 +43,14 @@ function make(name, properties = {}, ...children) {
 
 const canvas = $("picture");
 const plane = canvas.getContext("2d");
+const sheet = document.createElement("canvas"); // a draft, in pixels
 let bitmap = null;
 let bitmapSize = [1, 1];
 const still = () => ({ by: 1, t: [0, 0] });
 let shown = still(); // movement of the view since the bitmap was drawn
 let pending = still(); // the part of it that the server does not know
 let isBusy = false;
+let asked = null; // window that is typed
 let isStale = false; // whether the look has changed since the last request
 let again = null;
 let calm = 0;
@@ -70,42 +72,56 @@ function paint() {
   plane.drawImage(bitmap, x, y, w, h);
 }
 
-/** Asks for a picture: fast while a hand moves, and in full once it rests. */
-function draw(fast = false) {
+/** Asks for a picture: a draft while a hand moves, and in full once it rests. */
+function draw(draft = false) {
   clearTimeout(calm);
-  if (fast) calm = setTimeout(() => draw(false), 80);
-  if (isBusy) again = again === false ? false : fast;
-  else request(fast);
+  if (draft) calm = setTimeout(() => draw(false), 80);
+  if (isBusy) again = again === false ? false : draft;
+  else request(draft);
 }
 
-async function request(fast) {
+/** Returns the image of an answer; a draft has no encoding. */
+async function image(answer, draft, [width, height]) {
+  if (!draft) return createImageBitmap(await answer.blob());
+  const pixels = new ImageData(new Uint8ClampedArray(await answer.arrayBuffer()), width, height);
+  [sheet.width, sheet.height] = [width, height];
+  sheet.getContext("2d").putImageData(pixels, 0, 0);
+  return sheet;
+}
+
+async function request(draft) {
   if (!state.hasGood || !canvas.width) return;
   isBusy = true;
   const sent = pending;
   pending = still();
-  const scale = fast && slow ? 0.5 : 1;
+  const scale = draft && slow ? 0.5 : 1;
   const size = [canvas.width, canvas.height].map((side) => Math.max(1, Math.round(side * scale)));
-  const wanted = { tab, width: size[0], height: size[1], fast };
+  const wanted = { tab, width: size[0], height: size[1], draft };
   if (isStale) wanted.look = look;
-  if (moves(sent) && !state.isInSpace) wanted.gesture = { by: sent.by, about: [0, 0], shift: sent.t };
+  if (asked) wanted.window = asked;
+  asked = null;
+  if (moves(sent)) wanted.gesture = { by: sent.by, about: [0, 0], shift: sent.t };
   isStale = false;
   const start = performance.now();
   try {
     const answer = await call("POST", "/picture", wanted);
     const found = JSON.parse(answer.headers.get("x-kfrac-picture"));
-    const blob = await answer.blob();
-    const next = await createImageBitmap(blob);
-    bitmap?.close();
+    const next = await image(answer, draft, size);
+    bitmap?.close?.();
     [bitmap, bitmapSize, shown] = [next, size, pending];
-    slow = performance.now() - start > (slow ? 6 : 12);
-    drawn = { ...found, size, bytes: blob.size };
-    if (!isStale) look = found.session.look;
-    else look.view = found.session.look.view;
+    if (draft) slow = performance.now() - start > (slow ? 6 : 12);
+    drawn = { ...found, bytes: +answer.headers.get("content-length") };
+    const kept = found.session.look;
+    if (!isStale) look = kept;
+    else {
+      look.view = kept.view;
+      for (const option of ["zoom", "look-at"]) if (kept.options[option] !== undefined) look.options[option] = kept.options[option];
+    }
     $("factor").value = factor(found.session.factor);
     say("");
     paint();
     window.dispatchEvent(new CustomEvent("picture", { detail: performance.now() - start }));
-    if (!fast) tell();
+    if (!draft) tell();
   } catch (error) {
     if (error.status !== 410) say(error.message, error.status === 422);
     shown = pending;
@@ -140,6 +156,7 @@ function tell() {
   $("command").textContent = drawn.command;
   $("command").title = drawn.command;
   if (state.isInSpace) placeSteps();
+  if ($("style-window") && document.activeElement !== $("style-window")) $("style-window").value = drawn.window?.map((it) => +it.toPrecision(6)).join(", ") ?? "";
   canvas.setAttribute("aria-label", `Picture of ${title()}: ${parts.slice(0, 2).join(", ")}`);
 }
 const bytes = (n) => (n < 1e6 ? `${Math.ceil(n / 1e3)} kB` : `${(n / 1e6).toFixed(1)} MB`);
@@ -157,10 +174,9 @@ function resize() {
 }
 new ResizeObserver(resize).observe($("paper"));
 
-// The view: pan and zoom in the plane, turn in space.
+// The view: pan, zoom and turn.
 
 function move(by, about, shift = [0, 0]) {
-  if (state.isInSpace) return;
   const step = { by, t: [0, 1].map((i) => -about[i] * (by - 1) + shift[i]) };
   shown = after(shown, step);
   pending = after(pending, step);
@@ -182,9 +198,16 @@ canvas.addEventListener("wheel", (event) => {
   event.preventDefault();
   const lines = event.deltaMode === 1 ? 16 : 1;
   const by = Math.exp(-Math.max(-240, Math.min(240, event.deltaY * lines)) * 0.0022);
-  if (!state.isInSpace) move(by, place(event));
+  move(by, place(event));
 }, { passive: false });
 const pointers = new Map();
+/** Turns a set of the plane. */
+function spin(by) {
+  const angle = (+(look.options?.turn ?? 0) + by + 540) % 360 - 180;
+  set("turn", Math.abs(angle) < 1e-6 ? null : String(+angle.toFixed(2)), true);
+  if ($("style-turn")) $("style-turn").value = angle;
+}
+canvas.addEventListener("contextmenu", (event) => event.preventDefault());
 canvas.addEventListener("pointerdown", (event) => {
   canvas.setPointerCapture(event.pointerId);
   pointers.set(event.pointerId, place(event));
@@ -195,9 +218,13 @@ canvas.addEventListener("pointermove", (event) => {
   const now = place(event);
   pointers.set(event.pointerId, now);
   const delta = [now[0] - before[0], now[1] - before[1]];
-  if (state.isInSpace) {
+  const isPan = event.ctrlKey || event.metaKey || event.buttons & 2;
+  if (pointers.size === 1 && state.isInSpace && !isPan) {
     const isLight = event.shiftKey;
     turn([(isLight ? 220 : -220) * delta[0], (isLight ? 140 : -140) * delta[1]], isLight ? "light" : "from");
+  } else if (pointers.size === 1 && event.shiftKey && !state.isInSpace) {
+    const angle = (at) => Math.atan2(at[1], at[0]) * 180 / Math.PI;
+    spin(angle(now) - angle(before));
   } else if (pointers.size === 1) move(1, [0, 0], delta);
   else {
     const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
@@ -208,14 +235,16 @@ canvas.addEventListener("pointermove", (event) => {
 for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
 canvas.addEventListener("keydown", (event) => {
   const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-  if (!step || event.ctrlKey || event.metaKey) return;
+  if (!step || event.altKey) return;
   event.preventDefault();
-  if (state.isInSpace) turn([-5 * step[0], -5 * step[1]], event.shiftKey ? "light" : "from");
+  const isPan = event.ctrlKey || event.metaKey;
+  if (!state.isInSpace && event.shiftKey) spin(5 * (step[0] + step[1]));
+  else if (state.isInSpace && !isPan) turn([-5 * step[0], -5 * step[1]], event.shiftKey ? "light" : "from");
   else move(1, [0, 0], step.map((it) => it * 0.08));
 });
 function whole() {
   if (state.isInSpace) {
-    delete look.options.from;
+    for (const option of ["from", "look-at", "zoom"]) delete look.options[option];
     placeAngles("from");
   }
   look.view = null;
@@ -227,14 +256,15 @@ $("zoom-out").onclick = () => move(1 / 1.5, [0, 0]);
 $("whole").onclick = whole;
 
 /** Draws the look that has changed. */
-function changed(fast = false) {
+function changed(draft = false) {
   isStale = true;
-  draw(fast);
+  offerWriting();
+  draw(draft);
 }
-function set(option, value, fast = false) {
+function set(option, value, draft = false) {
   if (value === "" || value == null) delete look.options[option];
   else look.options[option] = value;
-  changed(fast);
+  changed(draft);
 }
 
 // Generation: steps and seeds.
@@ -381,10 +411,23 @@ function family() {
   $("source").textContent = state.about?.source ? `From: ${state.about.source}` : "";
   const parts = Map.groupBy ? Map.groupBy(all, (it) => it.whole ?? it.name) : all.reduce((map, it) => map.set(it.whole ?? it.name, [...(map.get(it.whole ?? it.name) ?? []), it]), new Map());
   box.replaceChildren(...[...parts].map(([name, list]) => (list.length === 2 ? pad(name, list) : slider(list[0]))));
+  offerWriting();
+}
+/** Shows for which parameters a value is set that the file does not have. */
+function offerWriting() {
+  document.querySelectorAll("[data-write]").forEach((it) => (it.hidden = look.set?.[it.dataset.write] === undefined));
+}
+async function write(name) {
+  try {
+    take(await json("POST", "/write", { tab, name }));
+  } catch (error) {
+    say(error.message);
+  }
 }
 function heading(name, about, input) {
   const reset = make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${name} as in the file`, onclick: () => { delete look.set[name]; family(); changed(); recount(); } }, "↺");
-  return [make("div", { className: "row" }, make("label", { htmlFor: `value-${name}` }, name), make("span", { className: "row" }, reset, input)), about ? make("p", { className: "quiet" }, about) : null];
+  const writes = make("button", { className: "small", type: "button", title: "Write this value into the file", "aria-label": `Write ${name} into the file`, "data-write": name, hidden: true, onclick: () => write(name) }, "Write");
+  return [make("div", { className: "row" }, make("label", { htmlFor: `value-${name}` }, name), make("span", { className: "row" }, writes, reset, input)), about ? make("p", { className: "quiet" }, about) : null];
 }
 function slider(it) {
   const [min, max] = limits(it);
@@ -423,11 +466,11 @@ function pad(name, parts) {
   const share = (at, value) => (value - span[at][0]) / (span[at][1] - span[at][0]);
   area.style.setProperty("--zero-x", `${share(0, 0) * 100}%`);
   area.style.setProperty("--zero-y", `${100 - share(1, 0) * 100}%`);
-  const put = (value, fast = true) => {
+  const put = (value) => {
     const inside = value.map((it, at) => +Math.max(span[at][0], Math.min(span[at][1], it)).toFixed(4));
     look.set[name] = typed.value = `[${inside}]`;
     mark();
-    changed(fast);
+    changed(true);
   };
   const mark = () => {
     const [x, y] = read();
@@ -539,6 +582,13 @@ function style() {
     text("stroke-width", "Width", "1.5 or 10%");
     select("cap", "Ends", choices.cap);
     select("join", "Corners", choices.join);
+    head("View");
+    if (look.options.method !== "chaos") range("turn", "Turn", -180, 180, 0);
+    const window = make("input", { type: "text", value: "", placeholder: "x, y, width, height", autocomplete: "off" });
+    window.onchange = () => show(window.value);
+    row("window", "Window", window);
+    rows.pop();
+    rows.push(make("span"));
   }
   if (state.isSystem) {
     head("Random iteration");
@@ -550,6 +600,14 @@ function style() {
     }
   }
   box.replaceChildren(...rows);
+}
+/** Shows a window of the plane, as it is typed. */
+function show(text) {
+  const numbers = text.split(",").map(Number);
+  if (!text.trim()) return whole();
+  if (numbers.length !== 4 || !numbers.every(Number.isFinite) || numbers[2] <= 0 || numbers[3] <= 0) return say("a window is x, y, width, height: its lower left corner, and its size above 0");
+  asked = numbers;
+  draw();
 }
 function placeAngles(option) {
   document.querySelectorAll(`[data-angle^="${option} "]`).forEach((input) => {
@@ -817,7 +875,7 @@ $("export").onclick = () => {
   } });
 };
 $("help").onclick = () => {
-  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, or turn it in space; with Shift, turn the light"], ["wheel, drag", "zoom about the pointer, move or turn; with Shift, turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], ["?", "these keys"]];
+  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], ["?", "these keys"]];
   ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
 };
 $("copy").onclick = async () => {
@@ -890,7 +948,7 @@ function take(next) {
   $("veil").hidden = state.isGood || !state.hasGood;
   if (!state.hasGood) say("There is nothing to draw yet: the text has mistakes.");
   $("factor").value = factor(state.factor);
-  for (const id of ["zoom-in", "zoom-out", "follow-label"]) $(id).hidden = state.isInSpace;
+  $("follow-label").hidden = state.isInSpace;
   showText();
   if (isNew || JSON.stringify(state.look) !== JSON.stringify(look)) {
     look = state.look;

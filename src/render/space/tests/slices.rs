@@ -9,7 +9,7 @@ fn sliced(graph: &Graph<Frame3>, slice: Slice, side: u32, up: Option<DVec3>) -> 
         .up(up)
         .look_at(Some(DVec3::ZERO));
     let space = SpaceOptions::default().camera(camera).slice(Some(slice));
-    draw(graph, None, &options, &space, None).unwrap().0
+    draw(graph, None, &options, &space, None).unwrap().pixmap
 }
 
 /// Returns the share of pixels at which a turn about the middle of a picture changes paper into ink.
@@ -90,7 +90,9 @@ fn a_slice_of_the_sponge_across_an_axis_is_the_carpet_or_its_corners() {
     for (offset, ink) in [(0.01, 512), (0.5, 64)] {
         let slice = Slice::new(DVec3::Z, offset).thickness(Some(0.001));
         let space = SpaceOptions::default().camera(camera).slice(Some(slice));
-        let seen = draw(&graph, Some(3), &options, &space, None).unwrap().0;
+        let seen = draw(&graph, Some(3), &options, &space, None)
+            .unwrap()
+            .pixmap;
         let found = paper(&seen).iter().filter(|it| !**it).count();
         assert_eq!(found, ink, "{offset}");
     }
@@ -119,11 +121,11 @@ fn a_cut_shows_what_lies_behind_its_plane() {
         .cuts(vec![cut]);
     let options = Options::default().size(Size::Long(64));
     // Half of the cube, seen from aside.
-    let seen = draw(&graph, None, &options, &space, None).unwrap().0;
+    let seen = draw(&graph, None, &options, &space, None).unwrap().pixmap;
     assert_eq!([seen.width(), seen.height()], [32, 64]);
     assert_eq!(share(&seen), 1.0);
     let front = space.camera(Camera::default().from([0.0, 0.0]));
-    let seen = draw(&graph, None, &options, &front, None).unwrap().0;
+    let seen = draw(&graph, None, &options, &front, None).unwrap().pixmap;
     let nearest = seen.pixels()[0];
     assert!(seen.pixels().iter().all(|pixel| *pixel == nearest));
 }

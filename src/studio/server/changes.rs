@@ -1,0 +1,184 @@
+//! Changes of the text and of its file.
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::{Query, State};
+use serde::Deserialize;
+use serde_json::json;
+
+use super::super::answer::Refusal;
+use super::super::{library, vary, write};
+use super::{Answer, Shared, Tab, apart};
+
+#[derive(Deserialize)]
+pub(super) struct TextQuery {
+    revision: u64,
+    #[serde(default)]
+    tab: String,
+}
+
+pub(super) async fn set_text(
+    State(app): Shared,
+    Query(query): Query<TextQuery>,
+    body: Bytes,
+) -> Answer {
+    let text = String::from_utf8(body.into());
+    let text = text.map_err(|_| Refusal::wrong("the text is not UTF-8"))?;
+    let reader = app.session().reader();
+    let checked = apart(move || reader.check(text.into())).await?;
+    app.change(query.tab, move |session| {
+        session.set_text(checked, query.revision)
+    })
+    .await
+}
+
+pub(super) async fn undo(State(app): Shared, Json(Tab { tab }): Json<Tab>) -> Answer {
+    app.change(tab, |session| {
+        session.travel(true);
+        Ok(())
+    })
+    .await
+}
+
+pub(super) async fn redo(State(app): Shared, Json(Tab { tab }): Json<Tab>) -> Answer {
+    app.change(tab, |session| {
+        session.travel(false);
+        Ok(())
+    })
+    .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct Settle {
+    #[serde(default)]
+    tab: String,
+    theirs: bool,
+}
+
+pub(super) async fn settle(
+    State(app): Shared,
+    Json(Settle { tab, theirs }): Json<Settle>,
+) -> Answer {
+    app.change(tab, move |session| {
+        session.settle(theirs);
+        Ok(())
+    })
+    .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct Vary {
+    seed: u32,
+}
+
+/// Number of members beside the present one.
+const AROUND: u64 = 8;
+
+pub(super) async fn vary_all(State(app): Shared, Json(Vary { seed }): Json<Vary>) -> Answer {
+    let mut session = app.session();
+    let good = session.good()?.clone();
+    let seeds = (0..AROUND).map(|number| u64::from(seed) * AROUND + number);
+    let set = session.look.set.clone();
+    let all = seeds.filter_map(|seed| vary::variant(&good.source, &good.parameters, &set, seed));
+    session.variants = all.collect();
+    if session.variants.is_empty() {
+        return Err(Refusal::wrong(
+            "there is no number to vary: only whole ones",
+        ));
+    }
+    Ok(Json(json!({ "variants": session.variants })))
+}
+
+#[derive(Deserialize)]
+pub(super) struct Take {
+    #[serde(default)]
+    tab: String,
+    variant: usize,
+}
+
+pub(super) async fn take(State(app): Shared, Json(Take { tab, variant }): Json<Take>) -> Answer {
+    app.change(tab, move |session| {
+        let Some(variant) = session.variants.get(variant).cloned() else {
+            return Err(Refusal::wrong("there is no such member"));
+        };
+        session.look.set = variant.set;
+        let checked = session.reader().check(variant.text);
+        let revision = session.revision;
+        session.set_text(checked, revision)
+    })
+    .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct Written {
+    #[serde(default)]
+    tab: String,
+    /// Name of a parameter that is set.
+    name: String,
+}
+
+/// Writes the value of a parameter that is set into the text.
+pub(super) async fn write_value(State(app): Shared, Json(asked): Json<Written>) -> Answer {
+    let Written { tab, name } = asked;
+    app.change(tab, move |session| {
+        let Some(value) = session.look.set.get(&name).cloned() else {
+            return Err(Refusal::wrong(format!("{name} is not set")));
+        };
+        let checked = write::write(&session.reader(), session.text(), &name, &value)?;
+        let revision = session.revision;
+        session.set_text(checked, revision)?;
+        session.look.set.remove(&name);
+        Ok(())
+    })
+    .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct Open {
+    #[serde(default)]
+    tab: String,
+    id: String,
+}
+
+pub(super) async fn open(State(app): Shared, Json(Open { tab, id }): Json<Open>) -> Answer {
+    app.change(tab, move |session| {
+        let source = library::source(&session.catalogue.clone(), &id)?;
+        let name = id.rsplit('/').next().unwrap_or(&id);
+        session.copy(name, &source);
+        Ok(())
+    })
+    .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct Save {
+    #[serde(default)]
+    tab: String,
+    path: Option<String>,
+    #[serde(default)]
+    replace: bool,
+    /// Whether it is saved in the person's library.
+    #[serde(default)]
+    library: bool,
+}
+
+pub(super) async fn save(State(app): Shared, Json(asked): Json<Save>) -> Answer {
+    let Save {
+        tab,
+        path,
+        replace,
+        library,
+    } = asked;
+    app.change(tab, move |session| {
+        let path = match (library, path) {
+            (false, path) => path,
+            (true, Some(name)) => {
+                let path = session.roots.in_library(&name, session.kind())?;
+                Some(path.to_string_lossy().into_owned())
+            }
+            (true, None) => return Err(Refusal::wrong("a rule of the library has a name")),
+        };
+        session.save(path.as_deref(), replace).map(|_| ())
+    })
+    .await
+}
