@@ -25,5 +25,7 @@ kfrac grow icosahedron-flake --slice 0,1,1.618=0.6,w=0.02 --size 420 -o icosahed
 kfrac grow menger --steps 3 --cut 1,1,1=1.5 --from 40,40 --plot --size 420 -o menger-cut.svg
 kfrac grow random-tree-with-leaves --size 420 -o random-tree-with-leaves.png
 kfrac grow sphere-flake --size 420 -o sphere-flake.png
+kfrac grow bush-in-space --size 420 -o bush-in-space.png
+kfrac grow autumn --size 420 -o autumn.png
 kfrac sheet pythagoras --steps 0..7 --size 150 --columns 4 -o pythagoras-sheet.svg
 kfrac show monkeys-tree -o monkeys-tree-rule.svg
