@@ -627,7 +627,7 @@ fn components_are_shown_and_printed() {
         );
         assert!(said.contains(&format!("`{kind}: {name}`")), "{said}");
     }
-    assert_eq!(components, 58);
+    assert_eq!(components, 60);
     run(
         folder.path(),
         &["check", "swaying-roof", "leaf", "generators/koch"],

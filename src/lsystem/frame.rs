@@ -42,8 +42,8 @@ pub trait TurtleFrame: RuleFrame {
     /// Returns the surfaces that the turtle places by number.
     fn surfaces(system: &Self::System) -> &[Self::BaseElement];
 
-    /// Returns whether the drawing of a word depends on more of the turtle's state than its frame: see
-    /// [`LSystem::depends_on_the_way`]; or on the frame's place in space.
+    /// Returns whether the drawing of a word depends on more of the turtle's state than its frame: on the second heading,
+    /// on the mirrored flag, or on directions in space.
     fn depends_on_the_way(system: &Self::System) -> bool;
 
     /// Returns the tubes that lines are drawn as.

@@ -17,7 +17,7 @@ use super::state::{Pose, StrokeAttributes, TurtleState};
 /// Effect of a module that is derived for some steps, relative to the state of the turtle before it.
 #[derive(Clone, Debug)]
 pub(super) struct Effect<F: TurtleFrame = Frame2> {
-    /// TurtleState of the turtle after it.
+    /// State of the turtle after it.
     pub(super) state: TurtleState<F>,
     /// Whether the pen is up after it, or was lifted at all if nothing is drawn.
     pub(super) lifts: bool,

@@ -429,8 +429,16 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
         if !is_known || !self.saved.is_empty() || !self.open.is_empty() {
             return Err(NotCompiled);
         }
+        // Joints matter to tubes alone, and keep alternatives that are drawn at random apart.
+        let joint = match F::tube(&self.effects.system) {
+            Some(_) => self.state.joint,
+            None => Joint::SAME,
+        };
         Ok(Effect {
-            state: self.state,
+            state: TurtleState {
+                joint,
+                ..self.state
+            },
             lifts: !self.down,
             cuts: self.cut.is_some(),
             drawn,

@@ -174,7 +174,7 @@ impl Shade {
 
 impl Joint {
     /// Identity: as before.
-    const SAME: Self = Self {
+    pub(super) const SAME: Self = Self {
         tip: Tip::Kept,
         bent: None,
     };

@@ -228,8 +228,9 @@ fn library() {
         .filter(|entry| entry.shelf == Shelf::LSYSTEMS)
     {
         let document = Document::read(&catalogue.open(entry).unwrap(), &catalogue).unwrap();
+        // Systems in space are held against their words in `tests/lsystem/space.rs`.
         let Model::LSystem(system) = document.resolve(&[]).unwrap().0 else {
-            unreachable!("an L-system");
+            continue;
         };
         let name = &entry.name;
         counts[0] += usize::from(Graph::of_edges(&system).is_ok());
