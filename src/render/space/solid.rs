@@ -1,5 +1,8 @@
 //! Drawing of convex solids into a depth buffer.
 
+#[cfg(test)]
+mod tests;
+
 use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, HalfSpace, Solid, eigen};
 use crate::graph::Graph;
 
@@ -492,22 +495,4 @@ pub(super) fn pad(graph: &Graph<Frame3>) -> f64 {
 #[inline]
 pub(super) fn depth_of(key: u32) -> Option<u32> {
     (key != EMPTY).then_some(key >> CLASS_BITS)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flat_maps_become_as_thick_as_a_sample() {
-        let flat = DMat3::from_diagonal(DVec3::new(5.0, 3.0, 0.0));
-        let thick = thickened(&flat, 0.5);
-        assert!(
-            thick.abs_diff_eq(DMat3::from_diagonal(DVec3::new(5.0, 3.0, 0.5)), 1e-12)
-                || thick.abs_diff_eq(DMat3::from_diagonal(DVec3::new(5.0, 3.0, -0.5)), 1e-12)
-        );
-        assert!((thickened(&DMat3::ZERO, 1.0).determinant().abs() - 1.0).abs() < 1e-12);
-        let fine = DMat3::from_diagonal(DVec3::splat(2.0));
-        assert_eq!(thickened(&fine, 0.3), fine);
-    }
 }
