@@ -1,6 +1,6 @@
 //! Draws the systems of the library, fits systems to their pictures, and compares.
 //!
-//!     cargo run --release --example fits -- [--size 128] [--free] [--method auto] [--save FOLDER] [NAME ...]
+//!     cargo run --release --example fits -- [--size 128] [--free] [--method auto] [--effort 20000] [--save FOLDER] [NAME ...]
 //!     cargo run --release --example fits -- --random 35
 //!
 //! The table is Markdown: the number of maps of the library and of the fit, intersection over union, along the
@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut size = 128;
     let mut free = false;
     let mut method = Method::Collage;
+    let mut effort = None;
     let mut drawn = 0;
     let mut folder = None;
     let mut names = Vec::new();
@@ -50,6 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let named = Method::ALL.into_iter().find(|it| it.name() == name);
                 method = named.ok_or("auto, skeleton, collage or moments")?;
             }
+            "--effort" => effort = Some(arguments.next().ok_or("--effort N")?.parse()?),
             "--save" => folder = arguments.next(),
             _ => names.push(argument),
         }
@@ -78,6 +80,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let options = FitOptions::default()
             .method(method)
             .threads(NonZero::<usize>::MIN);
+        let options = match effort {
+            Some(effort) => options.effort(effort),
+            None => options,
+        };
         let options = if free {
             options
         } else {

@@ -11,6 +11,7 @@ mod methods;
 
 use std::fs;
 use std::num::NonZero;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use assert_cmd::Command;
@@ -140,14 +141,60 @@ fn huge_pictures_are_refused() {
     assert!(matches!(huge, FitError::TooLarge { .. }), "{huge}");
 }
 
-/// A fit of the picture of an exact fit is exact again.
+/// The picture of an exact fit is fitted by the same maps, and that picture by the same file.
 #[test]
-fn a_fit_of_a_fit_is_exact() {
-    let (_, found) = quick();
-    let shape = picture(&found.candidate, [64, 56]);
-    let again = fit(&shape, &options()).unwrap();
-    assert!(again.exact && again.score.hausdorff <= 1.0, "{again:?}");
-    assert!(again.score.iou > 0.95, "{again:?}");
+fn a_fit_of_a_fit_is_the_same_file() {
+    let options = options();
+    let fitted = |candidate: &Candidate| {
+        let shape = picture(candidate, [64, 56]);
+        let found = fit(&shape, &options).unwrap();
+        assert!(found.exact, "{found:?}");
+        let file = found.yaml(&shape, "picture.png");
+        (found, file)
+    };
+    let (first, _) = fitted(&gasket());
+    let (second, file) = fitted(&first.candidate);
+    let (_, again) = fitted(&second.candidate);
+    assert_eq!(file, again);
+    let pairs = first.candidate.maps.iter().zip(&second.candidate.maps);
+    for (one, other) in pairs {
+        assert!(one.abs_diff_eq(*other, 1e-9), "{one} {other}");
+    }
+}
+
+/// A search that is stopped has the best system so far, one that is cancelled has none.
+#[test]
+fn stopped_searches_end_early() {
+    let (shape, _) = quick();
+    let set = Some(Arc::new(AtomicBool::new(true)));
+    let whole = options().maps(2..=8).similar(false);
+    let stopped = fit(shape, &whole.clone().stop(set.clone())).unwrap();
+    assert_eq!(stopped.candidate.maps.len(), 2);
+    let cancelled = fit(shape, &whole.cancel(set));
+    assert!(matches!(cancelled, Err(FitError::Cancelled)));
+}
+
+/// The stem of a tree is the image of a flat map, as in Barnsley's fern.
+#[test]
+fn flat_maps_are_found() {
+    let flat = DMat2::from_cols(DVec2::ZERO, DVec2::new(0.0, 0.4));
+    let branch = |degrees: f64, tip: [f64; 2]| {
+        let matrix = DMat2::from_angle(f64::to_radians(degrees)) * 0.55;
+        let foot = DVec2::new(32.0, 2.5);
+        DAffine2::from_mat2_translation(matrix, DVec2::from(tip) - matrix * foot)
+    };
+    let stem = about(flat, DVec2::new(32.0, 2.5));
+    let tree = Candidate::of_maps(vec![
+        stem,
+        branch(40.0, [32.0, 22.0]),
+        branch(-40.0, [32.0, 22.0]),
+    ]);
+    let shape = picture(&tree, [64, 56]);
+    let found = fit(&shape, &options().similar(false).effort(6000)).unwrap();
+    let flattest = { found.candidate.maps.iter() }
+        .map(|map| map.matrix2.determinant().abs())
+        .fold(f64::INFINITY, f64::min);
+    assert!(flattest < 0.02 && found.score.hausdorff <= 4.0, "{found:?}");
 }
 
 /// Margins change nothing. A picture that is turned or doubled has a system that is turned or doubled: their pictures are

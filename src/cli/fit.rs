@@ -6,6 +6,7 @@ use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use anyhow::{Context, anyhow};
 use clap::ValueHint;
@@ -16,7 +17,7 @@ use crate::geometry::DVec2;
 
 use self::report::Report;
 use super::pixels::PixelArguments;
-use super::{Failure, growth, help, number, output, progress, readable, text};
+use super::{Failure, growth, help, number, output, progress, readable, stop, text};
 
 /// Finds a system of maps whose attractor is a picture, and writes it as a file
 ///
@@ -72,6 +73,9 @@ pub(super) struct Arguments {
     /// Number of threads [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = growth::threads, allow_negative_numbers = true)]
     threads: Option<NonZero<usize>>,
+    /// Keeps the best system so far when the search is interrupted by Ctrl-C; the second Ctrl-C ends the program
+    #[arg(long)]
+    keep_best: bool,
     /// Prints the measures as JSON
     ///
     /// Distances are in pixels. iou is intersection over union, boundary_iou that of the pixels within 2 pixels of the
@@ -137,7 +141,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         shape = shape.with_values(&set.values).map_err(explain)?;
     }
     let progress = Arc::new(FitProgress::default());
-    let options = arguments.options().progress(Some(progress.clone()));
+    let stop = arguments.keep_best.then(stop::kept);
+    let options = { arguments.options() }
+        .progress(Some(progress.clone()))
+        .stop(stop.clone());
     let is_shown = !arguments.quiet;
     let fit = progress::watched_as(
         is_shown,
@@ -174,6 +181,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "{path}: {}; `kfrac grow {path} --size {width}x{height}` draws it",
             report.system()
         ));
+    }
+    if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+        text::print_message("interrupted: this is the best system so far");
     }
     if let Some(warning) = &set.warning {
         text::print_message(&format!("warning: {warning}"));

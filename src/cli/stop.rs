@@ -2,9 +2,11 @@
 //!
 //! A separate thread waits for signals, removes unfinished files and ends the process, whatever the other
 //! threads do. Commands need not check for interruption, so that all of them end alike: those that compute,
-//! those that wait for input, and those whose reader has stopped reading.
+//! those that wait for input, and those whose reader has stopped reading. A command that is asked to keep what it has
+//! gets the first Ctrl-C as a [flag](kept), and ends at the second.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use indicatif::ProgressBar;
 
@@ -14,11 +16,28 @@ use crate::output_file::unfinished;
 const INTERRUPTED: i32 = 130;
 
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
+static KEPT: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 
 /// Locks the progress bar that the terminal shows. It is drawn only while the lock is held, so that it does
 /// not reappear after it has been cleared for good.
 pub(super) fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
     SHOWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns a flag that the first Ctrl-C sets instead of ending the process.
+pub(super) fn kept() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(flag.clone());
+    flag
+}
+
+/// Sets the flag of a command that keeps what it has; `false` if there is none, or it is set already.
+fn is_kept() -> bool {
+    let flag = KEPT.lock().unwrap_or_else(PoisonError::into_inner).take();
+    flag.is_some_and(|flag| {
+        flag.store(true, Ordering::Relaxed);
+        true
+    })
 }
 
 /// Ends the process. Both locks are held to the end: no file is begun and no progress bar drawn any more.
@@ -42,10 +61,9 @@ fn interrupt() -> ! {
 /// that is meant for others.
 #[cfg(unix)]
 pub(super) fn listen() {
-    use std::sync::atomic::AtomicBool;
-    use std::sync::{Arc, mpsc};
+    use std::sync::mpsc;
 
-    use signal_hook::consts::SIGXFSZ;
+    use signal_hook::consts::{SIGINT, SIGXFSZ};
     use signal_hook::iterator::Signals;
 
     // With a handler, a file that exceeds the size limit is an error like any other.
@@ -56,8 +74,10 @@ pub(super) fn listen() {
         let Ok(mut signals) = receive.recv() else {
             return;
         };
-        if signals.forever().next().is_some() {
-            interrupt();
+        for signal in signals.forever() {
+            if signal != SIGINT || !is_kept() {
+                interrupt();
+            }
         }
     });
     // Without a listening thread, signals keep their default effect of ending the process.
@@ -72,7 +92,11 @@ pub(super) fn listen() {
 #[cfg(not(unix))]
 pub(super) fn listen() {
     // Without a handler, Ctrl-C ends the process by default.
-    let _ = ctrlc::set_handler(|| interrupt());
+    let _ = ctrlc::set_handler(|| {
+        if !is_kept() {
+            interrupt();
+        }
+    });
 }
 
 /// Signals that are handled: those that were not ignored when the program started.

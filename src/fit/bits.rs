@@ -2,8 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::Bits;
-
 use super::collage::Form;
 use super::refine::Numbers;
 use super::{Candidate, FitError, Shape, score};
@@ -14,20 +12,23 @@ const FALL: f64 = 0.005;
 const MOST: u32 = 24;
 
 /// Returns the least number of bits a number for which the intersection over union falls by at most [`FALL`], times
-/// the number of numbers; `drawn` is the attractor.
+/// the number of numbers.
 ///
 /// Stored are the images of points of the shape, from twice the longer side of the picture below 0 to twice that above,
-/// and centres and radii of disks. The attractor of the rounded numbers is drawn exactly.
+/// and centres and radii of disks. Attractors are drawn [roughly](Candidate::roughly).
 #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
 pub(super) fn of(
     shape: &Shape,
     candidate: &Candidate,
-    drawn: &Bits,
     cancel: Option<&AtomicBool>,
 ) -> Result<u64, FitError> {
     let numbers = Numbers::new(shape, candidate, Form::of(candidate));
     let exact = numbers.of(candidate);
-    let whole = score::iou(shape.bits(), drawn);
+    let iou = |candidate: &Candidate| {
+        let drawn = candidate.roughly(shape.size(), cancel)?;
+        Ok(score::iou(shape.bits(), &drawn))
+    };
+    let whole = iou(candidate)?;
     let range = 4.0 * shape.size()[0].max(shape.size()[1]) as f64;
     let mut enough = MOST;
     for bits in 5..MOST {
@@ -36,8 +37,8 @@ pub(super) fn of(
             .map(|value| (value / step).round() * step)
             .collect();
         // Rounded coarsely, maps need not contract.
-        let iou = match numbers.candidate(&rounded).attractor(shape.size(), cancel) {
-            Ok(attractor) => score::iou(shape.bits(), &attractor.pixels),
+        let iou = match iou(&numbers.candidate(&rounded)) {
+            Ok(iou) => iou,
             Err(FitError::DoesNotContract) => continue,
             Err(error) => return Err(error),
         };

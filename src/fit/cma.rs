@@ -1,5 +1,8 @@
 //! Minimisation of a function of several variables without derivatives: CMA-ES.
 
+use std::sync::atomic::AtomicBool;
+
+use crate::parallel::is_cancelled;
 use crate::random::Pcg;
 
 /// Covariance matrix adaptation (Hansen, "The CMA evolution strategy: a tutorial", 2016), with the weights and rates
@@ -20,6 +23,22 @@ pub(super) struct Cma {
     generation: usize,
     solved: usize,
     random: Pcg,
+}
+
+/// Limit of the work of a search: a number of evaluations, and flags that end it when one is set.
+#[derive(Clone, Copy)]
+pub(super) struct Budget<'a> {
+    pub(super) evaluations: usize,
+    pub(super) flags: [Option<&'a AtomicBool>; 2],
+}
+
+impl From<usize> for Budget<'_> {
+    fn from(evaluations: usize) -> Self {
+        Self {
+            evaluations,
+            flags: [None; 2],
+        }
+    }
 }
 
 /// The best point that a search has found, and its value.
@@ -63,10 +82,10 @@ impl Cma {
         }
     }
 
-    /// Searches with up to `evaluations` evaluations of a function, until the steps are shorter than `least`.
-    pub(super) fn minimise(
+    /// Searches within a budget of evaluations of a function, until the steps are shorter than `least`.
+    pub(super) fn minimise<'a>(
         &mut self,
-        evaluations: usize,
+        budget: impl Into<Budget<'a>>,
         least: f64,
         mut value: impl FnMut(&[f64]) -> f64,
     ) -> Found {
@@ -74,8 +93,10 @@ impl Cma {
             value: value(&self.mean),
             point: self.mean.clone(),
         };
+        let Budget { evaluations, flags } = budget.into();
+        let is_over = || flags.into_iter().any(is_cancelled);
         let mut left = evaluations.saturating_sub(1);
-        while left >= self.offspring && self.step * self.widest() > least {
+        while left >= self.offspring && self.step * self.widest() > least && !is_over() {
             left -= self.offspring;
             let mut tried: Vec<(f64, Vec<f64>)> = (0..self.offspring)
                 .map(|_| {

@@ -10,7 +10,7 @@ use super::snap::nearest_ratio;
 use super::{Fit, Shape};
 
 /// Digits after the decimal point of numbers in pixels.
-const DIGITS: usize = 4;
+const DIGITS: usize = 6;
 /// Digits after the decimal point of factors and angles.
 const FACTORS: usize = 6;
 

@@ -77,7 +77,9 @@ pub(super) fn found(shape: &Shape, options: &FitOptions) -> Result<(Vec<Found>, 
         is_exact = drawn.is(shape.bits());
         add(candidate, Method::Collage);
     }
-    let is_auto = method == Method::Auto && !is_exact;
+    // Results so far are enough for a search that is stopped.
+    let is_stopped = collage.as_ref().is_some_and(Collage::is_stopped);
+    let is_auto = method == Method::Auto && !is_exact && !is_stopped;
     if let Some(collage) = collage
         .as_ref()
         .filter(|_| method == Method::Moments || is_auto && options.disks == 0)
@@ -88,7 +90,7 @@ pub(super) fn found(shape: &Shape, options: &FitOptions) -> Result<(Vec<Found>, 
     }
     evaluations += collage.as_ref().map_or(0, Collage::evaluations);
     if method == Method::Skeleton || is_auto {
-        match skeleton::find(shape.bits(), &skeleton::Task::of(options)) {
+        match skeleton::find(shape, &skeleton::Task::of(options)) {
             Ok((candidate, count)) => {
                 evaluations += count;
                 add(candidate, Method::Skeleton);
@@ -123,7 +125,8 @@ fn simplest(
     let is_similar = |it: &&Refined| it.form == Form::Similar && it.candidate.disks.is_empty();
     let best = found[0].candidate.clone();
     let attractor = best.attractor(shape.size(), cancel)?;
-    let Some(similar) = found.iter().find(is_similar) else {
+    let similar = found.iter().find(is_similar);
+    let Some(similar) = similar.filter(|_| !collage.is_stopped()) else {
         return Ok((best, attractor));
     };
     let before = score::iou(shape.bits(), &attractor.pixels);

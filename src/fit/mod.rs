@@ -154,7 +154,7 @@ pub fn fit(shape: &Shape, options: &FitOptions) -> Result<Fit, FitError> {
     Ok(Fit {
         score: Score::new(shape.bits(), &attractor.pixels),
         exact: attractor.is(shape.bits()),
-        bits: bits::of(shape, &candidate, &attractor.pixels, cancel)?,
+        bits: bits::of(shape, &candidate, cancel)?,
         certificate: Certificate::new(shape, &candidate),
         dimension: dimension(&candidate),
         density: Density::of(shape, &candidate),

@@ -11,7 +11,7 @@ use crate::ifs::RawMoments;
 use crate::parallel;
 use crate::random::{Pcg, mix};
 
-use super::cma::Cma;
+use super::cma::{Budget, Cma};
 use super::collage::{Collage, Form};
 use super::orbit::Orbit;
 use super::refine::{Numbers, Refined};
@@ -23,7 +23,7 @@ const ORDER: usize = 6;
 const STARTS: usize = 24;
 const CONTINUED: usize = 6;
 /// Shares of the effort of a start, and of one that is continued.
-const SHARES: [usize; 2] = [10, 3];
+const SHARES: [usize; 2] = [20, 8];
 
 /// The moments of a picture, in coordinates in which its points have the mean 0 and are at a distance of 1 in the mean
 /// square.
@@ -109,14 +109,14 @@ fn starts(shape: &Shape, collage: &Collage<'_>, target: &Target, count: usize) -
     let first = parallel::map(&numbers, threads, |_, &number| {
         let random = collage.random(count, mix(number));
         let roots = vec![1.0; count];
-        settled(shape, target, form, (&random, &roots), some)
+        settled(shape, target, form, (&random, &roots), options.budget(some))
     });
     let mut first: Vec<Settled> = first;
     first.sort_by(|one, other| one.distance.total_cmp(&other.distance));
     first.truncate(CONTINUED);
     let last = parallel::map(&first, threads, |_, start| {
         let start = (&start.candidate, &start.roots[..]);
-        settled(shape, target, form, start, more)
+        settled(shape, target, form, start, options.budget(more))
     });
     collage.count(STARTS * some + CONTINUED * more);
     let mut orbit = Orbit::new(collage.fine());
@@ -144,7 +144,7 @@ fn settled(
     target: &Target,
     form: Form,
     (start, roots): (&Candidate, &[f64]),
-    evaluations: usize,
+    budget: Budget<'_>,
 ) -> Settled {
     let numbers = Numbers::new(shape, start, form);
     let radius = shape.radius().max(1.0);
@@ -154,7 +154,7 @@ fn settled(
     point.extend(roots.iter().map(|root| root * radius / 2.0));
     let candidate = |point: &[f64]| numbers.candidate(&point[..split]);
     let mut search = Cma::new(point, radius / 10.0, Pcg::new(split as u64, 9));
-    let found = search.minimise(evaluations, radius * 1e-4, |point| {
+    let found = search.minimise(budget, radius * 1e-4, |point| {
         target.distance(&candidate(point).maps, &probabilities(&point[split..]))
     });
     Settled {

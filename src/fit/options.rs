@@ -9,6 +9,7 @@ use crate::parallel::all_cores;
 
 use crate::geometry::DAffine2;
 
+use super::cma::Budget;
 use super::{BranchPoints, FitProgress};
 
 /// The way in which a system is found.
@@ -78,6 +79,8 @@ pub struct FitOptions {
     pub threads: NonZero<usize>,
     /// A flag that ends the work with an error when it is set.
     pub cancel: Option<Arc<AtomicBool>>,
+    /// A flag that ends the search when it is set, with the best system so far, once there is one.
+    pub stop: Option<Arc<AtomicBool>>,
     /// Progress to be reported; none by default.
     pub progress: Option<Arc<FitProgress>>,
 }
@@ -94,6 +97,7 @@ impl Default for FitOptions {
             seed: 0,
             threads: all_cores(),
             cancel: None,
+            stop: None,
             progress: None,
         }
     }
@@ -109,10 +113,19 @@ setters!(FitOptions {
     seed: u64,
     threads: NonZero<usize>,
     cancel: Option<Arc<AtomicBool>>,
+    stop: Option<Arc<AtomicBool>>,
     progress: Option<Arc<FitProgress>>,
 });
 
 impl FitOptions {
+    /// Returns the budget of a search that these options may end.
+    pub(super) fn budget(&self, evaluations: usize) -> Budget<'_> {
+        Budget {
+            evaluations,
+            flags: [self.cancel.as_deref(), self.stop.as_deref()],
+        }
+    }
+
     /// Returns the options with branch points moved by a map.
     pub(super) fn moved(&self, there: &DAffine2) -> Self {
         self.clone().branch_points(BranchPoints {

@@ -4,7 +4,7 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::random::Pcg;
 
 use super::candidate::Disk;
-use super::cma::Cma;
+use super::cma::{Budget, Cma};
 use super::collage::{Form, clamped};
 use super::orbit::{Level, Orbit};
 use super::{Candidate, Shape};
@@ -102,14 +102,14 @@ pub(super) fn refine(
     start: &Candidate,
     form: Form,
     step: f64,
-    evaluations: usize,
+    budget: Budget<'_>,
     random: Pcg,
 ) -> Refined {
     let numbers = Numbers::new(shape, start, form);
     let mut orbit = Orbit::new(level);
     let mut count = 0;
     let mut search = Cma::new(numbers.of(start), step, random);
-    let found = search.minimise(evaluations, 0.01, |point| {
+    let found = search.minimise(budget, 0.01, |point| {
         count += 1;
         orbit.loss(&numbers.candidate(point), level)
     });

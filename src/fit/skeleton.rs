@@ -18,10 +18,14 @@ use crate::morphology::{
     DiskFamily, NoDistances, Skeleton, SkeletonNode, SkeletonOptions, SkeletonPoint,
     SkeletonSubsets,
 };
+use crate::random::Pcg;
 use crate::saturating::real;
 
+use super::collage::{FINE, Form};
+use super::orbit::{Level, Orbit};
+use super::refine::refine;
 use super::snap::shared_ratios;
-use super::{Candidate, Disk, FitError, FitOptions, score, shape};
+use super::{Candidate, Disk, FitError, FitOptions, Shape, methods, score, shape};
 use copy::ShapeCopy;
 use ground::{Ground, centre};
 
@@ -73,6 +77,12 @@ const LEAST_SHARE: f64 = 0.02;
 /// Share of the area that may stay without a disk.
 const BARE: f64 = 0.004;
 
+/// Overlap that simple numbers are worth.
+const SIMPLE: f64 = 0.01;
+
+/// Number of attractors that are drawn to improve copies and disks together.
+const ATTRACTORS: usize = 3000;
+
 /// Largest number of disks where no other is asked for.
 const MAX_DISKS: usize = 16;
 
@@ -84,7 +94,8 @@ impl From<NoDistances> for FitError {
 }
 
 /// Finds copies and disks, and counts the copies that were evaluated.
-pub(super) fn find(bits: &Bits, task: &Task<'_>) -> Result<(Candidate, usize), FitError> {
+pub(super) fn find(shape: &Shape, task: &Task<'_>) -> Result<(Candidate, usize), FitError> {
+    let bits = shape.bits();
     let options = SkeletonOptions {
         threads: task.threads,
         ..SkeletonOptions::default()
@@ -106,22 +117,33 @@ pub(super) fn find(bits: &Bits, task: &Task<'_>) -> Result<(Candidate, usize), F
         ));
     }
     let is_asked = !task.points.branches.is_empty();
-    let chosen = match is_asked {
-        true => copies,
-        false => chosen(&ground, &copies, task.most)
-            .unwrap_or_else(|| chosen_by_area(&ground, &copies, &a, task.most)),
+    let mut choices = match is_asked {
+        true => vec![copies],
+        false => choices(&ground, &copies, &a, task.most),
     };
-    let refined = chosen.into_iter().map(|copy| copy::refined(&ground, copy));
-    let copies: Vec<ShapeCopy> = refined.collect();
-    if copies.is_empty() {
-        return Err(FitError::NoCopies);
-    }
+    let is_by_area = choices.len() > 1;
+    choices.retain(|copies| !copies.is_empty());
     let placed = |copies: &[ShapeCopy]| {
         let maps: Vec<DAffine2> = copies.iter().map(ShapeCopy::affine).collect();
         let disks = disks(&ground, a, &maps, task)?;
         Ok::<_, FitError>(Candidate { maps, disks })
     };
-    let mut candidate = placed(&copies)?;
+    let level = Level::new(shape, FINE);
+    let mut orbit = Orbit::new(&level);
+    let mut best: Option<(f64, Vec<ShapeCopy>, Candidate)> = None;
+    for choice in choices {
+        let copies: Vec<ShapeCopy> = { choice.into_iter() }
+            .map(|copy| copy::refined(&ground, copy))
+            .collect();
+        let candidate = placed(&copies)?;
+        let length = methods::description(&candidate, &mut orbit, &level);
+        if best.as_ref().is_none_or(|best| length < best.0) {
+            best = Some((length, copies, candidate));
+        }
+    }
+    let Some((length, copies, mut candidate)) = best else {
+        return Err(FitError::NoCopies);
+    };
     if let Some(simple) = simplified(&copies) {
         let size = [bits.width(), bits.height()];
         let iou = |candidate: &Candidate| {
@@ -129,11 +151,30 @@ pub(super) fn find(bits: &Bits, task: &Task<'_>) -> Result<(Candidate, usize), F
             Ok::<_, FitError>(score::iou(bits, &drawn.pixels))
         };
         let simple = placed(&simple)?;
-        if iou(&simple)? >= iou(&candidate)? {
-            candidate = simple;
+        if iou(&simple)? + SIMPLE >= iou(&candidate)? {
+            return Ok((simple, ground.evaluations.get()));
         }
     }
-    Ok((candidate, ground.evaluations.get()))
+    let mut evaluations = ground.evaluations.get();
+    if is_by_area {
+        let form = Form::of(&candidate);
+        let step = 1.0 / level.scale();
+        let random = Pcg::new(3, 5);
+        let found = refine(
+            shape,
+            &level,
+            &candidate,
+            form,
+            step,
+            ATTRACTORS.into(),
+            random,
+        );
+        evaluations += found.evaluations;
+        if methods::description(&found.candidate, &mut orbit, &level) < length {
+            candidate = found.candidate;
+        }
+    }
+    Ok((candidate, evaluations))
 }
 
 /// Returns similar copies with simple ratios, which near ones share, and simple angles; `None` if a copy is distorted, or a
@@ -236,13 +277,31 @@ fn chosen(ground: &Ground<'_>, copies: &[ShapeCopy], most: usize) -> Option<Vec<
     (2 * left < all).then_some(chosen)
 }
 
+/// Returns choices of copies, of which the shortest description is to decide: one by the boundary, or else several by area.
+fn choices(
+    ground: &Ground<'_>,
+    copies: &[ShapeCopy],
+    a: &Disk,
+    most: usize,
+) -> Vec<Vec<ShapeCopy>> {
+    /// Costs of a pixel outside, where one that is covered has the value 1.
+    const COSTS: [f64; 4] = [1.0, 2.0, 5.0, 12.0];
+    match chosen(ground, copies, most) {
+        Some(chosen) => vec![chosen],
+        None => COSTS
+            .map(|cost| chosen_by_area(ground, copies, a, most, cost))
+            .into(),
+    }
+}
+
 /// Chooses the copies that cover most of what lies outside the disk of the central branch point, less what they have outside
-/// the shape, one after another: distorted copies of a natural shape do not share its boundary.
+/// the shape, at a cost a pixel, one after another: distorted copies of a natural shape do not share its boundary.
 fn chosen_by_area(
     ground: &Ground<'_>,
     copies: &[ShapeCopy],
     a: &Disk,
     most: usize,
+    cost: f64,
 ) -> Vec<ShapeCopy> {
     let mut open = ground::without(ground.bits, a);
     let least = LEAST_SHARE * ground.bits.area();
@@ -260,7 +319,7 @@ fn chosen_by_area(
     while chosen.len() < most {
         let gains = images
             .iter()
-            .map(|image| common(image, &open) - common(image, &outside));
+            .map(|image| common(image, &open) - cost * common(image, &outside));
         let best = gains.enumerate().fold(
             (0, least),
             |best, next| {

@@ -1,5 +1,6 @@
 //! Exact systems near a fitted one: simple ratios, angles and shifts.
 
+mod canonical;
 mod lattice;
 mod ratio;
 
@@ -24,11 +25,13 @@ const FAR: f64 = 6.0;
 const RATIO: f64 = 0.03;
 /// Largest change of an angle, in degrees.
 const ANGLE: f64 = 3.0;
-/// Steps of a pixel to which places are rounded, if the picture stays exact.
-const ROUND: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 /// Number of exact pictures that are drawn to find a place, if at most a pixel in this many is wrong.
 const DRAWN: usize = 150;
 const FEW: usize = 40;
+/// Number of parts of attractors that are visited to find a place, and where the first picture has wrong pixels of more than a
+/// quarter of the shape.
+const WORK: usize = 8_000_000;
+const LITTLE_WORK: usize = 1_000_000;
 /// Number of snapped systems whose place is searched.
 const TRIED: usize = 3;
 
@@ -50,6 +53,15 @@ struct Snapped {
     complexity: usize,
 }
 
+/// A system in a place, with its picture.
+struct Placed {
+    frame: [DVec2; 2],
+    candidate: Candidate,
+    drawn: Attractor,
+    /// Number of pixels in which the picture differs from the shape.
+    wrong: u64,
+}
+
 /// Returns an exact system near a candidate of similarities, if there is one whose picture is no worse than an
 /// intersection over union `before`.
 ///
@@ -63,6 +75,7 @@ pub(super) fn snap(
 ) -> Result<Option<(Candidate, Attractor)>, FitError> {
     let mut orbit = Orbit::new(level);
     let iou = |drawn: &Attractor| super::score::iou(shape.bits(), &drawn.pixels);
+    let found = &found.clone().ordered(shape.middle());
     let mut all: Vec<Snapped> = Vec::new();
     for lattice in Lattice::ALL {
         let numbers = lattice.numbers();
@@ -77,7 +90,7 @@ pub(super) fn snap(
     // Rough frames hide good systems: all near the best are kept, the simplest first.
     let least = all.iter().map(|it| it.loss).fold(f64::INFINITY, f64::min);
     all.retain(|it| it.loss < 2.0 * least + 0.1);
-    all.sort_by_key(|it| it.complexity);
+    all.sort_by_key(|it| (it.complexity, it.place()));
     let mut known: Vec<Vec<Similar>> = Vec::new();
     let mut best: Option<(f64, Candidate, Attractor)> = None;
     for snapped in all {
@@ -88,14 +101,14 @@ pub(super) fn snap(
             break;
         }
         known.push(snapped.maps.clone());
-        let frame = snapped.settled(shape, level, &mut orbit);
-        let (candidate, drawn) = snapped.polished(shape, frame, cancel)?;
-        let own = iou(&drawn);
-        if drawn.is(shape.bits()) {
-            return Ok(Some((candidate, drawn)));
+        let placed = snapped.found(shape, level, &mut orbit, cancel)?;
+        let own = iou(&placed.drawn);
+        if placed.wrong == 0 {
+            let placed = snapped.canonical(shape, placed, cancel)?;
+            return Ok(Some((placed.candidate, placed.drawn)));
         }
         if own >= before && best.as_ref().is_none_or(|best| own > best.0) {
-            best = Some((own, candidate, drawn));
+            best = Some((own, placed.candidate, placed.drawn));
         }
     }
     Ok(best.map(|(_, candidate, drawn)| (candidate, drawn)))
@@ -189,6 +202,16 @@ impl Snapped {
         Candidate::of_maps(maps.collect())
     }
 
+    /// Returns the direction of the frame in degrees, and its origin in units of four pixels: of equally simple systems, the
+    /// first is upright, if one is.
+    #[expect(clippy::cast_possible_truncation, reason = "pictures are small")]
+    fn place(&self) -> [i64; 3] {
+        let [origin, unit] = self.frame;
+        let turn = libm::atan2(unit.y, unit.x).to_degrees().round() as i64;
+        let [x, y] = (origin / 4.0).to_array().map(|it| it.round() as i64);
+        [turn.rem_euclid(360), x, y]
+    }
+
     /// Returns the frame in which the system is closest to the shape.
     fn settled(&self, shape: &Shape, level: &Level, orbit: &mut Orbit) -> [DVec2; 2] {
         let size = shape.radius() / self.frame[1].length();
@@ -209,30 +232,33 @@ impl Snapped {
         frame(&found.point)
     }
 
-    /// Returns the system with its exact picture, moved until their pixels are those of the shape, or as many as can be.
+    /// Returns the system with its exact picture, moved, and turned if `turns`, until its pixels are those of the shape, or as
+    /// many as can be.
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
     fn polished(
         &self,
         shape: &Shape,
         mut frame: [DVec2; 2],
+        turns: bool,
         cancel: Option<&AtomicBool>,
-    ) -> Result<(Candidate, Attractor), FitError> {
+    ) -> Result<Placed, FitError> {
         const STEPS: [f64; 5] = [0.5, 0.25, 0.12, 0.06, 0.03];
-        let draw = |frame| -> Result<_, FitError> {
-            let candidate = self.placed(frame);
-            let drawn = candidate.attractor(shape.size(), cancel)?;
-            Ok((drawn.mismatches(shape.bits()), candidate, drawn))
-        };
-        let upright = upright(frame[1]);
+        let draw = |frame| self.drawn(shape, frame, cancel);
+        let upright = upright(frame[1]).unwrap_or(frame[1]);
         let mut best = draw(frame)?;
         let straight = draw([frame[0], upright])?;
-        if straight.0 <= best.0 {
+        if straight.wrong <= best.wrong {
             (frame[1], best) = (upright, straight);
         }
         let size = frame[1].length() / shape.radius();
+        let most = match 4 * best.wrong > shape.points().len() as u64 {
+            true => LITTLE_WORK,
+            false => WORK,
+        };
+        let mut work = 0;
         for step in STEPS {
             let mut moves = 0;
-            while best.0 > 0 && moves < 10 {
+            while best.wrong > 0 && moves < 10 && work < most {
                 let mut moved = false;
                 let ways = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
                 let along = frame[1].normalize_or_zero();
@@ -244,9 +270,11 @@ impl Snapped {
                         }));
                 let turned = [along.perp(), -along.perp()]
                     .map(|way| [frame[0], frame[1] + step * size * way]);
+                let turned = turned.into_iter().filter(|_| turns);
                 for tried in tried.chain(turned).collect::<Vec<_>>() {
                     let drawn = draw(tried)?;
-                    if drawn.0 < best.0 {
+                    work += drawn.drawn.parts;
+                    if drawn.wrong < best.wrong {
                         (best, frame, moved) = (drawn, tried, true);
                     }
                 }
@@ -257,20 +285,21 @@ impl Snapped {
             }
         }
         let few = shape.points().len() / FEW;
-        if best.0 > 0 && best.0 <= few as u64 {
+        if best.wrong > 0 && best.wrong <= few as u64 && work < most {
             let mut failed = None;
+            let turn = if turns { 1.0 } else { 0.0 };
             let numbers = |numbers: &[f64]| {
                 let along = (
                     frame[1].normalize_or_zero(),
                     frame[1].perp().normalize_or_zero(),
                 );
                 let origin = frame[0] + DVec2::new(numbers[0], numbers[1]);
-                let unit = frame[1] + size * (numbers[2] * along.0 + numbers[3] * along.1);
+                let unit = frame[1] + size * (numbers[2] * along.0 + turn * numbers[3] * along.1);
                 [origin, unit]
             };
             let mut search = Cma::new(vec![0.0; 4], 0.1, Pcg::new(13, 5));
             let found = search.minimise(DRAWN, 0.005, |point| match draw(numbers(point)) {
-                Ok(drawn) => drawn.0 as f64,
+                Ok(drawn) => drawn.wrong as f64,
                 Err(error) => {
                     failed = Some(error);
                     0.0
@@ -281,41 +310,44 @@ impl Snapped {
             }
             let moved = numbers(&found.point);
             let drawn = draw(moved)?;
-            if drawn.0 < best.0 {
-                (best, frame) = (drawn, moved);
-            }
-        }
-        // Of the frames with the same picture, one with round numbers.
-        for step in ROUND {
-            if best.0 > 0 {
-                break;
-            }
-            let round = |point: DVec2| (point / step).round() * step;
-            let [origin, unit] = frame;
-            let end = round(origin + unit);
-            let upright = [origin.x - (origin + unit).x, origin.y - (origin + unit).y];
-            let rounded = match upright.map(|away| away.abs() < 1e-9) {
-                // Upright frames stay upright.
-                [true, _] | [_, true] => [round(origin), end - round(origin)],
-                _ => [round(origin), unit],
-            };
-            let drawn = draw(rounded)?;
-            if drawn.0 == 0 {
+            if drawn.wrong < best.wrong {
                 best = drawn;
-                break;
             }
         }
-        Ok((best.1, best.2))
+        Ok(best)
+    }
+
+    /// Returns the system with its exact picture in a frame.
+    fn drawn(
+        &self,
+        shape: &Shape,
+        frame: [DVec2; 2],
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Placed, FitError> {
+        let candidate = self.placed(frame);
+        let drawn = candidate.attractor(shape.size(), cancel)?;
+        Ok(Placed {
+            wrong: drawn.mismatches(shape.bits()),
+            frame,
+            candidate,
+            drawn,
+        })
     }
 }
 
 /// Returns a vector turned to the nearest multiple of 15 degrees, if it is within a degree.
-fn upright(unit: DVec2) -> DVec2 {
+fn upright(unit: DVec2) -> Option<DVec2> {
     let angle = libm::atan2(unit.y, unit.x).to_degrees();
     let nearest = (angle / 15.0).round() * 15.0;
     if (angle - nearest).abs() > 1.0 {
-        return unit;
+        return None;
     }
     let turned = nearest.to_radians();
-    unit.length() * DVec2::new(libm::cos(turned), libm::sin(turned))
+    // Zeros and halves of upright vectors are exact.
+    let exact = |value: f64| match (2.0 * value).round() / 2.0 {
+        near if (near - value).abs() < 1e-9 => near,
+        _ => value,
+    };
+    let turned = DVec2::new(exact(libm::cos(turned)), exact(libm::sin(turned)));
+    Some(unit.length() * turned)
 }

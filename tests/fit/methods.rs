@@ -175,3 +175,33 @@ fn methods_are_compared() {
     assert!(found.exact != found.margin().is_some(), "{found:?}");
     assert!(found.description <= moments.description);
 }
+
+/// Figure 7 of Libeskind-Hadas & Maragos (1987): the maple leaf, without a click. Its maps are not identifiable.
+#[test]
+fn the_maple_leaf_is_found_by_its_skeleton() {
+    let printed = [
+        ([0.7, 0.7], 0.0, [2.0, 15.0]),
+        ([0.4, 0.8], -0.92, [17.0, -8.0]),
+        ([0.4, 0.7], 0.79, [-15.0, -7.0]),
+    ];
+    let maps = printed.map(|(factors, angle, shift)| {
+        let matrix = DMat2::from_angle(angle) * DMat2::from_diagonal(DVec2::from(factors));
+        DAffine2::from_mat2_translation(matrix, DVec2::from(shift))
+    });
+    let mut leaf = Candidate::of_maps(maps.into());
+    leaf.disks.push(Disk {
+        centre: DVec2::new(0.0, -3.0),
+        radius: 20.0,
+    });
+    let place =
+        DAffine2::from_scale_angle_translation(DVec2::splat(2.94), 0.0, DVec2::new(98.0, 91.0));
+    let drawn = leaf.moved(&place).attractor([200, 200], None).unwrap();
+    let shape = Shape::new(drawn.pixels).unwrap();
+    let options = FitOptions::default().method(Method::Skeleton).maps(2..=3);
+    let found = fit(&shape, &options).unwrap();
+    assert!(
+        found.score.iou > 0.9 && found.score.hausdorff < 16.0,
+        "{found:?}"
+    );
+    assert_eq!(found.candidate.maps.len(), 3);
+}

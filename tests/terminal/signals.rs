@@ -119,6 +119,42 @@ fn every_command_that_waits_for_input_ends_when_interrupted() {
     assert_eq!(names(folder.path()), ["file.l", "rule.yaml"]);
 }
 
+/// A fit that keeps the best system so far writes it at the first Ctrl-C; another fit leaves no file.
+#[test]
+fn fits_keep_the_best_if_asked() {
+    if are_ignored() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = kfrac::Fractal::named("gasket").unwrap().png(64).unwrap();
+    fs::write(folder.path().join("gasket.png"), drawn).unwrap();
+    let fit = [
+        "fit",
+        "gasket.png",
+        "-o",
+        "rule.yaml",
+        "--effort",
+        "90000000",
+    ];
+    let interrupted = |options: &[&str]| {
+        let mut child = kfrac(folder.path(), &fit).args(options).spawn().unwrap();
+        listens(&mut child);
+        // The flag is registered soon after the program listens.
+        std::thread::sleep(Duration::from_millis(500));
+        send(&child, Signal::INT);
+        ended(child)
+    };
+    let (status, _) = interrupted(&[]);
+    assert_eq!(status.code(), Some(130));
+    assert_eq!(names(folder.path()), ["gasket.png"]);
+    let (status, said) = interrupted(&["--keep-best"]);
+    assert!(
+        status.success() && said.contains("best system so far"),
+        "{said}"
+    );
+    kfrac::Fractal::open(folder.path().join("rule.yaml")).unwrap();
+}
+
 #[test]
 fn every_command_that_works_ends_when_interrupted() {
     if are_ignored() {

@@ -68,6 +68,8 @@ pub(in crate::fit) fn disks(ground: &Ground) -> Vec<Copy> {
 const MOST_ERROR: f64 = 1.6;
 /// Largest number of copies of one ratio.
 const COPIES: usize = 120;
+/// Number of cells from which on positions are judged in a fifth of them.
+const MANY: usize = 500;
 /// Number of points by which positions are judged.
 const SAMPLE: usize = 128;
 /// Largest number of positions of one linear part.
@@ -154,10 +156,12 @@ fn positions(ground: &Ground, matrix: DMat2, found: &mut Vec<(f64, DAffine2)>) {
         return;
     };
     let mut own: Vec<(f64, DVec2)> = Vec::new();
-    let step = ground.cells().len().div_ceil(6000).max(1);
-    for &target in ground.cells().iter().step_by(step) {
+    let is_large = ground.cells().len() > MANY;
+    let most = MOST_ERROR + if is_large { 0.4 } else { 0.0 };
+    let targets = ground.cells().iter();
+    for &target in targets.filter(|cell| !is_large || is_on_sublattice(**cell)) {
         let shift = target - first;
-        if let Some(error) = error_of(ground, others, shift) {
+        if let Some(error) = error_of(ground, others, shift, most) {
             own.push((error, shift));
         }
     }
@@ -172,25 +176,32 @@ fn positions(ground: &Ground, matrix: DMat2, found: &mut Vec<(f64, DAffine2)>) {
         }
         kept.push(shift);
         let (error, shift) = settled(ground, &points, shift);
-        found.push((error, DAffine2::from_mat2_translation(matrix, shift)));
+        if error <= MOST_ERROR {
+            found.push((error, DAffine2::from_mat2_translation(matrix, shift)));
+        }
     }
 }
 
-/// Returns the mean distance of points from the shape; `None` once it is too large.
+/// Returns whether a cell belongs to a lattice of a fifth of all cells, one of which is the cell or beside it.
+fn is_on_sublattice(cell: DVec2) -> bool {
+    (cell.x.floor() + 2.0 * cell.y.floor()).rem_euclid(5.0) == 0.0
+}
+
+/// Returns the mean distance of points from the shape; `None` once it is more than `most`.
 #[inline]
 #[expect(clippy::cast_precision_loss, reason = "samples are small")]
-fn error_of(ground: &Ground, points: &[DVec2], shift: DVec2) -> Option<f64> {
+fn error_of(ground: &Ground, points: &[DVec2], shift: DVec2, most: f64) -> Option<f64> {
     const EARLY: usize = 12;
     let mut sum = 0.0;
     for &point in points.iter().take(EARLY) {
         sum += ground.distance(point + shift).min(10.0);
-        if sum > 1.5 * MOST_ERROR * EARLY as f64 {
+        if sum > 1.5 * most * EARLY as f64 {
             return None;
         }
     }
     for &point in points.iter().skip(EARLY) {
         sum += ground.distance(point + shift).min(10.0);
-        if sum > MOST_ERROR * points.len() as f64 {
+        if sum > most * points.len() as f64 {
             return None;
         }
     }

@@ -4,6 +4,7 @@ mod copies;
 mod cover;
 mod ground;
 mod pairs;
+mod stems;
 
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -25,8 +26,17 @@ const GROUND: usize = 96;
 const SAMPLE: usize = 768;
 /// Random starts of every list of copies; more for few maps.
 const STARTS: usize = 6;
+/// Covers by one copy less that a flat map completes.
+const STEMS: usize = 16;
 /// Starts from random maps.
 const RANDOM: usize = 16;
+
+/// Forms of the maps of starts with rounds of least squares, from covers by copies and with a flat map.
+const ROUNDS: [(Form, usize); 3] = [(Form::Similar, 0), (Form::Similar, 6), (Form::Affine, 10)];
+const STEM_ROUNDS: [(Form, usize); 2] = [(Form::Affine, 0), (Form::Affine, 10)];
+
+/// Multiple of the shortest description up to which that of a rough candidate makes it worth to be refined.
+const ROUGH: f64 = 1.15;
 
 /// Cells of the long side at which candidates are refined last.
 pub(super) const FINE: usize = 160;
@@ -87,6 +97,11 @@ impl<'s> Collage<'s> {
         self.options.cancel.as_deref()
     }
 
+    /// Returns whether the search is to end with what it has.
+    pub(super) fn is_stopped(&self) -> bool {
+        is_cancelled(self.options.stop.as_deref())
+    }
+
     /// Returns the number of evaluations so far.
     pub(super) fn evaluations(&self) -> usize {
         self.evaluations.load(Ordering::Relaxed)
@@ -111,7 +126,11 @@ impl<'s> Collage<'s> {
         let mut best: Option<(f64, Vec<Refined>)> = None;
         let mut worse = 0;
         for count in counts {
-            let found = self.refined(count, starts(count))?;
+            if best.is_some() && self.is_stopped() {
+                break;
+            }
+            let most = best.as_ref().map_or(f64::INFINITY, |best| ROUGH * best.0);
+            let found = self.refined(count, starts(count), most)?;
             let Some(first) = found.first() else {
                 continue;
             };
@@ -133,8 +152,14 @@ impl<'s> Collage<'s> {
         best.map(|(_, found)| found).ok_or(FitError::Cancelled)
     }
 
-    /// Returns the best candidates with a number of maps, best first, refined from starts.
-    fn refined(&self, count: usize, mut starts: Vec<Refined>) -> Result<Vec<Refined>, FitError> {
+    /// Returns the best candidates with a number of maps, best first, refined from starts; roughly, if the description of the
+    /// best is longer than `most` then.
+    fn refined(
+        &self,
+        count: usize,
+        mut starts: Vec<Refined>,
+        most: f64,
+    ) -> Result<Vec<Refined>, FitError> {
         let effort = self.options.effort;
         shorten(&mut starts, 12);
         let stage = |starts: Vec<Refined>, level: &Level, share: usize, step: f64, stage: u64| {
@@ -145,6 +170,11 @@ impl<'s> Collage<'s> {
         shorten(&mut kept, 4);
         let mut kept = stage(kept, &self.coarse, 16, 1.0, 2)?;
         shorten(&mut kept, 2);
+        let mut orbit = Orbit::new(&self.fine);
+        let length = |it: &Refined| methods::description(&it.candidate, &mut orbit, &self.fine);
+        if kept.first().map(length).is_some_and(|length| length > most) {
+            return Ok(kept);
+        }
         stage(kept, &self.fine, 10, 0.5, 3)
     }
 
@@ -168,9 +198,13 @@ impl<'s> Collage<'s> {
         let threads = self.options.threads.get();
         let cancel = self.options.cancel.as_deref();
         let step = step / level.scale();
+        let budget = self.options.budget(evaluations);
         let refined = parallel::map(&starts, threads, |number, start| {
             if is_cancelled(cancel) {
                 return Vec::new();
+            }
+            if self.is_stopped() {
+                return vec![start.clone()];
             }
             let random = || Pcg::new(self.options.seed ^ seed, number as u64 * 2 + 1);
             let mut all = vec![refine(
@@ -179,7 +213,7 @@ impl<'s> Collage<'s> {
                 &start.candidate,
                 start.form,
                 step,
-                evaluations,
+                budget,
                 random(),
             )];
             if start.form == Form::Similar && !self.options.similar {
@@ -190,7 +224,7 @@ impl<'s> Collage<'s> {
                     affine,
                     Form::Affine,
                     step,
-                    evaluations,
+                    budget,
                     random(),
                 ));
             }
@@ -219,12 +253,19 @@ impl<'s> Collage<'s> {
         };
         let numbers: Vec<u64> = (0..random).collect();
         let random = parallel::map(&numbers, threads, |_, &number| self.random(count, number));
-        let all: Vec<Candidate> = covers.into_iter().chain(random).collect();
-        let starts = parallel::map(&all, threads, |_, candidate| {
+        let whole = covers
+            .into_iter()
+            .chain(random)
+            .map(|candidate| (candidate, &ROUNDS[..]));
+        let stems = self.stems(count).into_iter();
+        let all: Vec<_> = whole
+            .chain(stems.map(|it| (it, &STEM_ROUNDS[..])))
+            .collect();
+        let starts = parallel::map(&all, threads, |_, (candidate, rounds)| {
             let mut orbit = Orbit::new(&self.coarse);
             let free = self.uncovered(candidate);
             let mut best: Vec<Refined> = Vec::new();
-            for (form, rounds) in [(Form::Similar, 0), (Form::Similar, 6), (Form::Affine, 10)] {
+            for &(form, rounds) in *rounds {
                 if form == Form::Affine && self.options.similar {
                     continue;
                 }
@@ -269,6 +310,24 @@ impl<'s> Collage<'s> {
             }
         }
         kept
+    }
+
+    /// Returns candidates of covers by one copy less, with a [flat map](stems::stem) for what they leave uncovered.
+    fn stems(&self, count: usize) -> Vec<Candidate> {
+        if count < 3 || self.options.similar {
+            return Vec::new();
+        }
+        let mut covers = self.covers(count - 1);
+        covers.truncate(STEMS);
+        let completed = covers.into_iter().filter_map(|mut cover| {
+            let maps: Vec<DAffine2> = { cover.maps.iter() }
+                .map(|map| self.ground.inward(map))
+                .collect();
+            let stem = stems::stem(&self.ground, &maps)?;
+            cover.maps.push(self.ground.outward(&stem));
+            Some(cover)
+        });
+        completed.collect()
     }
 
     /// Returns the candidates of covers by similar copies, of one ratio and of several.
