@@ -38,6 +38,7 @@
 //! | names in the library | [`catalogue`] |
 //! | a system whose attractor is a picture | [`fit`](fit()) |
 //! | rules made by a program | [`build`] |
+//! | a change of a file that keeps its comments and layout | [`edit`] |
 //!
 //! Everything that the front door does is done by the rooms behind it, which are public as far as programs
 //! need them: to measure pictures and points ([`measure`]), to compute distances and
@@ -130,6 +131,7 @@ pub mod diagnostic;
 mod digraph;
 pub mod document;
 mod draws;
+pub mod edit;
 pub mod estimate;
 pub mod export;
 pub mod expression;

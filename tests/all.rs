@@ -14,6 +14,7 @@ mod compare;
 mod convert;
 mod detail;
 mod dimensions;
+mod edits;
 mod estimates;
 mod exact;
 mod figures;

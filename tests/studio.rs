@@ -1,5 +1,7 @@
 //! The studio: its server in this process, with requests as a page sends them, and as an attacker would.
 
+mod design;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{Read, Write};
@@ -385,7 +387,7 @@ fn strangers_are_refused() {
         }
     }
     // The page itself has no key yet, but no other host either, and no answer is for other origins.
-    for path in ["/", "/studio.css", "/studio.js"] {
+    for path in ["/", "/studio.css", "/studio.js", "/design.js"] {
         assert_eq!(
             page.send("GET", path, &[("host", "evil.example")], b"")
                 .status,

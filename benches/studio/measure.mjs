@@ -183,7 +183,7 @@ try {
     }
     await studio.end();
   }
-  const page = ["studio.html", "studio.css", "studio.js"].map((name) => join(root, "src/studio/page", name));
+  const page = ["studio.html", "studio.css", "studio.js", "design.js"].map((name) => join(root, "src/studio/page", name));
   const lines = page.map((path) => readFileSync(path, "utf8").split("\n").length - 1).reduce((a, b) => a + b);
   row("the page", `${(page.map((path) => statSync(path).size).reduce((a, b) => a + b) / 1000).toFixed(0)} kB, ${lines} lines`, "90 kB, 1,500 lines");
   const crates = (features) => new Set(execFileSync("cargo", ["tree", "--locked", "-e", "normal", "--prefix", "none", ...features], { cwd: root, encoding: "utf8" }).trim().split("\n").map((line) => line.replace(" (*)", ""))).size;

@@ -149,6 +149,11 @@ impl Document {
         }
     }
 
+    /// Returns the values of the file, with those of its parents and components.
+    pub(crate) fn node(&self) -> &Node {
+        &self.node
+    }
+
     /// Returns the content as written.
     #[must_use]
     pub fn kind(&self) -> &KindDocument {

@@ -229,6 +229,11 @@ impl Key {
     }
 }
 
+/// Writes a text as a scalar in flow style, with quotes where they are necessary.
+pub(crate) fn scalar(text: &str) -> String {
+    yaml::scalar_text(text, true)
+}
+
 fn nowhere(text: &str) -> Place {
     let source = Source::new("(made)", text);
     Place::new(&source, 0..source.text().len())

@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use crate::catalogue::Catalogue;
 use crate::cli::check;
 use crate::diagnostic::Source;
-use crate::document::ParameterDocument;
+use crate::document::Document;
+use crate::document::node::Node;
 use crate::kind::Kind;
 use crate::model::Model;
 use crate::style::{Named, Width};
@@ -27,6 +28,8 @@ pub(super) struct Good {
     pub(super) about: Value,
     pub(super) style: Value,
     pub(super) own_steps: Option<u32>,
+    /// The document with its parents and components.
+    pub(super) node: Arc<Node>,
 }
 
 /// Parameter of a rule.
@@ -69,7 +72,7 @@ impl Reader {
             Ok(()) => match check::checked(&source, &self.catalogue) {
                 Err(found) => (None, found),
                 Ok((document, model, found)) => {
-                    let good = Good::of(&source, &document.metadata().params, &model);
+                    let good = Good::of(&source, &document, &model);
                     ((!found.has_errors()).then_some(good), found)
                 }
             },
@@ -84,7 +87,8 @@ impl Reader {
 }
 
 impl Good {
-    fn of(source: &Arc<Source>, parameters: &[ParameterDocument], model: &Model) -> Self {
+    fn of(source: &Arc<Source>, document: &Document, model: &Model) -> Self {
+        let parameters = &document.metadata().params;
         let heading = model.metadata();
         let described = &heading.description;
         let style = &heading.style;
@@ -132,6 +136,7 @@ impl Good {
                 "shadows": view.shadows,
             }),
             own_steps: heading.steps,
+            node: Arc::new(document.node().clone()),
         }
     }
 }

@@ -17,6 +17,7 @@
 //! | `numbers` | forecast and dimension |
 //! | `problems`, `complete` | mistakes at their places; completion from the schema |
 //! | `vary`, `write` | members near the present one; values that are written into the text |
+//! | `design` | points, elements and maps that a hand drags; each gesture an edit of the text |
 //! | `library` | the library, with thumbnails |
 //! | `files` | where files may be written |
 //! | `guard`, `server` | requests that are answered, and the answers |
@@ -31,6 +32,7 @@
 
 mod answer;
 mod complete;
+mod design;
 mod drawing;
 mod files;
 mod good;

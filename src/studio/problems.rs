@@ -20,6 +20,13 @@ pub(super) struct Problem {
     hint: Option<String>,
 }
 
+impl Problem {
+    /// Returns whether it is an error, and no warning.
+    pub(super) fn is_error(&self) -> bool {
+        self.severity == "error"
+    }
+}
+
 /// Returns the mistakes in a source, in the order of their places.
 pub(super) fn problems(
     diagnostics: &Diagnostics,

@@ -1,6 +1,7 @@
 //! The server: routes, and the answers to them.
 
 mod changes;
+mod design;
 mod pictures;
 mod reports;
 
@@ -168,6 +169,15 @@ fn router(app: Arc<App>) -> Router {
                 include_str!("page/studio.js"),
             ),
         )
+        .route(
+            "/design.js",
+            text(
+                "text/javascript; charset=utf-8",
+                include_str!("page/design.js"),
+            ),
+        )
+        .route("/pointer", post(design::pointer))
+        .route("/edit", post(design::act))
         .route(
             "/icon.svg",
             text("image/svg+xml", include_str!("page/icon.svg")),

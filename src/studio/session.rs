@@ -12,6 +12,7 @@ use crate::output_file::OutputFile;
 
 use super::Options;
 use super::answer::Refusal;
+use super::design::{self, Act, Hand, Scene};
 use super::drawing::Wholes;
 use super::files::{Roots, is_rule};
 use super::good::{Checked, Good, Reader};
@@ -35,6 +36,11 @@ pub(super) struct Session {
     /// File of the rule; `None` for a copy that is not saved.
     path: Option<PathBuf>,
     history: History,
+    /// Text while a hand drags, which is no entry of the history yet.
+    draft: Option<Arc<str>>,
+    /// What there was before a hand dragged.
+    kept: Option<(Good, Look)>,
+    pub(super) hand: Hand,
     /// Number of changes of the text.
     pub(super) revision: u64,
     /// Text of the file when it was last read or written.
@@ -98,6 +104,9 @@ impl Session {
             saved: path.is_some().then(|| Arc::clone(&text)),
             path,
             history: History::new(Arc::clone(&text)),
+            draft: None,
+            kept: None,
+            hand: Hand::default(),
             revision: 0,
             theirs: None,
             look,
@@ -143,7 +152,72 @@ impl Session {
 
     /// Returns the text.
     pub(super) fn text(&self) -> &Arc<str> {
+        self.draft.as_ref().unwrap_or_else(|| self.history.text())
+    }
+
+    /// Returns the text before a hand dragged.
+    pub(super) fn kept_text(&self) -> &Arc<str> {
         self.history.text()
+    }
+
+    /// Returns what there was before a hand dragged.
+    pub(super) fn kept(&self) -> Result<(&Good, &Look), Refusal> {
+        match &self.kept {
+            Some((good, look)) => Ok((good, look)),
+            None => Ok((self.good()?, &self.look)),
+        }
+    }
+
+    /// Keeps what there is, before a hand drags.
+    pub(super) fn keep(&mut self) -> Result<(), Refusal> {
+        self.kept = Some((self.good()?.clone(), self.look.clone()));
+        Ok(())
+    }
+
+    /// Shows a text while a hand drags.
+    pub(super) fn show_draft(&mut self, checked: Checked) {
+        self.draft = Some(Arc::clone(&checked.text));
+        self.take(checked);
+    }
+
+    /// Makes the text of a hand that has dragged an entry of the history.
+    pub(super) fn keep_draft(&mut self) {
+        self.kept = None;
+        if let Some(draft) = self.draft.take() {
+            self.history.push(draft);
+        }
+    }
+
+    /// Goes back to the text before a hand dragged.
+    pub(super) fn drop_draft(&mut self) {
+        self.hand.let_go();
+        let kept = self.kept.take();
+        if self.draft.take().is_some() {
+            let checked = self.reader().check(Arc::clone(self.history.text()));
+            self.take(checked);
+            self.look = kept.map_or_else(|| self.look.clone(), |(_, look)| look);
+        }
+    }
+
+    /// Returns the handles of the design.
+    pub(super) fn scene(&self) -> Result<Scene, Refusal> {
+        let good = self.good()?;
+        match good.revision == self.revision {
+            true => Ok(design::scene(good, &self.look)),
+            false => Err(Refusal::wrong(
+                "the text has mistakes: there is nothing to take hold of",
+            )),
+        }
+    }
+
+    /// Changes the text by a gesture.
+    pub(super) fn act(&mut self, act: &Act) -> Result<(), Refusal> {
+        self.drop_draft();
+        let text = Arc::clone(self.text());
+        // Only a text without mistakes has handles.
+        self.scene()?;
+        let checked = design::acted(&self.reader(), self.good()?, &self.look, &text, act)?;
+        self.set_text(checked, self.revision)
     }
 
     /// Replaces the text; `revision` is the one on which the change is based.
@@ -151,6 +225,7 @@ impl Session {
         if revision != self.revision {
             return Err(Refusal::conflict("the text has changed in the meantime"));
         }
+        self.drop_draft();
         if self.history.push(Arc::clone(&checked.text)) {
             self.take(checked);
         }
@@ -159,6 +234,7 @@ impl Session {
 
     /// Goes back or forth in the history; returns the text to be read, if there is one.
     pub(super) fn travel(&mut self, is_back: bool) -> bool {
+        self.drop_draft();
         let has_moved = match is_back {
             true => self.history.undo(),
             false => self.history.redo(),
@@ -172,6 +248,7 @@ impl Session {
 
     /// Opens an entry of the library as a copy that is not saved.
     pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
+        self.drop_draft();
         self.name = name.to_owned();
         self.source_name = source.name().to_owned();
         self.path = None;
@@ -200,6 +277,7 @@ impl Session {
         if self.saved.as_ref() == Some(&theirs) {
             return self.theirs.take().is_some();
         }
+        self.drop_draft();
         if self.is_saved() || theirs == *self.text() {
             self.saved = Some(Arc::clone(&theirs));
             self.theirs = None;
@@ -332,6 +410,8 @@ impl Session {
             "parameters": good.map(|good| &good.parameters),
             "look": self.look,
             "factor": self.factor(),
+            "design": self.scene().ok(),
+            "hand": self.hand.state(),
         })
     }
 }

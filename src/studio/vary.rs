@@ -129,7 +129,7 @@ fn vary_parameters(
 }
 
 /// Returns the value of a parameter: as set, if that is a number, or that of the file.
-fn value_of(parameter: &ParameterState, set: &BTreeMap<String, String>) -> f64 {
+pub(super) fn value_of(parameter: &ParameterState, set: &BTreeMap<String, String>) -> f64 {
     if let Some(whole) = &parameter.whole {
         let parts = set
             .get(whole)

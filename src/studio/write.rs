@@ -1,14 +1,15 @@
 //! Values of parameters, written into the text.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use crate::cli::family;
 use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
+use crate::edit::{Edit, Step, edit, find};
+use crate::expression::{Expression, PARTS};
 
 use super::answer::Refusal;
-use super::good::{Checked, ParameterState, Reader};
+use super::good::{Checked, Good, ParameterState, Reader};
 
 /// Returns the text in which a parameter has another value: nothing else is changed, and the new text, when it is read,
 /// has that value.
@@ -20,62 +21,58 @@ pub(super) fn write(
 ) -> Result<Checked, Refusal> {
     let old = reader.source(text);
     let node = Node::parse(&old).map_err(|_| Refusal::wrong("the text has mistakes"))?;
-    let (place, path) = place(&node, &old, name)?;
-    // The reader leaves out a byte order mark.
-    let mark = text.len() - old.text().len();
-    let place = place.start + mark..place.end + mark;
-    let quoted = format!("\"{value}\"");
-    let new = [value, &quoted].into_iter().find_map(|written| {
-        let mut new = text.to_string();
-        new.replace_range(place.clone(), written);
-        let source = reader.source(&new);
-        let read = Node::parse(&source).ok()?;
-        is_same_but(&node, &read, &path).then_some(())?;
-        let checked = reader.check(new.into());
-        let good = checked.good.as_ref()?;
-        has_value(&good.parameters, name, value).then_some(checked)
-    });
-    new.ok_or_else(|| {
+    let missing = || Refusal::wrong(format!("the value of {name} is not in this file"));
+    let at = place(&node, &old, name).ok_or_else(missing)?;
+    let new = edit(text, &[Edit::set(at, value)]).ok();
+    let checked = new.map(|new| reader.check(new.into()));
+    let has_value = |checked: &Checked| {
+        let good = checked.good.as_ref();
+        good.is_some_and(|good| has_value(&good.parameters, name, value))
+    };
+    checked.filter(has_value).ok_or_else(|| {
         Refusal::wrong(format!(
             "{name} = {value} cannot be written into the text: change it by hand"
         ))
     })
 }
 
-/// Returns the place of the value of a parameter in a source, and the keys that lead to it.
-fn place<'a>(
-    node: &Node,
-    source: &Arc<Source>,
-    name: &'a str,
-) -> Result<(Range<usize>, Vec<&'a str>), Refusal> {
-    let mut path = vec!["params", name];
-    let parameter = node.get("params").and_then(|all| all.get(name));
-    let parameter = parameter.filter(|it| Arc::ptr_eq(it.place.source(), source));
-    let missing = || Refusal::wrong(format!("the value of {name} is not in this file"));
-    let mut value = parameter.ok_or_else(missing)?;
-    if let Value::Mapping(_) = value.value {
-        path.push("value");
-        value = value.get("value").ok_or_else(missing)?;
+/// Returns the steps to the value of a parameter that is written in a source.
+fn place(node: &Node, source: &Arc<Source>, name: &str) -> Option<Vec<Step>> {
+    let mut at = vec![Step::from("params"), Step::from(name)];
+    let parameter = find(node, &at).filter(|it| Arc::ptr_eq(it.place.source(), source))?;
+    if let Value::Mapping(_) = parameter.value {
+        parameter.get("value")?;
+        at.push("value".into());
     }
-    Ok((value.place.range(), path))
+    Some(at)
 }
 
-/// Returns whether two nodes have equal values, but for the one to which a path leads.
-fn is_same_but(a: &Node, b: &Node, path: &[&str]) -> bool {
-    let [first, rest @ ..] = path else {
-        return true;
-    };
-    let (Value::Mapping(a), Value::Mapping(b)) = (&a.value, &b.value) else {
-        return false;
-    };
-    a.len() == b.len()
-        && a.iter().zip(b).all(|((key, a), (other, b))| {
-            key.name == other.name
-                && match key.name == *first {
-                    true => is_same_but(a, b, rest),
-                    false => a.same_value(b),
-                }
-        })
+/// Returns the steps to the number of a parameter, which may be a part of a complex one.
+fn number(good: &Good, name: &str) -> Option<Vec<Step>> {
+    let parts = PARTS.iter().enumerate();
+    let whole = parts
+        .filter_map(|(part, end)| Some((part, name.strip_suffix(end)?)))
+        .next();
+    match whole {
+        None => place(&good.node, &good.source, name),
+        Some((part, whole)) => {
+            let mut at = place(&good.node, &good.source, whole)?;
+            at.push(part.into());
+            Some(at)
+        }
+    }
+}
+
+/// Returns whether the value of a parameter is a number that is written in the text, not a formula of others.
+pub(super) fn is_number(good: &Good, parameter: &ParameterState) -> bool {
+    let node = number(good, &parameter.name).and_then(|at| find(&good.node, &at));
+    let parsed = node.and_then(Node::written).map(Expression::parse);
+    parsed.is_some_and(|it| it.is_ok_and(|it| it.names().is_empty()))
+}
+
+/// Returns the edit that gives a parameter a value.
+pub(super) fn parameter(good: &Good, name: &str, value: &str) -> Option<Edit> {
+    number(good, name).map(|at| Edit::set(at, value))
 }
 
 /// Returns whether a parameter has a value, which may be an expression, or a list of two for a complex one.
@@ -129,7 +126,7 @@ mod tests {
         let pair = |value: &str| format!("params: {{z: {value}, x: 20}}\n{REST}");
         assert_eq!(
             written(&pair("[0.5, 0.25]"), "z", "[0.1,-0.2]"),
-            Ok(pair("[0.1,-0.2]"))
+            Ok(pair("[0.1, -0.2]"))
         );
     }
 

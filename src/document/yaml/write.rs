@@ -162,7 +162,7 @@ fn scalar_key_text(name: &str, flow: bool) -> String {
     }
 }
 
-fn scalar_text(text: &str, flow: bool) -> String {
+pub(in crate::document) fn scalar_text(text: &str, flow: bool) -> String {
     if needs_quotes(text, flow) {
         quoted(text)
     } else {

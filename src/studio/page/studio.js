@@ -1,5 +1,7 @@
 // The page of the studio: a screen and a hand. Whatever is decided is decided by the server.
 
+import * as design from "./design.js";
+
 const $ = (id) => document.getElementById(id);
 const key = location.hash.slice(1) || sessionStorage.getItem("key") || "";
 const tab = Math.random().toString(36).slice(2, 10);
@@ -875,7 +877,7 @@ $("export").onclick = () => {
   } });
 };
 $("help").onclick = () => {
-  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], ["?", "these keys"]];
+  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction; fertile, visible, connected, use, base element; split; remove"], ["P, G, Esc", "in a figure: draw; grid; cancel"], ["?", "these keys"]];
   ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
 };
 $("copy").onclick = async () => {
@@ -907,6 +909,8 @@ function openTab(button, focuses = false) {
   sessionStorage.setItem("tab", button.id);
   if (button.id === "tab-library") library().catch((error) => say(error.message));
   if (button.id === "tab-text") mark();
+  document.body.classList.toggle("designs", button.id === "tab-design");
+  if (button.id === "tab-design" && state.design !== undefined) design.show();
 }
 tabs.forEach((button, at) => {
   button.onclick = () => openTab(button);
@@ -955,14 +959,16 @@ function take(next) {
     look.options ??= {};
     $("seed").value = look.seed;
     $("follow").checked = look.follows;
-    if (state.hasGood) {
+    const drags = Boolean(state.hand?.drags);
+    if (state.hasGood && !drags) {
       family();
       style();
     }
     placeSteps();
-    draw();
-    recount();
+    draw(drags);
+    if (!drags) recount();
   }
+  if (!$("design").hidden) design.show();
 }
 const refresh = async () => take(await json("GET", "/state"));
 let counting = 0;
@@ -1004,6 +1010,8 @@ async function follow() {
   }
 }
 
+design.start({ tab, json, make, take, ask, stepNow, state: () => state });
+$("design-table").ontoggle = design.show;
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
   const first = state;

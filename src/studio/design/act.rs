@@ -1,0 +1,572 @@
+//! Gestures that change more than a place: each becomes edits of the text.
+
+use serde::Deserialize;
+
+use crate::document::node::{Node, Value};
+use crate::edit::{Edit, Step, find, steps};
+
+use super::super::answer::Refusal;
+use super::nice;
+use super::scene::{Element, Panel, Role, Scene};
+
+/// A gesture.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "act", rename_all = "snake_case", deny_unknown_fields)]
+pub(in crate::studio) enum Act {
+    /// Gives an element a key: `direction`, `fertile`, `visible`, `connected`, `use`, `base_element`; none if `null`.
+    Key {
+        panel: String,
+        element: usize,
+        key: String,
+        value: Option<String>,
+    },
+    /// Divides an element in its middle.
+    Split {
+        panel: String,
+        element: usize,
+    },
+    /// Removes a point: the elements that meet there become one.
+    Join {
+        panel: String,
+        point: usize,
+    },
+    /// Moves a point to a place as it is written.
+    Place {
+        panel: String,
+        point: usize,
+        x: String,
+        y: String,
+    },
+    /// Draws a polyline in place of all points.
+    Draw {
+        panel: String,
+        points: Vec<[String; 2]>,
+    },
+    /// Makes a component a part of the file.
+    Own {
+        panel: String,
+    },
+    /// Adds a generator: a copy of another one.
+    AddGenerator {
+        from: String,
+        name: String,
+    },
+    /// Gives a generator another name, wherever it is used.
+    RenameGenerator {
+        from: String,
+        to: String,
+    },
+    /// Removes a generator.
+    RemoveGenerator {
+        name: String,
+    },
+    /// From a step on, replaces elements by a copy of the present generator.
+    FromHere {
+        step: u32,
+        name: String,
+    },
+    /// Writes a value at a place: a weight, a condition, limits.
+    Set {
+        at: String,
+        value: String,
+    },
+    /// Removes a value.
+    Remove {
+        at: String,
+    },
+    /// Adds a map to a system, or removes one.
+    AddMap {
+        map: usize,
+    },
+    RemoveMap {
+        map: usize,
+    },
+}
+
+/// What edits are made of.
+pub(super) struct Design<'a> {
+    pub(super) scene: &'a Scene,
+    /// The assembled document.
+    pub(super) root: &'a Node,
+}
+
+/// Keys of elements with their defaults.
+const DEFAULTS: [(&str, &str); 4] = [
+    ("direction", "1"),
+    ("fertile", "true"),
+    ("visible", "true"),
+    ("connected", "true"),
+];
+
+pub(super) fn below(at: &[Step], step: impl Into<Step>) -> Vec<Step> {
+    at.iter().cloned().chain([step.into()]).collect()
+}
+
+impl Design<'_> {
+    pub(super) fn panel(&self, id: &str) -> Result<&Panel, Refusal> {
+        let panel = self.scene.panels.iter().find(|panel| panel.id == id);
+        panel.ok_or_else(|| Refusal::wrong(format!("nothing called '{id}' is designed here")))
+    }
+
+    /// Returns a panel that can be changed.
+    pub(super) fn open(&self, id: &str) -> Result<&Panel, Refusal> {
+        let panel = self.panel(id)?;
+        match &panel.why {
+            None => Ok(panel),
+            Some(why) => Err(Refusal::wrong(why.clone())),
+        }
+    }
+
+    fn element<'p>(
+        &self,
+        panel: &'p Panel,
+        element: usize,
+    ) -> Result<(&'p Element, usize), Refusal> {
+        let found = panel.elements.get(element);
+        let found = found.and_then(|it| Some((it, it.entry?)));
+        found.ok_or_else(|| {
+            Refusal::wrong("this element closes the figure: it has no entry of its own")
+        })
+    }
+
+    fn entry(&self, panel: &Panel, entry: usize) -> Result<&Node, Refusal> {
+        let found = find(self.root, &below(&panel.list, entry));
+        found.ok_or_else(|| Refusal::wrong("there is no such entry"))
+    }
+
+    /// Returns the edits of a gesture.
+    pub(super) fn edits(&self, act: &Act) -> Result<Vec<Edit>, Refusal> {
+        match act {
+            Act::Key {
+                panel,
+                element,
+                key,
+                value,
+            } => self.key(self.open(panel)?, *element, key, value.as_deref()),
+            Act::Split { panel, element } => self.split(self.open(panel)?, *element),
+            Act::Join { panel, point } => self.join(self.open(panel)?, *point),
+            Act::Place { panel, point, x, y } => {
+                self.place(self.open(panel)?, *point, [x, y].map(String::as_str))
+            }
+            Act::Draw { panel, points } => self.draw(panel, points),
+            Act::Own { panel } => self.own(panel),
+            Act::AddGenerator { from, name } => self.add_generator(from, name),
+            Act::RenameGenerator { from, to } => Ok(self.rename(from, to)),
+            Act::RemoveGenerator { name } => self.remove_generator(name),
+            Act::FromHere { step, name } => self.from_here(*step, name),
+            Act::Set { at, value } => Ok(vec![match find(self.root, &steps(at)) {
+                Some(_) => Edit::set(steps(at), value),
+                None => {
+                    let mut outer = steps(at);
+                    let key = outer
+                        .pop()
+                        .ok_or_else(|| Refusal::wrong("nothing is named"))?;
+                    Edit::add(outer, key.to_string(), value)
+                }
+            }]),
+            Act::Remove { at } => Ok(vec![Edit::remove(steps(at))]),
+            Act::AddMap { map } => {
+                let map = self.map(*map)?;
+                let text = super::source_text(&map.node);
+                Ok(vec![match map.at.last() {
+                    Some(Step::Item(item)) => Edit::insert(vec!["maps".into()], item + 1, text),
+                    _ => Edit::add(vec!["maps".into()], format!("{} copy", map.name), text),
+                }])
+            }
+            Act::RemoveMap { map } => Ok(vec![Edit::remove(self.map(*map)?.at.clone())]),
+        }
+    }
+
+    fn map(&self, map: usize) -> Result<&super::maps::MapHandle, Refusal> {
+        let found = self.open("maps")?.maps.get(map);
+        found.ok_or_else(|| Refusal::wrong("there is no such map"))
+    }
+
+    /// Writes a key of an element. A point becomes a mapping, and a mapping with nothing but an end a point again.
+    fn key(
+        &self,
+        panel: &Panel,
+        element: usize,
+        key: &str,
+        value: Option<&str>,
+    ) -> Result<Vec<Edit>, Refusal> {
+        const KEYS: [&str; 6] = [
+            "direction",
+            "fertile",
+            "visible",
+            "connected",
+            "use",
+            "base_element",
+        ];
+        if !KEYS.contains(&key) {
+            return Err(Refusal::wrong(format!(
+                "an element has no key '{key}' to set here"
+            )));
+        }
+        let (_, number) = self.element(panel, element)?;
+        let entry = self.entry(panel, number)?;
+        let at = below(&panel.list, number);
+        let value = value.filter(|value| !DEFAULTS.contains(&(key, *value)));
+        let written = |value: &str| match key {
+            "use" | "base_element" => crate::document::node::scalar(value),
+            _ => value.to_owned(),
+        };
+        Ok(match (&entry.value, value) {
+            (Value::Mapping(entries), None) if entry.get(key).is_some() => {
+                let to = entry.get("to").filter(|_| entries.len() == 2);
+                match to {
+                    Some(to) => vec![Edit::set(at, super::source_text(to))],
+                    None => vec![Edit::remove(below(&at, key))],
+                }
+            }
+            (_, None) => Vec::new(),
+            (Value::Mapping(_), Some(value)) => vec![match entry.get(key) {
+                Some(_) => Edit::set(below(&at, key), written(value)),
+                None => Edit::add(at, key, written(value)),
+            }],
+            (_, Some(value)) => {
+                let to = super::source_text(entry);
+                vec![Edit::set(
+                    at,
+                    format!("{{to: {to}, {key}: {}}}", written(value)),
+                )]
+            }
+        })
+    }
+
+    fn split(&self, panel: &Panel, element: usize) -> Result<Vec<Edit>, Refusal> {
+        let (found, number) = self.element(panel, element)?;
+        let [a, b] = [found.from, found.to].map(|point| panel.place(point));
+        let middle = [0, 1].map(|axis| nice::written((a[axis] + b[axis]) / 2.0, true, 1e-9));
+        let middle = format!("[{}, {}]", middle[0], middle[1]);
+        let entry = self.entry(panel, number)?;
+        let Value::Mapping(entries) = &entry.value else {
+            return Ok(vec![Edit::insert(panel.list.clone(), number, middle)]);
+        };
+        let copy: Vec<_> = entries
+            .iter()
+            .map(|(key, node)| match key.name.as_str() {
+                "to" => format!("to: {middle}"),
+                name => format!("{name}: {}", super::source_text(node)),
+            })
+            .collect();
+        let mut edits = Vec::new();
+        if entry.get("from").is_some() {
+            let from = below(&below(&panel.list, number), "from");
+            edits.push(Edit::set(from, middle.clone()));
+        }
+        let copy = format!("{{{}}}", copy.join(", "));
+        edits.push(Edit::insert(panel.list.clone(), number, copy));
+        Ok(edits)
+    }
+
+    fn join(&self, panel: &Panel, point: usize) -> Result<Vec<Edit>, Refusal> {
+        let ends = |it: &&Element| it.to == point && it.entry.is_some();
+        let all: Vec<_> = panel.elements.iter().filter(ends).collect();
+        let Value::Sequence(entries) = &find(self.root, &panel.list)
+            .ok_or_else(|| Refusal::wrong("there is no such list"))?
+            .value
+        else {
+            return Err(Refusal::wrong("this is no list"));
+        };
+        if panel.points.get(point).is_some_and(|it| it.pinned) {
+            return Err(Refusal::wrong(
+                "an end of a generator joins its neighbours: it stays",
+            ));
+        }
+        if entries.len() <= 2 {
+            return Err(Refusal::wrong("a figure has one element at least"));
+        }
+        let mut edits = Vec::new();
+        // From the end, so that the numbers before stay.
+        for element in all.iter().rev() {
+            let number = element.entry.unwrap_or_default();
+            let next = entries.get(number + 1).and_then(|entry| entry.get("from"));
+            let starts_here = next.is_some()
+                && panel
+                    .elements
+                    .iter()
+                    .any(|it| it.entry == Some(number + 1) && it.from == point);
+            if starts_here {
+                let from = panel.points[element.from].text.join(", ");
+                let at = below(&below(&panel.list, number + 1), "from");
+                edits.push(Edit::set(at, format!("[{from}]")));
+            }
+            edits.push(Edit::remove(below(&panel.list, number)));
+        }
+        let starts = panel.elements.first().is_some_and(|it| it.from == point);
+        if starts && all.is_empty() {
+            if let Some(to) = entries.get(1).and_then(|entry| entry.get("to")) {
+                edits.push(Edit::set(below(&panel.list, 1), super::source_text(to)));
+            }
+            edits.push(Edit::remove(below(&panel.list, 0)));
+        }
+        match edits.is_empty() {
+            true => Err(Refusal::wrong("no element ends there")),
+            false => Ok(edits),
+        }
+    }
+
+    /// Writes the coordinates of a point wherever it is written.
+    pub(super) fn place(
+        &self,
+        panel: &Panel,
+        point: usize,
+        text: [&str; 2],
+    ) -> Result<Vec<Edit>, Refusal> {
+        let found = panel
+            .points
+            .get(point)
+            .ok_or_else(|| Refusal::wrong("there is no such point"))?;
+        let mut edits = Vec::new();
+        for at in &found.written {
+            match find(self.root, at).map(|node| &node.value) {
+                Some(Value::Sequence(_)) => {
+                    let changed = [0, 1]
+                        .into_iter()
+                        .filter(|axis| found.text[*axis] != text[*axis]);
+                    edits.extend(changed.map(|axis| Edit::set(below(at, axis), text[axis])));
+                }
+                _ => edits.push(Edit::set(at.clone(), format!("[{}, {}]", text[0], text[1]))),
+            }
+        }
+        Ok(edits)
+    }
+
+    /// Replaces all points by a polyline. That of a generator runs from [0, 0] to [1, 0]; one that returns to its start
+    /// closes an initiator or a base element.
+    fn draw(&self, panel: &str, points: &[[String; 2]]) -> Result<Vec<Edit>, Refusal> {
+        let panel = self.panel(panel)?;
+        let mut points = points.to_vec();
+        let ends = [["0", "0"], ["1", "0"]].map(|it| it.map(str::to_owned));
+        if panel.role == Role::Generator {
+            if points.first() != Some(&ends[0]) {
+                points.insert(0, ends[0].clone());
+            }
+            if points.last() != Some(&ends[1]) {
+                points.push(ends[1].clone());
+            }
+        }
+        let closes =
+            panel.role != Role::Generator && points.len() > 3 && points.first() == points.last();
+        if closes {
+            points.pop();
+        }
+        if points.len() < 2 {
+            return Err(Refusal::wrong("a polyline has two points at least"));
+        }
+        let all: Vec<_> = points.iter().map(|[x, y]| format!("[{x}, {y}]")).collect();
+        let list = format!("[{}]", all.join(", "));
+        let whole = match panel.role {
+            Role::Generator | Role::Maps => None,
+            Role::Initiator => Some(("elements", ["initiator".into()])),
+            Role::BaseElement => Some(("points", ["base_element".into()])),
+        };
+        Ok(vec![match whole {
+            Some((key, at)) if closes || panel.closed || panel.why.is_some() || key == "points" => {
+                let closed = if closes { "closed: true, " } else { "" };
+                Edit::set(at.into(), format!("{{{closed}{key}: {list}}}"))
+            }
+            _ if panel.why.is_some() => Edit::set(
+                panel
+                    .list
+                    .iter()
+                    .filter(|it| **it != "elements".into())
+                    .cloned()
+                    .collect(),
+                list,
+            ),
+            _ => Edit::set(panel.list.clone(), list),
+        }])
+    }
+
+    /// Writes a component that is named into the file.
+    fn own(&self, panel: &str) -> Result<Vec<Edit>, Refusal> {
+        let panel = self.panel(panel)?;
+        let at: Vec<Step> = match panel.role {
+            Role::Initiator => vec!["initiator".into()],
+            Role::BaseElement => vec!["base_element".into()],
+            _ => panel
+                .list
+                .iter()
+                .take(if panel.id.starts_with("generators/") {
+                    2
+                } else {
+                    1
+                })
+                .cloned()
+                .collect(),
+        };
+        let node =
+            find(self.root, &at).ok_or_else(|| Refusal::wrong("there is no such component"))?;
+        let text = plain(node);
+        Ok(vec![Edit::set(at, text)])
+    }
+
+    fn add_generator(&self, from: &str, name: &str) -> Result<Vec<Edit>, Refusal> {
+        let single = self.root.get("generator");
+        let mut edits = Vec::new();
+        let node = match single {
+            Some(node) => {
+                edits.push(Edit::Nest {
+                    at: vec!["generator".into()],
+                    key: from.to_owned(),
+                });
+                edits.push(Edit::rename(vec!["generator".into()], "generators"));
+                node
+            }
+            None => find(self.root, &["generators".into(), from.into()])
+                .ok_or_else(|| Refusal::wrong(format!("there is no generator '{from}'")))?,
+        };
+        edits.push(Edit::add(vec!["generators".into()], name, plain(node)));
+        Ok(edits)
+    }
+
+    /// Returns the places where generators are named, with the names.
+    fn uses(&self) -> Vec<(Vec<Step>, String)> {
+        let mut found = Vec::new();
+        add_uses(self.root, &mut Vec::new(), &mut found);
+        let by_index: Vec<Step> = ["select", "by_index"].map(Step::from).into();
+        if let Some(Value::Sequence(items)) = find(self.root, &by_index).map(|it| &it.value) {
+            for (number, item) in items.iter().enumerate() {
+                let name = item.written().unwrap_or_default().to_owned();
+                found.push((below(&by_index, number), name));
+            }
+        }
+        found
+    }
+
+    fn rename(&self, from: &str, to: &str) -> Vec<Edit> {
+        let mut edits = vec![Edit::rename(vec!["generators".into(), from.into()], to)];
+        let at_random: Vec<Step> = ["select", "at_random", from].map(Step::from).into();
+        if find(self.root, &at_random).is_some() {
+            edits.push(Edit::rename(at_random, to));
+        }
+        let name = crate::document::node::scalar(to);
+        for (mut at, used) in self.uses() {
+            if used == from {
+                if at.len() > 1 && at[0] == "generators".into() && at[1] == from.into() {
+                    at[1] = to.into();
+                }
+                edits.push(Edit::set(at, name.clone()));
+            }
+        }
+        edits
+    }
+
+    /// Removes a generator, with its entries in a selection by index or at random.
+    fn remove_generator(&self, name: &str) -> Result<Vec<Edit>, Refusal> {
+        if self.scene.generators.len() < 2 {
+            return Err(Refusal::wrong("a rule has one generator at least"));
+        }
+        let mut edits = Vec::new();
+        for (at, used) in self
+            .uses()
+            .into_iter()
+            .rev()
+            .filter(|(_, used)| used == name)
+        {
+            match at.as_slice() {
+                [select, by_index, _]
+                    if *select == "select".into() && *by_index == "by_index".into() =>
+                {
+                    edits.push(Edit::remove(at));
+                }
+                _ => {
+                    let message = format!(
+                        "'{used}' is used at {}: choose another generator there first",
+                        super::joined(&at)
+                    );
+                    return Err(Refusal::wrong(message));
+                }
+            }
+        }
+        let at_random: Vec<Step> = ["select", "at_random", name].map(Step::from).into();
+        if find(self.root, &at_random).is_some() {
+            edits.push(Edit::remove(at_random));
+        }
+        edits.push(Edit::remove(vec!["generators".into(), name.into()]));
+        Ok(edits)
+    }
+
+    /// Writes a selection by step: the present generator before a step, and a copy of it from there on.
+    fn from_here(&self, step: u32, name: &str) -> Result<Vec<Edit>, Refusal> {
+        let select = self.root.get("select");
+        let single = self.root.get("generator").is_some();
+        let (present, edits) = match (select.map(|it| &it.value), single) {
+            (None, true) => ("first".to_owned(), Vec::new()),
+            (None, false) => match self.scene.generators.as_slice() {
+                [one] => (one.clone(), Vec::new()),
+                _ => return Err(Refusal::wrong("the rule has no selection to go on from")),
+            },
+            (Some(Value::Sequence(cases)), _) => {
+                let number = cases.len().saturating_sub(1);
+                let last = cases
+                    .last()
+                    .and_then(|case| case.get("use"))
+                    .and_then(Node::written);
+                let last = last.ok_or_else(|| Refusal::wrong("the selection has no last case"))?;
+                let at = below(&["select".into()], number);
+                let used = crate::document::node::scalar(last);
+                let case = format!("{{when: step < {step}, use: {used}}}");
+                (last.to_owned(), vec![Edit::set(at, case)])
+            }
+            _ => {
+                let message = "elements are selected by index or at random: from a step on, the text has to say so";
+                return Err(Refusal::wrong(message));
+            }
+        };
+        let mut all = self.add_generator(&present, name)?;
+        let new = crate::document::node::scalar(name);
+        match select.map(|it| &it.value) {
+            Some(Value::Sequence(cases)) => {
+                all.extend(edits);
+                all.push(Edit::insert(
+                    vec!["select".into()],
+                    cases.len(),
+                    format!("{{use: {new}}}"),
+                ));
+            }
+            _ => {
+                let old = crate::document::node::scalar(&present);
+                let cases = format!("[{{when: step < {step}, use: {old}}}, {{use: {new}}}]");
+                all.push(Edit::Add {
+                    to: Vec::new(),
+                    key: "select".into(),
+                    value: cases,
+                    after: Some("generators".into()),
+                });
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// Adds the places of all keys `use`.
+fn add_uses(node: &Node, at: &mut Vec<Step>, found: &mut Vec<(Vec<Step>, String)>) {
+    match &node.value {
+        Value::Sequence(items) => {
+            for (number, item) in items.iter().enumerate() {
+                at.push(number.into());
+                add_uses(item, at, found);
+                at.pop();
+            }
+        }
+        Value::Mapping(entries) => {
+            for (key, node) in entries {
+                at.push(Step::Key(key.name.clone()));
+                add_uses(node, at, found);
+                at.pop();
+                if let ("use", Some(name)) = (key.name.as_str(), node.written()) {
+                    found.push((below(at, "use"), name.to_owned()));
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Returns a value in flow style, with its numbers as they are written.
+fn plain(node: &Node) -> String {
+    crate::edit::flow(node)
+}

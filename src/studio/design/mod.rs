@@ -1,0 +1,131 @@
+//! Design by hand: initiators, generators, base elements and maps as points that a hand drags.
+//!
+//! This is the first state of Kaandorp's system (CWI CS-R8706, 1987, section 2.3). Every gesture becomes
+//! [edits](crate::edit) of the text, whose comments and layout stay; a gesture that would lead to a text with mistakes is
+//! refused.
+//!
+//! | module | content |
+//! |---|---|
+//! | `scene` | points and elements, with the places where they are written |
+//! | `maps` | maps of systems as parallelograms |
+//! | `names` | values of numbers, and what they depend on |
+//! | `drag` | a hand that drags: preview, end, and cancelling |
+//! | `snap`, `nice` | where a point comes to rest, and how it is written |
+//! | `solve` | parameters for which a point lies where it is dragged |
+//! | `act` | other gestures |
+
+mod act;
+mod drag;
+mod maps;
+mod names;
+mod nice;
+mod scene;
+mod snap;
+mod solve;
+
+use serde::Serialize;
+
+use crate::document::node::Node;
+use crate::edit::{Edit, Step, edit};
+use crate::kind::Kind;
+
+use super::answer::Refusal;
+use super::good::{Checked, Good, Reader};
+use super::look::Look;
+pub(super) use act::Act;
+pub(super) use drag::{Pointer, pointer};
+use names::Names;
+pub(super) use scene::Scene;
+
+/// What a hand does at present.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hand {
+    drag: Option<drag::Drag>,
+    /// What the last movement has done, in words.
+    pub(super) badge: Option<String>,
+    pub(super) selected: Option<Selected>,
+}
+
+/// What is selected.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(super) struct Selected {
+    panel: String,
+    /// `point`, `element` or `map`.
+    what: &'static str,
+    index: usize,
+}
+
+impl Hand {
+    /// Lets go of what is dragged.
+    pub(super) fn let_go(&mut self) {
+        self.drag = None;
+        self.badge = None;
+    }
+
+    /// Returns what the page shows of it.
+    pub(super) fn state(&self) -> serde_json::Value {
+        serde_json::json!({ "badge": self.badge, "selected": self.selected, "drags": self.drag.is_some() })
+    }
+}
+
+/// Returns the handles of a text.
+pub(super) fn scene(good: &Good, look: &Look) -> Scene {
+    let names = Names::of(&good.parameters, &look.set);
+    let builder = scene::Builder::new(&good.source, &good.node, names);
+    let why = match good.kind {
+        _ if good.is_in_space => "files in space are designed in their text",
+        Kind::Rule => return builder.rule(),
+        Kind::Ifs => return builder.system(),
+        _ => "files of this kind are designed in their text",
+    };
+    Scene {
+        why: Some(why.into()),
+        ..Scene::default()
+    }
+}
+
+/// Returns the text after a gesture.
+pub(super) fn acted(
+    reader: &Reader,
+    good: &Good,
+    look: &Look,
+    text: &str,
+    act: &Act,
+) -> Result<Checked, Refusal> {
+    let scene = scene(good, look);
+    let design = act::Design {
+        scene: &scene,
+        root: &good.node,
+    };
+    edited(reader, text, &design.edits(act)?)
+}
+
+/// Returns an edited text, which has no mistakes.
+fn edited(reader: &Reader, text: &str, edits: &[Edit]) -> Result<Checked, Refusal> {
+    let new = edit(text, edits).map_err(|error| Refusal::wrong(error.to_string()))?;
+    let checked = reader.check(new.into());
+    if checked.good.is_none() {
+        let first = checked.problems.iter().find(|it| it.is_error());
+        let message = first.map_or_else(
+            || "the text would have a mistake".into(),
+            |it| it.message.clone(),
+        );
+        return Err(Refusal::wrong(message));
+    }
+    Ok(checked)
+}
+
+/// Returns a value as it is written, on one line.
+fn source_text(node: &Node) -> String {
+    let text = node.place.text();
+    let is_flow = text.starts_with(['[', '{']) && !text.contains(['\n', '#']);
+    match node.value {
+        _ if is_flow => text.to_owned(),
+        _ => crate::edit::flow(node),
+    }
+}
+
+fn joined(at: &[Step]) -> String {
+    let all: Vec<_> = at.iter().map(Step::to_string).collect();
+    all.join("/")
+}

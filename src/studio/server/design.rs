@@ -1,0 +1,65 @@
+//! Gestures of the design.
+
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::super::answer::Refusal;
+use super::super::design::{self, Act, Pointer};
+use super::{Answer, Shared};
+
+/// An event of a pointer, from a tab.
+#[derive(Deserialize)]
+pub(super) struct Event {
+    #[serde(default)]
+    tab: String,
+    pointer: Pointer,
+    /// Revision of the text on which it is based.
+    revision: Option<u64>,
+}
+
+pub(super) async fn pointer(State(app): Shared, Json(event): Json<Event>) -> Answer {
+    let at = std::sync::Arc::new(std::sync::Mutex::new(None));
+    let own = std::sync::Arc::clone(&at);
+    let answer = app.change(event.tab, move |session| {
+        check(session.revision, event.revision)?;
+        let place = design::pointer(session, &event.pointer)?;
+        *own.lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner) = place;
+        Ok(())
+    });
+    let Json(mut state) = answer.await?;
+    let place = at
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
+        .take();
+    if let (Some(place), Value::Object(state)) = (place, &mut state) {
+        state.insert("place".into(), serde_json::json!(place));
+    }
+    Ok(Json(state))
+}
+
+fn check(now: u64, asked: Option<u64>) -> Result<(), Refusal> {
+    match asked.is_none_or(|asked| asked == now) {
+        true => Ok(()),
+        false => Err(Refusal::conflict("the text has changed in the meantime")),
+    }
+}
+
+/// A gesture, from a tab.
+#[derive(Deserialize)]
+pub(super) struct Gesture {
+    #[serde(default)]
+    tab: String,
+    gesture: Act,
+    revision: Option<u64>,
+}
+
+pub(super) async fn act(State(app): Shared, Json(asked): Json<Gesture>) -> Answer {
+    app.change(asked.tab, move |session| {
+        check(session.revision, asked.revision)?;
+        session.act(&asked.gesture)
+    })
+    .await
+}
