@@ -240,8 +240,16 @@ fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Ta
     match &asked {
         Edit::Set { .. } if is_scalar(old) => {
             let range = old.place.range();
+            let before = text[..range.start].trim_end();
+            let is_block = text[before.len()..range.start].contains('\n')
+                && before.ends_with(['>', '|', '-', '+']);
+            let first = if is_block {
+                before.len() - 2
+            } else {
+                range.start
+            };
             assert!(
-                start + 1 >= range.start.min(text.len()) && text.len() - end <= range.end + 1,
+                start + 1 >= first && text.len() - end <= range.end + 1,
                 "{asked:?}\n{new}"
             );
             if range.is_empty() {
@@ -252,6 +260,7 @@ fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Ta
             let quoted =
                 range.start > 0 && ["\"", "'"].contains(&&text[range.start - 1..range.start]);
             if !quoted
+                && !is_block
                 && !new.contains("\"uniform(-20, 20)\"")
                 && is_scalar(&meant)
                 && !own.contains('\n')
@@ -419,17 +428,17 @@ fn values_are_nested_with_their_comments() {
         key: "first".into(),
     };
     assert_eq!(
-        edit(text, &[nested.clone()]).unwrap(),
+        edit(text, std::slice::from_ref(&nested)).unwrap(),
         "a: 1\ngenerator: # mine\n  first:\n    # the start\n    - [0, 0]\n\n    - {to: [1, 0]} # end\nsteps: 3\n"
     );
     let beside = "generator:\n- [0, 0]\n- [1, 0]\n";
     assert_eq!(
-        edit(beside, &[nested.clone()]).unwrap(),
+        edit(beside, std::slice::from_ref(&nested)).unwrap(),
         "generator:\n  first:\n    - [0, 0]\n    - [1, 0]\n"
     );
     let short = "generator: koch # as it is\n";
     assert_eq!(
-        edit(short, &[nested.clone()]).unwrap(),
+        edit(short, std::slice::from_ref(&nested)).unwrap(),
         "generator:\n  first: koch # as it is\n"
     );
     let json = "{\"generator\": [[0, 0]]}";

@@ -83,7 +83,7 @@ impl<K> Resolver<K> {
     }
 
     /// Resolves a fractal, and returns how it grows. Reports mistakes and returns `None`.
-    fn grown(&mut self, document: &FractalDocument) -> Option<(Model, Growth<'static>)> {
+    pub(super) fn grown(&mut self, document: &FractalDocument) -> Option<(Model, Growth<'static>)> {
         let steps = document.steps.as_ref().map(|steps| self.steps(steps));
         let seed = self.seed(document.seed.as_ref());
         let settings = self.settings(document)?;
@@ -115,7 +115,12 @@ impl<K> Resolver<K> {
         Some((model, growth))
     }
 
-    fn graph(&mut self, document: &FractalDocument, model: &Model, steps: u32) -> Option<Graph> {
+    pub(super) fn graph(
+        &mut self,
+        document: &FractalDocument,
+        model: &Model,
+        steps: u32,
+    ) -> Option<Graph> {
         match model.compile(steps) {
             Ok(graph) => Some(graph),
             Err(error) => {

@@ -1,5 +1,6 @@
 //! Resolution of production rules.
 
+mod approximant;
 mod attitude;
 mod base_element;
 mod body;

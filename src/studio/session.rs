@@ -38,7 +38,7 @@ pub(super) struct Session {
     history: History,
     /// Text while a hand drags, which is no entry of the history yet.
     draft: Option<Arc<str>>,
-    /// What there was before a hand dragged.
+    /// State before a hand dragged.
     kept: Option<(Good, Look)>,
     pub(super) hand: Hand,
     /// Number of changes of the text.
@@ -160,7 +160,7 @@ impl Session {
         self.history.text()
     }
 
-    /// Returns what there was before a hand dragged.
+    /// Returns the state before a hand dragged.
     pub(super) fn kept(&self) -> Result<(&Good, &Look), Refusal> {
         match &self.kept {
             Some((good, look)) => Ok((good, look)),

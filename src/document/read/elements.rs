@@ -7,8 +7,9 @@ use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::rule::Entry;
-use crate::document::shape::{Form, KeySet, alternative};
-use crate::document::{BaseElementDocument, Written, WrittenNumber, WrittenPoint};
+use crate::document::shape::{Form, KeySet, Shape, alternative, keys};
+use crate::document::{BaseElementDocument, FractalDocument, Written, WrittenNumber, WrittenPoint};
+use crate::metadata::MAX_STEPS;
 
 use super::base_element::BASE_ELEMENT_OF;
 use super::space::{InSpace, only_in_space};
@@ -87,25 +88,51 @@ macro_rules! about_elements {
 
 pub(super) use about_elements;
 
-mapping! {
-    /// An initiator as written.
-    struct InitiatorDocument: INITIATOR = "an initiator",
-        "a name from the library (initiator: segment), a list of points, or \
-         {elements: [...], closed: true}";
-    space: InSpace = Form::Whole(2, Some(3)), "3 for an initiator in space, 2 or nothing for one in the plane.";
-    needed elements as entries: Vec<Entry> = ELEMENTS, about_elements!()
-        => "an initiator needs `elements`", "elements: [[0, 0], [1, 0]]";
-    closed: bool = Form::Flag(false),
-        "Whether one more element runs from the last point back to the first.";
-    connected: bool = Form::Flag(true), "Whether elements join each other at all.";
+/// An initiator as written.
+#[derive(Clone, Debug)]
+pub struct InitiatorDocument {
+    /// Points and elements; none where it is an approximant.
+    pub entries: Vec<Entry>,
+    /// Approximant of another rule whose elements it has.
+    pub approximant: Option<Box<FractalDocument>>,
+    /// Whether one more element runs from the last point back to the first.
+    pub closed: bool,
+    /// Whether elements join each other at all.
+    pub connected: bool,
+    /// Source span of the mapping.
+    pub place: Place,
 }
+
+/// Keys of an initiator.
+pub(in crate::document) const INITIATOR: Shape = Shape {
+    what: "an initiator",
+    keys: &[&keys![
+        space: Form::Whole(2, Some(3)), "3 for an initiator in space, 2 or nothing for one in the plane.";
+        elements: ELEMENTS, about_elements!();
+        from: Form::Grown,
+            "In place of `elements`: another production rule of the plane, by name, by file or written out. The elements of its \
+             approximant, with their directions, are those of the initiator.";
+        steps: Form::Whole(0, Some(MAX_STEPS)),
+            "Beside `from`: the number of steps of the approximant; that of the rule's file, if left out.";
+        seed: Form::Whole(0, None), "Beside `from`: the seed of random draws; 0 if left out.";
+        closed: Form::Flag(false),
+            "Whether one more element runs from the last point back to the first.";
+        connected: Form::Flag(true), "Whether elements join each other at all.";
+    ]],
+    alternatives: &[
+        alternative(&["elements"], &["from", "steps", "seed"]),
+        alternative(&["from"], &["elements", "closed", "connected"]),
+    ],
+    hint: "a name from the library (initiator: segment), a list of points, or \
+           {elements: [...], closed: true}",
+};
 
 impl InitiatorDocument {
     /// Returns an initiator with nothing but a list; an empty one stands for one that cannot be read.
     pub(super) fn listed(entries: Vec<Entry>, place: &Place) -> Self {
         Self {
-            space: InSpace,
             entries,
+            approximant: None,
             closed: false,
             connected: true,
             place: place.clone(),
@@ -123,9 +150,56 @@ pub(super) fn read_initiator(reader: &mut Reader, node: &Node) -> InitiatorDocum
             entries.map(|entries| InitiatorDocument::listed(entries, &node.place))
         }
         _ if reader.is_component(node) => None,
-        _ => InitiatorDocument::from_node(reader, node),
+        _ => read_keys(reader, node),
     };
     initiator.unwrap_or_else(|| InitiatorDocument::listed(Vec::new(), &node.place))
+}
+
+fn read_keys(reader: &mut Reader, node: &Node) -> Option<InitiatorDocument> {
+    let fields = reader.fields(node, &INITIATOR)?;
+    let _: Option<InSpace> = fields.read(reader, "space");
+    let approximant = fields.take("from");
+    let elements = fields.take("elements");
+    match (elements, approximant) {
+        (None, None) => {
+            let message = "an initiator needs `elements`";
+            let hint = "elements: [[0, 0], [1, 0]]";
+            reader.error_with_hint(&fields.place.first_line(), message, hint);
+            return None;
+        }
+        (Some(_), Some(_)) => reader.error_with_hint(
+            fields.place_of("from"),
+            "`from` and `elements` cannot stand together",
+            "leave out either: an approximant has its own elements",
+        ),
+        (Some(_), None) => {
+            for key in ["steps", "seed"] {
+                if let Some(node) = fields.take(key) {
+                    let message = format!("`{key}` belongs to an approximant");
+                    let hint = "{from: koch, steps: 3}";
+                    reader.error_with_hint(&node.place, message, hint);
+                }
+            }
+        }
+        (None, Some(from)) => {
+            if reader.is_in_space {
+                let message = "an approximant is an initiator in the plane only";
+                reader.error_with_hint(&from.place.first_line(), message, "write the elements out");
+            }
+            let approximant = FractalDocument::initiator(reader, &fields, from).map(Box::new);
+            return Some(InitiatorDocument {
+                approximant,
+                ..InitiatorDocument::listed(Vec::new(), &node.place)
+            });
+        }
+    }
+    Some(InitiatorDocument {
+        entries: fields.read(reader, "elements")?,
+        approximant: None,
+        closed: fields.read(reader, "closed")?,
+        connected: fields.read(reader, "connected")?,
+        place: node.place.clone(),
+    })
 }
 
 impl FromNode for Vec<Entry> {

@@ -256,25 +256,9 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
         let fields = reader.fields(node, &PLACE)?;
         Some(read_placing(reader, &fields))
     });
-    match node.value {
-        Value::Mapping(_) => {}
-        // Mistakes in the file have been reported.
-        Value::Text(_) => return None,
-        _ => {
-            reader.mismatch(node, "the name of a fractal", "{fractal: koch, steps: 3}");
-            return None;
-        }
-    }
-    let kind = match node.get("kind").map(|kind| &kind.value) {
-        Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
-        _ => Kind::Rule,
-    };
-    let mut inside = reader.inside();
-    let file = KindDocument::read(&mut inside, kind, node, true);
-    let is_sound = inside.is_sound(node);
-    reader.diagnostics.extend(inside.diagnostics);
+    let FractalFile { file, is_sound } = FractalFile::from_node(reader, node)?;
     Some(FormDocument::Fractal(Box::new(FractalDocument {
-        file: file?,
+        file,
         is_sound,
         steps,
         seed,
@@ -282,6 +266,57 @@ fn read_fractal(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option
         map,
         place: fields.place_of("fractal").clone(),
     })))
+}
+
+/// Content of a fractal's file.
+pub(super) struct FractalFile {
+    file: KindDocument,
+    is_sound: bool,
+}
+
+impl FromNode for FractalFile {
+    /// Reads a file that has been inlined in place of its name.
+    fn from_node(reader: &mut Reader, node: &Node) -> Option<Self> {
+        match node.value {
+            Value::Mapping(_) => {}
+            // Mistakes in the file have been reported.
+            Value::Text(_) => return None,
+            _ => {
+                reader.mismatch(node, "the name of a fractal", "{fractal: koch, steps: 3}");
+                return None;
+            }
+        }
+        let kind = match node.get("kind").map(|kind| &kind.value) {
+            Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
+            _ => Kind::Rule,
+        };
+        let mut inside = reader.inside();
+        let file = KindDocument::read(&mut inside, kind, node, true);
+        let is_sound = inside.is_sound(node);
+        reader.diagnostics.extend(inside.diagnostics);
+        Some(Self {
+            file: file?,
+            is_sound,
+        })
+    }
+}
+
+impl FractalDocument {
+    /// Reads the approximant of another fractal in which an initiator begins.
+    pub(super) fn initiator(reader: &mut Reader, fields: &Fields<'_>, node: &Node) -> Option<Self> {
+        let steps = fields.optional(reader, "steps");
+        let seed = fields.optional(reader, "seed");
+        let FractalFile { file, is_sound } = FractalFile::from_node(reader, node)?;
+        Some(Self {
+            file,
+            is_sound,
+            steps,
+            seed,
+            set: Vec::new(),
+            map: None,
+            place: fields.place_of("from").clone(),
+        })
+    }
 }
 
 /// Reads values of parameters by name.

@@ -218,13 +218,22 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     pub(super) fn initiator(&mut self, document: &RuleDocument) -> (Vec<F::Coordinates>, Part) {
         let initiator = &document.initiator;
         let mut written = Vec::new();
+        let grown = { initiator.approximant.as_ref() }
+            .map(|document| self.approximant(document).unwrap_or_default());
+        let entries = grown.as_ref().map(|(entries, _)| entries.as_slice());
         let mut elements = self.elements(
-            &initiator.entries,
+            entries.unwrap_or(&initiator.entries),
             initiator.closed,
             initiator.connected,
             &mut written,
             true,
         );
+        for (element, joined) in elements
+            .iter_mut()
+            .zip(grown.iter().flat_map(|(_, joins)| joins))
+        {
+            element.joined = *joined;
+        }
         self.append_vectors(elements.iter_mut(), &mut written);
         let unknown = || F::splat(&Program::unknown());
         let programs = written.iter();

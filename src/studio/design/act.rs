@@ -83,11 +83,13 @@ pub(in crate::studio) enum Act {
     },
 }
 
-/// What edits are made of.
+/// Design from which gestures make edits.
 pub(super) struct Design<'a> {
     pub(super) scene: &'a Scene,
     /// The assembled document.
     pub(super) root: &'a Node,
+    /// The values of the file alone.
+    pub(super) raw: &'a Node,
 }
 
 /// Keys of elements with their defaults.
@@ -130,7 +132,7 @@ impl Design<'_> {
     }
 
     fn entry(&self, panel: &Panel, entry: usize) -> Result<&Node, Refusal> {
-        let found = find(self.root, &below(&panel.list, entry));
+        let found = find(self.raw, &below(&panel.list, entry));
         found.ok_or_else(|| Refusal::wrong("there is no such entry"))
     }
 
@@ -153,7 +155,7 @@ impl Design<'_> {
             Act::AddGenerator { from, name } => self.add_generator(from, name),
             Act::RenameGenerator { from, to } => Ok(self.rename(from, to)),
             Act::RemoveGenerator { name } => self.remove_generator(name),
-            Act::FromHere { step, name } => self.from_here(*step, name),
+            Act::FromHere { step, name } => self.later(*step, name),
             Act::Set { at, value } => Ok(vec![match find(self.root, &steps(at)) {
                 Some(_) => Edit::set(steps(at), value),
                 None => {
@@ -263,6 +265,9 @@ impl Design<'_> {
     fn join(&self, panel: &Panel, point: usize) -> Result<Vec<Edit>, Refusal> {
         let ends = |it: &&Element| it.to == point && it.entry.is_some();
         let all: Vec<_> = panel.elements.iter().filter(ends).collect();
+        if panel.role == Role::Maps && point < panel.points.len() {
+            return Ok(vec![Edit::remove(below(&panel.list, point))]);
+        }
         let Value::Sequence(entries) = &find(self.root, &panel.list)
             .ok_or_else(|| Refusal::wrong("there is no such list"))?
             .value
@@ -357,10 +362,12 @@ impl Design<'_> {
         }
         let all: Vec<_> = points.iter().map(|[x, y]| format!("[{x}, {y}]")).collect();
         let list = format!("[{}]", all.join(", "));
-        let whole = match panel.role {
-            Role::Generator | Role::Maps => None,
-            Role::Initiator => Some(("elements", ["initiator".into()])),
-            Role::BaseElement => Some(("points", ["base_element".into()])),
+        let whole = match panel.list.first() {
+            Some(Step::Key(key)) if key == "initiator" => Some(("elements", [key.as_str().into()])),
+            Some(Step::Key(key)) if key == "base_element" => {
+                Some(("points", [key.as_str().into()]))
+            }
+            _ => None,
         };
         Ok(vec![match whole {
             Some((key, at)) if closes || panel.closed || panel.why.is_some() || key == "points" => {
@@ -403,7 +410,30 @@ impl Design<'_> {
         Ok(vec![Edit::set(at, text)])
     }
 
+    /// Adds a copy of a generator, to the selection too: the two take turns where there is none yet.
     fn add_generator(&self, from: &str, name: &str) -> Result<Vec<Edit>, Refusal> {
+        let mut edits = self.copy(from, name)?;
+        let [old, new] = [from, name].map(crate::document::node::scalar);
+        let select = || vec![Step::from("select")];
+        match self.root.get("select") {
+            None => edits.push(Edit::Add {
+                to: Vec::new(),
+                key: "select".into(),
+                value: format!("{{by_index: [{old}, {new}]}}"),
+                after: Some("generators".into()),
+            }),
+            Some(node) => {
+                if let Some(Value::Sequence(items)) = node.get("by_index").map(|it| &it.value) {
+                    edits.push(Edit::insert(below(&select(), "by_index"), items.len(), new));
+                } else if node.get("at_random").is_some() {
+                    edits.push(Edit::add(below(&select(), "at_random"), name, "1"));
+                }
+            }
+        }
+        Ok(edits)
+    }
+
+    fn copy(&self, from: &str, name: &str) -> Result<Vec<Edit>, Refusal> {
         let single = self.root.get("generator");
         let mut edits = Vec::new();
         let node = match single {
@@ -413,10 +443,14 @@ impl Design<'_> {
                     key: from.to_owned(),
                 });
                 edits.push(Edit::rename(vec!["generator".into()], "generators"));
-                node
+                self.raw.get("generator").filter(is_written).unwrap_or(node)
             }
-            None => find(self.root, &["generators".into(), from.into()])
-                .ok_or_else(|| Refusal::wrong(format!("there is no generator '{from}'")))?,
+            None => {
+                let at = ["generators".into(), from.into()];
+                let raw = find(self.raw, &at).filter(is_written);
+                raw.or_else(|| find(self.root, &at))
+                    .ok_or_else(|| Refusal::wrong(format!("there is no generator '{from}'")))?
+            }
         };
         edits.push(Edit::add(vec!["generators".into()], name, plain(node)));
         Ok(edits)
@@ -490,7 +524,7 @@ impl Design<'_> {
     }
 
     /// Writes a selection by step: the present generator before a step, and a copy of it from there on.
-    fn from_here(&self, step: u32, name: &str) -> Result<Vec<Edit>, Refusal> {
+    fn later(&self, step: u32, name: &str) -> Result<Vec<Edit>, Refusal> {
         let select = self.root.get("select");
         let single = self.root.get("generator").is_some();
         let (present, edits) = match (select.map(|it| &it.value), single) {
@@ -509,35 +543,29 @@ impl Design<'_> {
                 let at = below(&["select".into()], number);
                 let used = crate::document::node::scalar(last);
                 let case = format!("{{when: step < {step}, use: {used}}}");
-                (last.to_owned(), vec![Edit::set(at, case)])
+                let edits = vec![
+                    Edit::set(below(&at, "use"), crate::document::node::scalar(name)),
+                    Edit::insert(vec!["select".into()], number, case),
+                ];
+                (last.to_owned(), edits)
             }
             _ => {
                 let message = "elements are selected by index or at random: from a step on, the text has to say so";
                 return Err(Refusal::wrong(message));
             }
         };
-        let mut all = self.add_generator(&present, name)?;
-        let new = crate::document::node::scalar(name);
-        match select.map(|it| &it.value) {
-            Some(Value::Sequence(cases)) => {
-                all.extend(edits);
-                all.push(Edit::insert(
-                    vec!["select".into()],
-                    cases.len(),
-                    format!("{{use: {new}}}"),
-                ));
-            }
-            _ => {
-                let old = crate::document::node::scalar(&present);
-                let cases = format!("[{{when: step < {step}, use: {old}}}, {{use: {new}}}]");
-                all.push(Edit::Add {
-                    to: Vec::new(),
-                    key: "select".into(),
-                    value: cases,
-                    after: Some("generators".into()),
-                });
-            }
+        let mut all = self.copy(&present, name)?;
+        if !edits.is_empty() {
+            all.extend(edits);
+            return Ok(all);
         }
+        let [old, new] = [present.as_str(), name].map(crate::document::node::scalar);
+        all.push(Edit::Add {
+            to: Vec::new(),
+            key: "select".into(),
+            value: format!("[{{when: step < {step}, use: {old}}}, {{use: {new}}}]"),
+            after: Some("generators".into()),
+        });
         Ok(all)
     }
 }
@@ -564,6 +592,11 @@ fn add_uses(node: &Node, at: &mut Vec<Step>, found: &mut Vec<(Vec<Step>, String)
         }
         _ => {}
     }
+}
+
+/// Returns whether a component is written out, and no name.
+fn is_written(node: &&Node) -> bool {
+    !matches!(node.value, Value::Text(_))
 }
 
 /// Returns a value in flow style, with its numbers as they are written.

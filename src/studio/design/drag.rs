@@ -355,6 +355,7 @@ impl Drag {
         let design = Design {
             scene: &self.scene,
             root: &root,
+            raw: &root,
         };
         let edits = design.place(&self.panel, point, [&text[0], &text[1]])?;
         let badge = format!(

@@ -134,7 +134,7 @@ pub(super) fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
     map.is_finite().then_some((map, basis))
 }
 
-/// What is dragged of a map.
+/// Part of a parallelogram that is dragged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Grip {
     /// The whole parallelogram.

@@ -37,16 +37,16 @@ pub(super) use drag::{Pointer, pointer};
 use names::Names;
 pub(super) use scene::Scene;
 
-/// What a hand does at present.
+/// State of the hand that designs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hand {
     drag: Option<drag::Drag>,
-    /// What the last movement has done, in words.
+    /// Effect of the last movement, in words.
     pub(super) badge: Option<String>,
     pub(super) selected: Option<Selected>,
 }
 
-/// What is selected.
+/// Selected handle.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Selected {
     panel: String,
@@ -71,7 +71,8 @@ impl Hand {
 /// Returns the handles of a text.
 pub(super) fn scene(good: &Good, look: &Look) -> Scene {
     let names = Names::of(&good.parameters, &look.set);
-    let builder = scene::Builder::new(&good.source, &good.node, names);
+    let raw = raw(good).unwrap_or_else(|_| Node::clone(&good.node));
+    let builder = scene::Builder::new(&good.source, &good.node, &raw, names);
     let why = match good.kind {
         _ if good.is_in_space => "files in space are designed in their text",
         Kind::Rule => return builder.rule(),
@@ -93,11 +94,18 @@ pub(super) fn acted(
     act: &Act,
 ) -> Result<Checked, Refusal> {
     let scene = scene(good, look);
+    let raw = raw(good)?;
     let design = act::Design {
         scene: &scene,
         root: &good.node,
+        raw: &raw,
     };
     edited(reader, text, &design.edits(act)?)
+}
+
+/// Returns the values of the file alone.
+fn raw(good: &Good) -> Result<Node, Refusal> {
+    Node::parse(&good.source).map_err(|_| Refusal::wrong("the text has mistakes"))
 }
 
 /// Returns an edited text, which has no mistakes.

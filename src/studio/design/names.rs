@@ -10,7 +10,7 @@ use crate::rule::ElementContext;
 
 use super::super::good::ParameterState;
 
-/// What a number depends on; the later ones include those before.
+/// Dependence of a number; the later ones include those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Basis {

@@ -1,7 +1,7 @@
 //! Numbers as a person writes them.
 
-/// Largest denominator of an expression.
-const DENOMINATORS: i64 = 12;
+/// Largest denominator of an expression: of the triangular grid of ninths, heights are multiples of sqrt(3)/18.
+const DENOMINATORS: i64 = 24;
 
 /// Largest numerator.
 const NUMERATORS: i64 = 48;
@@ -14,7 +14,7 @@ const ROOTS: [(&str, f64); 4] = [
     ("phi", 1.618_033_988_749_895),
 ];
 
-/// Returns the simplest expression of a value: a fraction with a denominator up to 12, or one of √2, √3 or the golden
+/// Returns the simplest expression of a value: a fraction with a denominator up to 24, or one of √2, √3 or the golden
 /// ratio; `None` if none is equal to it within 1e-9.
 pub(super) fn expression(value: f64) -> Option<String> {
     for (name, root) in ROOTS {
@@ -44,7 +44,7 @@ pub(super) fn expression(value: f64) -> Option<String> {
     None
 }
 
-/// Returns a number with as many decimals as a length tells.
+/// Returns a number with as many decimals as distinguish a length.
 pub(super) fn decimals(value: f64, length: f64) -> String {
     let digits = (-libm::log10(length.clamp(1e-9, 1.0)))
         .ceil()

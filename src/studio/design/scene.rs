@@ -28,7 +28,7 @@ pub(crate) struct Scene {
     pub(super) names: Names,
 }
 
-/// What a panel shows.
+/// Content of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Role {
@@ -95,6 +95,8 @@ pub(super) struct Element {
 pub(super) struct Builder<'a> {
     source: &'a Arc<Source>,
     root: &'a Node,
+    /// The values of the file alone.
+    raw: &'a Node,
     names: Names,
     scene: Scene,
 }
@@ -104,7 +106,12 @@ fn below(at: &[Step], more: &[Step]) -> Vec<Step> {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(source: &'a Arc<Source>, root: &'a Node, names: Names) -> Self {
+    pub(super) fn new(
+        source: &'a Arc<Source>,
+        root: &'a Node,
+        raw: &'a Node,
+        names: Names,
+    ) -> Self {
         let scene = Scene {
             names: names.clone(),
             ..Scene::default()
@@ -112,6 +119,7 @@ impl<'a> Builder<'a> {
         Self {
             source,
             root,
+            raw,
             names,
             scene,
         }
@@ -137,10 +145,51 @@ impl<'a> Builder<'a> {
 
     /// Shows an iterated function system.
     pub(super) fn system(mut self) -> Scene {
+        let vertices = ["vertices", "points"].map(Step::from);
+        if let Some(list) = find(self.root, &vertices) {
+            let mut panel = self.panel(&vertices, "Vertices", Role::Maps, list);
+            panel.id = "vertices".into();
+            if let Value::Sequence(points) = &list.value {
+                for (number, node) in points.iter().enumerate().take(MOST) {
+                    panel.add(node, below(&vertices, &[number.into()]));
+                }
+            }
+            let points = panel.points.iter().map(|point| [point.x, point.y]);
+            panel.window = window(points.chain([[0.0, 0.0], [1.0, 1.0]]));
+            self.scene.panels.push(panel);
+        }
+        self.maps();
+        self.condensation();
+        if self.scene.panels.is_empty() {
+            self.scene.why = Some(
+                "this system has neither maps nor vertices: it is designed in its text".into(),
+            );
+        }
+        self.scene
+    }
+
+    /// Shows condensation sets that are lines or polygons.
+    fn condensation(&mut self) {
+        let Some(Value::Sequence(sets)) = self.root.get("condensation").map(|it| &it.value) else {
+            return;
+        };
+        for (number, set) in sets.iter().enumerate() {
+            for form in ["segment", "polyline", "polygon"] {
+                if let Some(list) = set.get(form) {
+                    let at = ["condensation".into(), number.into(), form.into()];
+                    let title = format!("Condensation set {}: {form}", number + 1);
+                    let mut panel = self.panel(&at, &title, Role::BaseElement, list);
+                    self.fill(&mut panel, list, form == "polygon");
+                    self.scene.panels.push(panel);
+                }
+            }
+        }
+    }
+
+    fn maps(&mut self) {
         let at = [Step::from("maps")];
         let Some(node) = self.root.get("maps") else {
-            self.scene.why = Some("this system has no `maps`: it is designed in its text".into());
-            return self.scene;
+            return;
         };
         let mut panel = self.panel(&at, "Maps", Role::Maps, node);
         panel.maps = maps::handles(node, &at, &self.names);
@@ -150,7 +199,6 @@ impl<'a> Builder<'a> {
         let corners = panel.maps.iter().flat_map(maps::MapHandle::corners);
         panel.window = window(corners.chain([[0.0, 0.0], [1.0, 1.0]]));
         self.scene.panels.push(panel);
-        self.scene
     }
 
     fn panel(&self, at: &[Step], title: &str, role: Role, node: &Node) -> Panel {
@@ -304,7 +352,8 @@ impl<'a> Builder<'a> {
                 return;
             };
             if let Some(from) = from {
-                panel.elements.push(element(entry, from, to, number));
+                let raw = find(self.raw, &at).unwrap_or(entry);
+                panel.elements.push(element(raw, from, to, number));
             }
             end = Some(to);
         }
@@ -315,7 +364,8 @@ impl<'a> Builder<'a> {
             (more.direction, more.fertile, more.visible) = (1, true, true);
             panel.elements.push(more);
         }
-        if panel.role != Role::Initiator {
+        let is_set = panel.list.first() == Some(&"condensation".into());
+        if panel.role != Role::Initiator && !is_set {
             let ends = [[0.0, 0.0], [1.0, 0.0]];
             for point in &mut panel.points {
                 point.pinned = point.basis == Basis::Numbers && ends.contains(&[point.x, point.y]);
@@ -391,10 +441,8 @@ fn element(entry: &Node, from: usize, to: usize, number: usize) -> Element {
         visible: flag("visible"),
         connected: flag("connected"),
         generator: text("use"),
-        base_element: match entry.get("base_element") {
-            Some(node) => Some(node.written().unwrap_or("its own").to_owned()),
-            None => None,
-        },
+        base_element: { entry.get("base_element") }
+            .map(|node| node.written().unwrap_or("its own").to_owned()),
         entry: Some(number),
     }
 }
