@@ -163,7 +163,7 @@ try {
   check(!(await browser.value("document.querySelector('#ask').open")), "Escape closes them");
   await browser.value("document.querySelector('#tab-family').focus()");
   await browser.key("ArrowRight");
-  check((await browser.value("document.activeElement.id")) === "tab-style", "arrow keys change panels");
+  check((await browser.value("document.activeElement.id")) === "tab-design", "arrow keys change panels");
   await browser.value("document.querySelector('#picture').focus()");
   await changes(() => browser.key("0"), "0 shows all again");
 
@@ -280,6 +280,70 @@ try {
     await changes(() => browser.click("#back"), `${name} steps back`);
     await shoot(name);
   }
+
+  // Design by hand: drag, grid, draw, keys, Escape, and a table.
+  const MINE = "title: Mine # my own\ninitiator: segment\ngenerator:\n  - [0, 0]\n  - [1/2, 0.2] # apex\n  - [1, 0]\n";
+  writeFileSync(join(folder, "mine.yaml"), MINE);
+  const mine = await serve("mine.yaml");
+  studios.push(mine);
+  await open(mine.url);
+  await browser.click("#tab-design");
+  await browser.until("document.querySelectorAll('[data-panel=generator] circle').length === 3");
+  /** Returns the place on the screen of a point of a panel. */
+  const spot = (panel, x, y) => browser.value(`(() => { const figure = document.querySelector('[data-panel="${panel}"] svg'); const box = figure.getBoundingClientRect(); const [left, low, wide, high] = figure.dataset.view.split(' ').map(Number); const pixel = Math.max(wide / box.width, high / box.height); return [box.left + box.width / 2 + (${x} - left - wide / 2) / pixel, box.top + box.height / 2 - (${y} - low - high / 2) / pixel]; })()`);
+  const becomes = (text, what) => browser.until(`document.querySelector('#code').value === ${JSON.stringify(text)}`).catch(async () => { throw new Error(`${what}: ${await value("#code")}`); }).then(() => (checks += 1));
+  await browser.value("(() => { document.querySelector('#design-parts').value = 6; const grid = document.querySelector('#design-grid'); grid.value = 'triangular'; grid.dispatchEvent(new Event('change')); })()");
+  await changes(async () => browser.drag(await spot("generator", 0.5, 0.2), await spot("generator", 0.51, 0.28)), "a drag changes the picture");
+  const apex = MINE.replace("0.2]", "sqrt(3)/6]");
+  await becomes(apex, "a point snaps to the grid and is written nicely");
+  check((await text("#design-badge")).includes("sqrt(3)/6"), "the badge has what is written");
+  await shoot("design");
+  const [x, y] = await spot("generator", 0.5, 0.2887);
+  await browser.pointer("mousePressed", x, y);
+  await browser.pointer("mouseMoved", x + 90, y - 60);
+  await browser.until(`document.querySelector('#code').value !== ${JSON.stringify(apex)}`);
+  await browser.key("Escape");
+  await becomes(apex, "Escape takes a drag back");
+  await browser.pointer("mouseReleased", x + 90, y - 60);
+  await browser.click("[data-panel=generator] button:nth-of-type(1)");
+  for (const [x, y] of [[1 / 3, 0.01], [0.5, 0.29], [2 / 3, -0.01]]) {
+    const at = await spot("generator", x, y);
+    const count = await browser.value("document.querySelectorAll('[data-panel=generator] .handle.chosen').length");
+    await browser.pointer("mousePressed", ...at, { clickCount: 1 });
+    await browser.pointer("mouseReleased", ...at, { clickCount: 1 });
+    await browser.until(`document.querySelectorAll('[data-panel=generator] .handle.chosen').length > ${count}`);
+  }
+  await shoot("drawing");
+  await browser.key("Enter");
+  const koch = MINE.replace("  - [1/2, 0.2] # apex\n", "  - [1/3, 0] # apex\n  - [1/2, sqrt(3)/6]\n  - [2/3, 0]\n");
+  await becomes(koch, "clicks and Enter draw the Koch curve");
+  // By keyboard alone: a point, then an element.
+  await browser.value("document.querySelector('[data-panel=generator] svg').focus()");
+  /** Goes to a handle by keys. */
+  const reach = async (name) => {
+    for (let step = 0; step < 20 && (await browser.value("document.querySelector('#design-chosen b')?.textContent")) !== name; step += 1) await browser.key(".");
+    check((await text("#design-chosen b")) === name, `a full stop goes on to ${name}`);
+  };
+  await reach("Point 2");
+  await browser.value("(() => { const grid = document.querySelector('#design-grid'); grid.value = 'square'; grid.dispatchEvent(new Event('change')); document.querySelector('[data-panel=generator] svg').focus(); })()");
+  await browser.key("ArrowUp");
+  const raised = koch.replace("[1/2, sqrt(3)/6]", "[1/2, 1/2]");
+  await becomes(raised, "an arrow key moves a point by a cell of the grid");
+  await reach("Element 1");
+  await browser.key("2");
+  await becomes(raised.replace("  - [1/3, 0] #", "  - {to: [1/3, 0], direction: 2} #"), "2 is a direction");
+  await browser.key("1");
+  await becomes(raised, "1 makes it a point again");
+  await browser.value("(() => { document.querySelector('#design-table').open = true; })()");
+  await browser.until("document.querySelectorAll('#design-rows input').length > 9");
+  await browser.value("(() => { const field = document.querySelector('#design-rows input[aria-label=\"y of point 2\"]'); field.value = '-1/4'; field.dispatchEvent(new Event('change')); })()");
+  await becomes(raised.replace("[1/2, 1/2]", "[1/2, -1/4]"), "a field of the table is written");
+  await shoot("design-table");
+  for (let step = 0; step < 30 && (await value("#code")) !== MINE; step += 1) {
+    await browser.key("z", { modifiers: 2 });
+    await new Promise((resolve) => setTimeout(resolve, 80));
+  }
+  await becomes(MINE, "undo brings back every byte");
 
   // Dark, narrow, and with reduced motion.
   await browser.prefer({ "prefers-color-scheme": "dark", "prefers-reduced-motion": "reduce" });
