@@ -150,6 +150,7 @@ impl Document {
     }
 
     /// Returns the values of the file, with those of its parents and components.
+    #[cfg(feature = "studio")]
     pub(crate) fn node(&self) -> &Node {
         &self.node
     }

@@ -263,6 +263,7 @@ pub fn find<'n>(node: &'n Node, at: &[Step]) -> Option<&'n Node> {
 }
 
 /// Writes a value in flow style on one line, with its numbers as they are written.
+#[cfg(feature = "studio")]
 pub(crate) fn flow(node: &Node) -> String {
     intended::flow(node, false)
 }
