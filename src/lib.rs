@@ -138,6 +138,8 @@ pub mod expression;
 pub mod extent;
 mod fast_hash;
 pub mod figure;
+#[cfg(feature = "cli")]
+mod film;
 pub mod fit;
 mod fractal;
 pub mod geometry;

@@ -205,6 +205,19 @@ impl Model {
         }
     }
 
+    /// Returns the model whose step `steps` is drawn while it grows, as [`Rule::between`] does; `None` for models other
+    /// than production rules.
+    #[must_use]
+    pub fn between(&self, steps: u32, share: f64) -> Option<Self> {
+        match self {
+            Self::Rule(rule) => Some(Self::Rule(Arc::new(rule.between(steps, share)))),
+            Self::RuleInSpace(rule) => {
+                Some(Self::RuleInSpace(Arc::new(rule.between(steps, share))))
+            }
+            _ => None,
+        }
+    }
+
     /// Compiles the model to a graph that is resolved for at least `steps` steps, with the seed 0 and the
     /// limit [`MAX_ELEMENTS`](Self::MAX_ELEMENTS) where these matter.
     ///

@@ -19,6 +19,7 @@ mod edits;
 mod estimates;
 mod exact;
 mod figures;
+mod films;
 mod fit;
 mod gallery;
 mod ifs_model;

@@ -8,7 +8,7 @@ use crate::style::{Camera, Named, Shade, Slice, SpaceView};
 
 use super::picture::named;
 use super::rule::Loaded;
-use super::{Failure, space};
+use super::{Failure, number, space};
 
 /// Options of sets in space.
 #[derive(clap::Args)]
@@ -47,7 +47,7 @@ pub(super) struct SpaceArguments {
     #[arg(long, value_name = "AZ,EL", value_parser = direction, allow_hyphen_values = true)]
     light: Option<[f64; 2]>,
     /// Intensity of what the light does not reach, from 0 to 1 [default: 0.15, and 0 with --shade cosine]
-    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SHARE", value_parser = number::share, allow_hyphen_values = true)]
     ambient: Option<f64>,
     /// Darken what is enclosed by its surroundings, by the depths of the pixels
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
@@ -247,10 +247,4 @@ fn angle(text: &str) -> Result<f64, String> {
     let angle = text.parse::<f64>().ok();
     let angle = angle.filter(|angle| (1.0..=150.0).contains(angle));
     angle.ok_or_else(|| "an angle of view is a number of degrees from 1 to 150".into())
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    let share = text.parse::<f64>().ok();
-    let share = share.filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "expected a number from 0 to 1".into())
 }

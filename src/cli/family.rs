@@ -4,6 +4,7 @@ use crate::document::Setting;
 use crate::expression::{Expression, PARTS, Scope};
 
 use super::Failure;
+use super::animate::Moment;
 
 /// Parameter with its values. A complex parameter has one part each for the real and the imaginary values.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,14 +29,22 @@ enum Values {
     Several(Vec<f64>),
     /// First and last value of a range.
     Range([f64; 2]),
+    /// Coordinate of a point that moves once around a circle, counter-clockwise from the right: centre, radius, and whether
+    /// it is the imaginary one.
+    Circle(f64, f64, bool),
 }
 
-/// Parses `NAME=VALUE`, `NAME=VALUE,VALUE` or `NAME=VALUE..VALUE`; a value is a number or `[RE,IM]`.
+/// Parses `NAME=VALUE`, `NAME=VALUE,VALUE`, `NAME=VALUE..VALUE` or `NAME=circle([RE,IM],RADIUS)`; a value is a number or
+/// `[RE,IM]`.
 pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     let (name, written) = text.split_once('=').ok_or("write NAME=VALUE")?;
     let (name, written) = (name.trim().to_owned(), written.trim());
     if written.starts_with('[') {
         let parts = complex(&name, written)?;
+        return Ok(Assignment { name, parts });
+    }
+    if let Some(inside) = written.strip_prefix("circle(") {
+        let parts = circle(&name, inside)?;
         return Ok(Assignment { name, parts });
     }
     let values = match (value(written), written.split_once("..")) {
@@ -110,6 +119,37 @@ fn complex(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
     PARTS.into_iter().zip(sides).map(part).collect()
 }
 
+/// Parses a circle of complex values, after `circle(`.
+fn circle(name: &str, inside: &str) -> Result<Vec<ParameterPart>, String> {
+    const FORM: &str = "a circle of complex values is written circle([RE,IM],RADIUS)";
+    let (centre, radius) = inside
+        .strip_suffix(')')
+        .and_then(|inside| inside.rsplit_once(','))
+        .ok_or(FORM)?;
+    let radius = value(radius.trim())?;
+    let centre = complex(name, centre.trim())?;
+    let parts = centre.into_iter().enumerate();
+    let part = |(number, part): (usize, ParameterPart)| match part.values {
+        Values::One(centre) => Ok(ParameterPart {
+            values: Values::Circle(centre, radius, number == 1),
+            written: None,
+            ..part
+        }),
+        _ => Err(FORM.to_owned()),
+    };
+    parts.map(part).collect()
+}
+
+/// Returns a coordinate of a point on a circle after a share of the way around it.
+fn on_circle(centre: f64, radius: f64, is_imaginary: bool, share: f64) -> f64 {
+    let angle = std::f64::consts::TAU * share;
+    let unit = match is_imaginary {
+        false => libm::cos(angle),
+        true => libm::sin(angle),
+    };
+    centre + radius * unit
+}
+
 pub(crate) fn value(text: &str) -> Result<f64, String> {
     let program = Expression::parse(text)
         .and_then(|expression| expression.compile(&Scope::new()))
@@ -137,6 +177,36 @@ impl Assignment {
     }
 }
 
+/// Parameter that changes in the course of a film, or one that does not.
+pub(super) struct Track<'a>(&'a ParameterPart);
+
+impl Assignment {
+    /// Iterates over the parameters.
+    pub(super) fn tracks(&self) -> impl Iterator<Item = Track<'_>> {
+        self.parts.iter().map(Track)
+    }
+}
+
+impl Track<'_> {
+    /// Returns whether the value changes.
+    pub(super) fn changes(&self) -> bool {
+        !matches!(self.0.values, Values::One(_))
+    }
+
+    /// Returns the setting at a moment, as on the command line.
+    pub(super) fn at(&self, moment: &Moment) -> String {
+        let value = match &self.0.values {
+            Values::One(value) => return format!("{}={value}", self.0.name),
+            Values::Several(values) => moment.between(values, true),
+            Values::Range(ends) => moment.between(ends, false),
+            Values::Circle(centre, radius, is_imaginary) => {
+                on_circle(*centre, *radius, *is_imaginary, moment.share())
+            }
+        };
+        format!("{}={}", self.0.name, plain(value))
+    }
+}
+
 impl ParameterPart {
     fn setting(&self) -> Option<Setting> {
         match self.values {
@@ -144,7 +214,7 @@ impl ParameterPart {
                 written: self.written.clone(),
                 ..self.with(value)
             }),
-            Values::Several(_) | Values::Range(_) => None,
+            Values::Several(_) | Values::Range(_) | Values::Circle(..) => None,
         }
     }
 
@@ -171,13 +241,18 @@ impl ParameterPart {
                 };
                 (0..=most).map(value).collect()
             }
+            // The first value is not repeated at the end.
+            Values::Circle(centre, radius, is_imaginary) => (0..samples)
+                .map(|sample| f64::from(sample) / f64::from(samples))
+                .map(|share| plain(on_circle(*centre, *radius, *is_imaginary, share)))
+                .collect(),
         };
         Some(values.into_iter().map(|value| self.with(value)).collect())
     }
 }
 
 /// Rounds away the last digits, which are rounding errors: 0.56, not 0.5599999999999999.
-fn plain(value: f64) -> f64 {
+pub(super) fn plain(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 

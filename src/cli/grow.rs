@@ -59,6 +59,11 @@ pub(super) struct Arguments {
     /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
+    /// Draws the last step of a rule while it grows, at a share of its way from 0 to 1
+    ///
+    /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
+    #[arg(long, value_name = "SHARE", requires = "steps", value_parser = number::share, allow_negative_numbers = true)]
+    between: Option<f64>,
     /// Stops replacing elements that are smaller than this number of pixels
     ///
     /// Without --steps, growth continues until all elements are smaller. L-systems that start anew at every
@@ -254,7 +259,16 @@ impl Arguments {
     }
 
     /// Writes what the plan asks for; returns the path, a summary and the number of bytes.
-    fn grow(&self, plan: &Plan, loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+    fn grow(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+        if let (Some(share), Some(steps)) = (self.between, self.steps) {
+            loaded.model = loaded.model.between(steps, share).ok_or_else(|| {
+                let message = format!(
+                    "--between applies to production rules, and {} is another kind",
+                    loaded.name
+                );
+                Failure::Usage(message)
+            })?;
+        }
         if loaded.model.is_in_space() {
             let loaded = loaded.grown(&self.growth);
             return match *plan {
@@ -325,9 +339,10 @@ impl Arguments {
         }
     }
 
-    /// Returns the turn, if one is given, with its value.
-    fn turn_option(&self) -> Option<(&'static str, String)> {
-        self.turn.map(|turn| ("turn", turn.to_string()))
+    /// Returns the turn, and the share of the last step, with their values where they are given.
+    fn own_options(&self) -> impl Iterator<Item = (&'static str, String)> + use<> {
+        let all = [("turn", self.turn), ("between", self.between)];
+        { all.into_iter() }.filter_map(|(name, value)| Some((name, value?.to_string())))
     }
 
     /// Prints what has been written, unless messages are suppressed.

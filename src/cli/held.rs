@@ -17,6 +17,8 @@ pub(crate) struct Held {
     pub(crate) png: PngEncoding,
     /// Largest number of bytes of standard output.
     pub(crate) most: usize,
+    /// Whether a picture of the plane is not drawn: only its numbers are found.
+    pub(crate) surveys: bool,
     done: Mutex<Done>,
 }
 
@@ -37,6 +39,8 @@ pub(crate) struct Done {
     pub(crate) sight: Option<Sight>,
     /// Width and height of a picture.
     pub(crate) size: [u32; 2],
+    /// Text from which a picture that is surveyed can be made again.
+    pub(crate) provenance: Option<String>,
 }
 
 impl Held {

@@ -1,5 +1,7 @@
 //! Labels in the files of pictures: title, description and provenance, enough to reproduce the picture.
 
+use std::fmt::Display;
+
 use crate::render;
 
 use super::rule::Loaded;
@@ -10,7 +12,7 @@ pub(super) fn labels(
     loaded: &Loaded,
     shown: &str,
     subcommand: &str,
-    options: impl IntoIterator<Item = (&'static str, String)>,
+    options: impl IntoIterator<Item = (impl Display, String)>,
 ) -> render::Labels {
     let description = &loaded.model.metadata().description;
     let title = description
@@ -61,14 +63,22 @@ fn add_content(provenance: &mut String, loaded: &Loaded) {
 fn command(
     loaded: &Loaded,
     subcommand: &str,
-    options: impl IntoIterator<Item = (&'static str, String)>,
+    options: impl IntoIterator<Item = (impl Display, String)>,
 ) -> String {
     let file = quoted(&format!("{}.yaml", loaded.name));
     let mut command = format!("kfrac {subcommand} {file}");
     let settings = loaded.settings.iter();
-    let settings = settings.map(|setting| ("set", format!("{}={}", setting.name, setting.value)));
+    let settings = settings.map(|setting| {
+        (
+            "set".to_owned(),
+            format!("{}={}", setting.name, setting.value),
+        )
+    });
     let omitted: Vec<_> = loaded.omitted.iter().map(u32::to_string).collect();
-    let omitted = (!omitted.is_empty()).then(|| ("omit", omitted.join(",")));
+    let omitted = (!omitted.is_empty()).then(|| ("omit".to_owned(), omitted.join(",")));
+    let options = options
+        .into_iter()
+        .map(|(name, value)| (name.to_string(), value));
     for (name, value) in settings.chain(omitted).chain(options) {
         command.push_str(&format!(" --{name}"));
         // An equals sign allows values that begin with a minus; flags have no value.

@@ -1,5 +1,6 @@
 //! Command line: one module per subcommand, and helpers that they share.
 
+mod animate;
 mod camera;
 mod cat;
 pub(crate) mod check;
@@ -80,6 +81,7 @@ struct Arguments {
 enum Command {
     Grow(Box<grow::Arguments>),
     Sheet(Box<sheet::Arguments>),
+    Animate(Box<animate::Arguments>),
     Show(show::Arguments),
     Info(info::Arguments),
     Count(count::Arguments),
@@ -234,6 +236,7 @@ pub fn run() -> ExitCode {
         Command::Grow(arguments) => grow::run(arguments, &catalogue),
         Command::Show(arguments) => show::run(arguments, &catalogue),
         Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
+        Command::Animate(arguments) => animate::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Count(arguments) => count::run(arguments, &catalogue),
         Command::Dim(arguments) => dim::run(arguments, &catalogue),

@@ -28,3 +28,10 @@ pub(super) fn degrees(text: &str) -> Result<f64, String> {
     let degrees = text.parse::<f64>().ok().filter(|it| it.is_finite());
     degrees.ok_or_else(|| "expected a number of degrees".into())
 }
+
+/// Parses a number from 0 to 1.
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse::<f64>().ok();
+    let share = share.filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "expected a number from 0 to 1".into())
+}

@@ -58,6 +58,20 @@ pub struct Labels {
     pub provenance: String,
 }
 
+impl Labels {
+    /// Iterates over the texts of PNG and its relatives, with their keywords: those that are not empty.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let all = [
+            ("Title", self.title.as_str()),
+            ("Description", &self.description),
+            ("Software", concat!("kfrac ", env!("CARGO_PKG_VERSION"))),
+            ("Comment", &self.provenance),
+        ];
+        let texts = all.into_iter().filter(|(_, text)| !text.is_empty());
+        texts.map(|(keyword, text)| (keyword, text.replace('\0', "")))
+    }
+}
+
 /// Options of a picture.
 #[derive(Clone, Debug)]
 #[non_exhaustive]

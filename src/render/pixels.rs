@@ -13,6 +13,8 @@ use super::cells::DrawingMethod;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::options::{Labels, Options, PngEncoding};
+#[cfg(feature = "cli")]
+use super::picture::Picture;
 use super::plot::Plot;
 use super::png::{Png, TooManyPixels, write_pixels};
 
@@ -109,6 +111,23 @@ impl Pixels {
         write_pixels(&pixmap, labels, encoding, &mut png)?;
         Ok(png)
     }
+}
+
+/// Returns the numbers of the picture of a graph without drawing it.
+///
+/// # Errors
+///
+/// As for [`write`](super::write).
+#[cfg(feature = "cli")]
+pub(crate) fn survey(
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+) -> Result<Picture, RenderError> {
+    Ok(match DrawingMethod::find(graph, growth, options)? {
+        DrawingMethod::Elements(layout) => layout.picture(None),
+        DrawingMethod::Cells(cells) => cells.picture(),
+    })
 }
 
 /// Grows a graph and draws the approximant as pixels in memory, of any size that

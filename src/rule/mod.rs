@@ -9,6 +9,7 @@ mod body;
 mod extent;
 mod frame;
 mod generator;
+mod growing;
 mod selection;
 
 pub use crate::geometry::{BaseElement, Piece, arc};

@@ -88,8 +88,18 @@ impl<'a> Drawing<'a> {
         {
             (arguments.growth).check_picture(steps, &graph, loaded, &options)?;
         }
-        self.note_beforehand(&graph, &options);
         let place = *graph.place();
+        let surveys = matches!(self.shown, ShownPart::Window);
+        let held = arguments.growth.held.as_ref();
+        if let Some(held) = held.filter(|held| held.surveys && surveys) {
+            let picture = self
+                .surveyed(graph)
+                .map_err(|error| arguments.growth.explain(error, loaded, path))?;
+            held.note_picture(&picture, Some(&place));
+            held.done().provenance = Some(options.labels.provenance);
+            return Ok((summary(&picture, arguments.size.unit), 0));
+        }
+        self.note_beforehand(&graph, &options);
         let ((picture, drawn), bytes) = arguments.write_picture(path, |out, progress| {
             let explain = |error| arguments.growth.explain(error, loaded, path);
             if is_light {
@@ -139,6 +149,19 @@ impl<'a> Drawing<'a> {
                     }
                     _ => render::write(graph, &growth, &options, &mut out),
                 }
+            },
+        )
+    }
+
+    /// Returns the numbers of the picture without drawing it.
+    fn surveyed(&self, graph: Graph) -> Result<Picture, RenderError> {
+        let options = self.options(self.goal, graph.place());
+        self.goal.reach(
+            graph,
+            |steps| self.loaded.graph(steps),
+            |graph, steps| {
+                let growth = self.arguments.growth.drawn_as(&options, steps, None);
+                render::survey(graph, &growth, &options)
             },
         )
     }
@@ -280,7 +303,7 @@ impl<'a> Drawing<'a> {
         options.extend(svg.options());
         options.push(("size", size.to_string()));
         options.extend(zoom.options());
-        options.extend(self.arguments.turn_option());
+        options.extend(self.arguments.own_options());
         options.extend(picture.options());
         let Paper { size, unit } = *size;
         let view = picture.view_in(self.loaded.model.metadata(), unit);

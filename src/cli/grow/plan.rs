@@ -213,6 +213,10 @@ impl Plan {
             "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them",
         )?;
         refuse(
+            zoom.is_asked() && arguments.between.is_some(),
+            "--zoom draws whole steps, and --between a part of one: give only one of them",
+        )?;
+        refuse(
             zoom.is_asked() && picture.has_view(),
             "--zoom and --at cannot be combined with --view: each selects what is shown",
         )?;

@@ -177,6 +177,7 @@ fn options(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static
             .map(|detail| ("detail", detail.to_string())),
     );
     options.push(("size", arguments.size.to_string()));
+    options.extend(arguments.own_options());
     options.extend(arguments.zoom.options());
     options.extend(arguments.picture.options());
     options.extend(arguments.space.options());

@@ -79,17 +79,8 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
             encoder.set_trns(colours.iter().map(|colour| colour[3]).collect::<Vec<_>>());
         }
     }
-    for (keyword, text) in [
-        ("Title", labels.title.as_str()),
-        ("Description", &labels.description),
-        ("Software", concat!("kfrac ", env!("CARGO_PKG_VERSION"))),
-        ("Comment", &labels.provenance),
-    ] {
-        if !text.is_empty() {
-            encoder
-                .add_itxt_chunk(keyword.into(), text.replace('\0', ""))
-                .map_err(io_error)?;
-        }
+    for (keyword, text) in labels.texts() {
+        (encoder.add_itxt_chunk(keyword.into(), text)).map_err(io_error)?;
     }
     let mut writer = encoder.write_header().map_err(io_error)?;
     let mut stream = writer.stream_writer().map_err(io_error)?;
@@ -122,10 +113,17 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
 
 /// Writes pixels without encoding them.
 fn write_raw(pixmap: &Pixmap, out: &mut impl Write) -> io::Result<()> {
-    let mut row = Vec::with_capacity(4 * pixmap.width() as usize);
-    for pixels in pixmap.pixels().chunks_exact(pixmap.width() as usize) {
+    let width = pixmap.width() as usize;
+    let mut row = Vec::with_capacity(4 * width);
+    let rows = pixmap.data().chunks_exact(4 * width);
+    for (bytes, pixels) in rows.zip(pixmap.pixels().chunks_exact(width)) {
         row.clear();
-        row.extend(pixels.iter().flat_map(|&pixel| rgba(pixel)));
+        row.extend_from_slice(bytes);
+        // Most pixels are opaque or empty, and need no division.
+        let values = row.as_chunks_mut::<4>().0.iter_mut().zip(pixels);
+        for (values, &pixel) in values.filter(|(values, _)| !matches!(values[3], 0 | 255)) {
+            *values = rgba(pixel);
+        }
         out.write_all(&row)?;
     }
     Ok(())

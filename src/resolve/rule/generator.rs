@@ -112,6 +112,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             points,
             moves,
             parts,
+            growing: None,
         }
     }
 

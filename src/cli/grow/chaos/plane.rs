@@ -109,6 +109,13 @@ impl<'a> PlaneGame<'a> {
         let size = arguments.size.size;
         let explain = |error: RenderError| self.iteration.explain(error, path);
         let canvas = self.canvas(size).map_err(explain)?;
+        let held = self.iteration.arguments.growth.held.as_ref();
+        if let Some(held) = held {
+            held.note_window(&canvas, &self.iteration.place);
+        }
+        if held.is_some_and(|held| held.surveys) {
+            return Ok(String::new());
+        }
         let game = self.iteration.game(progress);
         let window = HistogramWindow {
             to_pixels: canvas.to_pixels(),
@@ -141,9 +148,6 @@ impl<'a> PlaneGame<'a> {
             inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
         };
         let [width, height] = canvas.size();
-        if let Some(held) = &self.iteration.arguments.growth.held {
-            held.note_window(&canvas, &self.iteration.place);
-        }
         Ok(format!(
             "{}, {described}{inside}, {width} x {height} pixels",
             self.iteration.loaded.name

@@ -85,7 +85,9 @@ impl Hairs {
             return 0;
         };
         let taken = cell.load(Relaxed);
-        cell.store(0, Relaxed);
+        if taken != 0 {
+            cell.store(0, Relaxed);
+        }
         taken
     }
 
@@ -95,9 +97,7 @@ impl Hairs {
     }
 
     fn make_room(&mut self, count: usize) {
-        self.cells = std::iter::repeat_with(|| AtomicU32::new(0))
-            .take(count)
-            .collect();
+        self.cells = bytemuck::zeroed_vec(count);
     }
 
     /// Returns whether no cell absorbs anything.

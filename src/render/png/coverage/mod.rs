@@ -128,7 +128,8 @@ impl CoverageBuffer {
             size,
             top,
             stride,
-            cells: (0..stride * rows).map(|_| AtomicU64::new(0)).collect(),
+            // Memory that is zero already, and taken where anything is covered.
+            cells: bytemuck::zeroed_slice_box(stride * rows),
             hairs: Hairs::default(),
             touched: Touched::NOTHING,
             scratch: Vec::new(),

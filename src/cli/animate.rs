@@ -1,0 +1,164 @@
+//! `kfrac animate`: films of families, of growth, of zooms, and of turns in space.
+
+mod endless;
+mod fit;
+mod frames;
+mod passed;
+mod plan;
+mod target;
+mod timeline;
+mod video;
+
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueHint;
+
+use crate::catalogue::Catalogue;
+use crate::film::Rate;
+
+use super::family::Assignment;
+use super::length::Paper;
+use super::rule::{Loaded, RuleArguments};
+use super::steps::Several;
+use super::{Failure, growth, help, length, number, picture, rule, steps, text};
+use fit::Fit;
+use passed::FrameOptions;
+use plan::{Seeds, Zooms};
+use target::Format;
+use timeline::{Ease, Keys};
+
+pub(super) use timeline::Moment;
+
+/// Draws a film: a family of fractals, growth, a zoom, or a turn in space
+///
+/// Every frame is the picture that `kfrac grow` draws with the values of its moment. Ranges such as angle=10..80 and lists
+/// such as angle=10,80,40 change in the course of the film, any number of them together. The output file appears complete
+/// or not at all, and its bytes do not depend on the number of threads.
+#[derive(clap::Args)]
+#[command(after_long_help = help::styled(MORE))]
+pub(super) struct Arguments {
+    /// Rule file, name of a rule in the library, or - for standard input
+    #[arg(value_name = "RULE")]
+    rule: PathBuf,
+    /// Output file, or - for standard output [default: NAME.gif]
+    ///
+    /// .gif, .png or .apng for an animated PNG, .y4m for other encoders, .mp4 and .webm by the program ffmpeg if it is
+    /// installed. A name with a number, as film-%04d.png, is a PNG for each frame; those of the plane that exist already, drawn
+    /// by an equal command, are kept.
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<PathBuf>,
+    /// Output format [default: from the extension of the file]
+    #[arg(long, value_parser = picture::named::<Format>())]
+    format: Option<Format>,
+    /// Sets a parameter of the rule, or changes it; may be given several times
+    ///
+    /// As angle=30, angle=10..80, angle=10,80,40, s=[0,0.5]..[0.5,0.5], or s=circle([0,0],0.7) for a complex parameter that
+    /// moves once around a circle.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = super::family::assignment)]
+    set: Vec<Assignment>,
+    /// Number of steps, or several as 0..6, between which a rule grows
+    ///
+    /// In a production rule, the elements of a step move from the elements that they replace to their places. Other systems
+    /// change from step to step at once.
+    #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
+    steps: Option<Several>,
+    /// Changes from step to step at once
+    #[arg(long, requires = "steps")]
+    cuts: bool,
+    /// Seed of random draws, or several as 1..24, each for an equal part of the film
+    #[arg(long, value_name = "S", default_value = "0", value_parser = Seeds::parse)]
+    seed: Seeds,
+    /// Magnification, from one to another as 1..1e100, or loop: the period of the address --at, which repeats exactly
+    #[arg(long, value_name = "ZOOM", value_parser = Zooms::parse)]
+    zoom: Option<Zooms>,
+    /// Degrees by which a set of the plane is turned, as 0..360
+    #[arg(long, value_name = "DEGREES", value_parser = Keys::parse, allow_hyphen_values = true)]
+    turn: Option<Keys>,
+    /// Azimuth and elevation in degrees from which a set in space is seen, as 0..360,25
+    #[arg(long, value_name = "AZ,EL", value_parser = timeline::direction, allow_hyphen_values = true)]
+    from: Option<[Keys; 2]>,
+    /// Number of frames in which something changes [default: 60, or the number of seeds]
+    #[arg(long, value_name = "N", value_parser = number::whole("a number of frames", 1..=100_000_u32))]
+    frames: Option<u32>,
+    /// Frames a second
+    #[arg(long, value_name = "F", default_value = "30", value_parser = timeline::rate)]
+    fps: Rate,
+    /// The first frame follows the last one: a range such as angle=0..360 has no last value, a list returns to its first
+    #[arg(long = "loop", conflicts_with = "bounce")]
+    is_loop: bool,
+    /// The second half of the film goes back
+    #[arg(long)]
+    bounce: bool,
+    /// Number of further frames for which the first and the last one are kept, each
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = number::whole("a number of frames", 0..=10_000_u32))]
+    hold: u32,
+    /// Course of time between key frames [default: in-out, or linear with --loop, --zoom and --seed]
+    #[arg(long, value_parser = picture::named::<Ease>())]
+    ease: Option<Ease>,
+    /// Passes through the key frames of a list on a smooth curve, without rest
+    #[arg(long)]
+    smooth: bool,
+    /// Part of the plane that is shown: what all frames need, or each frame its own
+    #[arg(long, value_parser = picture::named::<Fit>(), default_value = "all")]
+    fit: Fit,
+    /// Shows the film once, not without end
+    #[arg(long)]
+    once: bool,
+    /// Numbers of the frames to draw, from 0, of a film in PNGs: 30..40
+    #[arg(long, value_name = "FRAMES", value_parser = steps::parse_several)]
+    only: Option<Several>,
+    /// Long side of the frames in pixels, or WIDTHxHEIGHT
+    #[arg(long, value_name = "SIZE", default_value = "640", value_parser = length::paper, help_heading = "Picture")]
+    size: Paper,
+    /// Number of threads, each of which draws a frame [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = growth::threads, allow_negative_numbers = true)]
+    threads: Option<NonZero<usize>>,
+    /// Suppresses all messages except errors
+    #[arg(long, short)]
+    quiet: bool,
+    #[command(flatten)]
+    others: FrameOptions,
+}
+
+const MORE: &str = "\
+Examples:
+  kfrac animate pythagoras --set angle=20..70 --bounce -o sway.gif
+      Bends the Pythagoras tree to and fro
+  kfrac animate complex-pair --set 's=circle([0,0],0.72)' --loop --frames 120 -o orbit.png
+      Leads a complex parameter around a circle, as an animated PNG without end
+  kfrac animate koch-snowflake --steps 0..5 --frames 150 -o grow.gif
+      Grows the snowflake, step by step
+  kfrac animate koch --zoom loop --at '0.(1)' --detail 0.5 -o endless.gif
+      Magnifies a curve without end
+  kfrac animate koch --zoom 1..1e100 --at '0.(1)' --frames 900 -o deep.mp4
+      Magnifies it by a factor of 1e100, by ffmpeg
+  kfrac animate random-tree --seed 1..24 --fps 4 -o trees.gif
+      Shows 24 individuals of a random tree
+  kfrac animate menger --from 0..360,25 --loop -o turn.gif
+      Turns a set in space
+  kfrac animate pythagoras --set angle=20..70 -o - | ffmpeg -i - -pix_fmt yuv420p sway.mp4
+      Pipes the frames to an encoder, with its own options
+  kfrac animate pythagoras --set angle=20..70 --only 30..40 -o sway-%04d.png
+      Draws eleven frames, each into a file
+";
+
+pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let start = Instant::now();
+    let source = rule::open(&arguments.rule, catalogue)?;
+    let named = RuleArguments {
+        rule: arguments.rule.clone(),
+        set: Vec::new(),
+        omit: Vec::new(),
+    };
+    let loaded: Loaded = named.load_from(&source, catalogue, arguments.quiet)?;
+    let default = named.file("", "gif");
+    let path = arguments.output.as_ref().unwrap_or(&default);
+    let film = plan::film(arguments, &loaded, source, catalogue, path)?;
+    let report = target::write(arguments, film, &loaded, path)?;
+    if !arguments.quiet {
+        text::print_message(&format!("{report}, {:.2} s", start.elapsed().as_secs_f64()));
+    }
+    Ok(())
+}

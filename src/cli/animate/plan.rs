@@ -1,0 +1,304 @@
+//! Plan of a film: the arguments of `kfrac grow` for every frame.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
+
+use crate::catalogue::Catalogue;
+use crate::diagnostic::Source;
+use crate::parallel::all_cores;
+use crate::zoom::Factor;
+
+use super::super::family::Assignment;
+use super::super::rule::Loaded;
+use super::super::{Failure, number};
+use super::frames::Frames;
+use super::timeline::{Ease, Keys, Moment, Timeline};
+use super::{Arguments, endless, fit};
+
+/// Film whose frames are known.
+pub(super) struct Film<'a> {
+    pub(super) frames: Frames<'a>,
+    /// Width and height in pixels.
+    pub(super) size: [u32; 2],
+}
+
+/// Seeds of a film.
+#[derive(Clone, Debug)]
+pub(super) struct Seeds(Vec<u64>);
+
+impl Seeds {
+    /// Parses seeds: one, a range such as `1..24`, or a list.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        const MOST: u64 = 100_000;
+        let seed = number::whole("a seed", 0..=u64::MAX);
+        let Some((first, last)) = text.split_once("..") else {
+            let seeds: Result<Vec<u64>, _> = text.split(',').map(|it| seed(it.trim())).collect();
+            return seeds.map(Self);
+        };
+        let (first, last) = (seed(first.trim())?, seed(last.trim())?);
+        match last.checked_sub(first) {
+            Some(more) if more < MOST => Ok(Self((first..=last).collect())),
+            Some(_) => Err(format!("a film has up to {MOST} seeds")),
+            None => Err("write the smaller seed first".into()),
+        }
+    }
+
+    /// Returns the number of seeds.
+    fn count(&self) -> u32 {
+        u32::try_from(self.0.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Returns the seed of a frame of several.
+    fn at(&self, frame: u32, frames: u32) -> u64 {
+        let at = u64::from(frame) * u64::from(self.count()) / u64::from(frames);
+        self.0[usize::try_from(at).unwrap_or_default()]
+    }
+}
+
+/// Magnifications of a film.
+#[derive(Clone, Debug)]
+pub(super) enum Zooms {
+    One(Factor),
+    Range([Factor; 2]),
+    /// Period of the address.
+    Loop,
+}
+
+impl Zooms {
+    /// Parses a magnification, two of them, or `loop`.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let factor = |text: &str| text.trim().parse::<Factor>().map_err(|it| it.to_string());
+        match text.split_once("..") {
+            _ if text == "loop" => Ok(Self::Loop),
+            Some((first, last)) => Ok(Self::Range([factor(first)?, factor(last)?])),
+            None => factor(text).map(Self::One),
+        }
+    }
+}
+
+/// Course of the magnification, and of the turn that belongs to it.
+struct Course {
+    /// Decimal logarithms at the start and at the end.
+    digits: [f64; 2],
+    /// Degrees at the start and at the end.
+    turn: [f64; 2],
+}
+
+impl Course {
+    fn of(arguments: &Arguments, loaded: &Loaded) -> Result<Option<Self>, Failure> {
+        let digits = |factor: &Factor| factor.log2() * std::f64::consts::LOG10_2;
+        Ok(match &arguments.zoom {
+            None => None,
+            Some(Zooms::One(factor)) => Some(Self {
+                digits: [digits(factor); 2],
+                turn: [0.0; 2],
+            }),
+            Some(Zooms::Range([first, last])) => Some(Self {
+                digits: [digits(first), digits(last)],
+                turn: [0.0; 2],
+            }),
+            Some(Zooms::Loop) => {
+                let period = endless::period(arguments, loaded)?;
+                Some(Self {
+                    digits: period.digits,
+                    turn: [0.0, period.turn],
+                })
+            }
+        })
+    }
+
+    /// Returns the factor at a share of the way, with 15 digits.
+    fn factor(&self, share: f64) -> String {
+        let digits = self.digits[0] + (self.digits[1] - self.digits[0]) * share;
+        let whole = digits.floor();
+        let mantissa = libm::exp10(digits - whole);
+        if (0.0..6.0).contains(&whole) {
+            return format!(
+                "{}",
+                super::super::family::plain(mantissa * libm::exp10(whole))
+            );
+        }
+        format!("{mantissa:.14}e{whole}")
+    }
+}
+
+/// Returns the film of arguments.
+pub(super) fn film<'a>(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    source: Arc<Source>,
+    catalogue: &'a Catalogue,
+    path: &Path,
+) -> Result<Film<'a>, Failure> {
+    check(arguments, loaded)?;
+    let timeline = timeline(arguments);
+    timeline.check()?;
+    let course = Course::of(arguments, loaded)?;
+    let common = common(arguments, loaded);
+    let frame = |number: u32| {
+        let moment = timeline.moment(number);
+        let own = at(arguments, loaded, &moment, &timeline, course.as_ref());
+        [common.as_slice(), &own].concat()
+    };
+    let mut frames = Frames {
+        catalogue,
+        source,
+        arguments: (0..timeline.count()).map(frame).collect(),
+        threads: arguments.threads.unwrap_or_else(all_cores),
+        drawn: AtomicU32::new(0),
+    };
+    let size = fit::fit(arguments, loaded, &mut frames, path)?;
+    Ok(Film { frames, size })
+}
+
+/// Refuses options that exclude each other, and films in which nothing changes.
+fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
+    let is_in_space = loaded.model.is_in_space();
+    let wrong = |message: String| Err(Failure::Usage(message));
+    if is_in_space && arguments.turn.is_some() {
+        return wrong(format!(
+            "--turn turns sets of the plane, and {} lies in space: --from turns it",
+            loaded.name
+        ));
+    }
+    if !is_in_space && arguments.from.is_some() {
+        return wrong(format!(
+            "--from applies to sets in space, and {} lies in the plane: --turn turns it",
+            loaded.name
+        ));
+    }
+    if matches!(arguments.zoom, Some(Zooms::Loop)) && arguments.turn.is_some() {
+        return wrong("--zoom loop turns the picture by itself: leave out --turn".into());
+    }
+    if arguments.zoom.is_some()
+        && arguments
+            .steps
+            .as_ref()
+            .is_some_and(|it| it.as_slice().len() > 1)
+    {
+        return wrong("--zoom draws whole steps: give one number of --steps, or none".into());
+    }
+    let swept = { arguments.set.iter() }
+        .flat_map(Assignment::tracks)
+        .any(|it| it.changes());
+    let several = |it: &super::Several| it.as_slice().len() > 1;
+    let changes = [
+        swept,
+        arguments.steps.as_ref().is_some_and(several),
+        arguments.seed.count() > 1,
+        !matches!(arguments.zoom, None | Some(Zooms::One(_))),
+        arguments.turn.as_ref().is_some_and(Keys::changes),
+        arguments.from.iter().flatten().any(Keys::changes),
+    ];
+    match changes.contains(&true) {
+        true => Ok(()),
+        false => wrong(
+            "nothing changes in the film: give a range to --set, --steps, --zoom, --seed, --turn or --from".into(),
+        ),
+    }
+}
+
+fn timeline(arguments: &Arguments) -> Timeline {
+    let seeds = arguments.seed.count();
+    let is_endless = matches!(arguments.zoom, Some(Zooms::Loop));
+    let is_even = arguments.is_loop || arguments.zoom.is_some() || seeds > 1;
+    let default = if is_even { Ease::Linear } else { Ease::InOut };
+    Timeline {
+        frames: arguments
+            .frames
+            .unwrap_or(if seeds > 1 { seeds } else { 60 }),
+        is_loop: arguments.is_loop || is_endless,
+        bounces: arguments.bounce,
+        hold: arguments.hold,
+        ease: arguments.ease.unwrap_or(default),
+        is_smooth: arguments.smooth,
+    }
+}
+
+/// Returns the arguments of all frames: the rule, and options that do not change.
+fn common(arguments: &Arguments, loaded: &Loaded) -> Vec<String> {
+    let mut common = vec![arguments.rule.display().to_string()];
+    common.extend_from_slice(arguments.others.arguments());
+    common.extend(["--threads=1", "--format=png", "--output=-"].map(String::from));
+    let style = &loaded.model.metadata().style;
+    if !loaded.model.is_in_space()
+        && style.background.is_none()
+        && !arguments.others.gives("background")
+    {
+        common.push("--background=white".into());
+    }
+    common
+}
+
+/// Returns the arguments of one frame.
+fn at(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    moment: &Moment,
+    timeline: &Timeline,
+    course: Option<&Course>,
+) -> Vec<String> {
+    let mut own = Vec::new();
+    let tracks = arguments.set.iter().flat_map(Assignment::tracks);
+    own.extend(tracks.map(|track| format!("--set={}", track.at(moment))));
+    own.push(format!(
+        "--seed={}",
+        arguments.seed.at(moment.number, timeline.frames)
+    ));
+    own.extend(
+        { arguments.steps.iter() }.flat_map(|it| steps(arguments, loaded, it.as_slice(), moment)),
+    );
+    let mut turn = { arguments.turn.as_ref() }.map(|keys| keys.at(moment));
+    if let Some(course) = course {
+        let share = moment.share();
+        own.push(format!("--zoom={}", course.factor(share)));
+        if course.turn[1] != 0.0 {
+            turn = Some(super::super::family::plain(course.turn[1] * share));
+        }
+    }
+    own.extend(turn.map(|turn| format!("--turn={turn}")));
+    if let Some([azimuth, elevation]) = &arguments.from {
+        own.push(format!(
+            "--from={},{}",
+            azimuth.at(moment),
+            elevation.at(moment)
+        ));
+    }
+    own
+}
+
+/// Returns the options of the number of steps at a moment.
+fn steps(arguments: &Arguments, loaded: &Loaded, all: &[u32], moment: &Moment) -> Vec<String> {
+    let last = all.len() - 1;
+    let keys: Vec<f64> = (0..all.len())
+        .map(|at| f64::from(u32::try_from(at).unwrap_or(u32::MAX)))
+        .collect();
+    if arguments.cuts || !grows(loaded) {
+        // Each step takes an equal part of the film.
+        let at = moment.share() * (keys[last] + 1.0);
+        return vec![format!("--steps={}", all[index(at).min(last)])];
+    }
+    let at = moment.between(&keys, false);
+    let before = index(at + 1e-9).min(last);
+    let share = super::super::family::plain(at - keys[before]);
+    let (from, to) = (all[before], all[(before + 1).min(last)]);
+    if share <= 1e-9 || to != from + 1 {
+        return vec![format!("--steps={from}")];
+    }
+    vec![format!("--steps={to}"), format!("--between={share}")]
+}
+
+/// Returns whether a step may be drawn while it grows.
+fn grows(loaded: &Loaded) -> bool {
+    loaded.model.between(1, 1.0).is_some()
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small and not negative"
+)]
+fn index(value: f64) -> usize {
+    value as usize
+}

@@ -1,0 +1,74 @@
+//! YUV4MPEG2: frames without compression, for other encoders.
+
+use std::io::{self, Write};
+
+use super::{Film, FilmOptions, on_white};
+
+/// Encoder of YUV4MPEG2: three planes of full size a frame, in the limited range of ITU-R BT.601, on white paper.
+pub(crate) struct Y4m<W> {
+    out: W,
+    planes: [Vec<u8>; 3],
+}
+
+impl<W: Write> Y4m<W> {
+    /// Begins a film.
+    pub(crate) fn begin(mut out: W, options: &FilmOptions) -> io::Result<Self> {
+        let [width, height] = options.size;
+        let rate = options.rate;
+        writeln!(
+            out,
+            "YUV4MPEG2 W{width} H{height} F{}:{} Ip A1:1 C444 XCOLORRANGE=LIMITED",
+            rate.frames, rate.seconds
+        )?;
+        Ok(Self {
+            out,
+            planes: Default::default(),
+        })
+    }
+}
+
+impl<W: Write> Film for Y4m<W> {
+    fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
+        self.planes.iter_mut().for_each(Vec::clear);
+        for &pixel in pixels.as_chunks::<4>().0 {
+            for (plane, value) in self.planes.iter_mut().zip(converted(on_white(pixel))) {
+                plane.push(value);
+            }
+        }
+        self.out.write_all(b"FRAME\n")?;
+        { self.planes.iter() }.try_for_each(|plane| self.out.write_all(plane))
+    }
+
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Returns luma and both differences of a colour, rounded.
+fn converted(colour: [u8; 3]) -> [u8; 3] {
+    const WEIGHTS: [([i32; 3], i32); 3] = [
+        ([16_829, 33_039, 6_416], 16),
+        ([-9_714, -19_070, 28_784], 128),
+        ([28_784, -24_103, -4_681], 128),
+    ];
+    WEIGHTS.map(|(weights, zero)| {
+        let sum: i32 = { weights.iter().zip(colour) }
+            .map(|(weight, it)| weight * i32::from(it))
+            .sum();
+        u8::try_from(((sum + (1 << 15)) >> 16) + zero).unwrap_or(u8::MAX)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::converted;
+
+    #[test]
+    fn colours_have_the_values_of_the_standard() {
+        assert_eq!(converted([255; 3]), [235, 128, 128]);
+        assert_eq!(converted([0; 3]), [16, 128, 128]);
+        assert_eq!(converted([255, 0, 0]), [81, 90, 240]);
+        assert_eq!(converted([0, 255, 0]), [145, 54, 34]);
+        assert_eq!(converted([0, 0, 255]), [41, 240, 110]);
+    }
+}
