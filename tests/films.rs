@@ -86,10 +86,13 @@ fn all_formats_hold_all_frames_on_any_number_of_threads() {
             file,
         ];
         succeeds(folder, &[&rule[..], &size].concat());
+    };
+    let read = |file: &str, threads: &str| {
+        film(file, threads);
         fs::read(folder.join(file)).unwrap()
     };
     for file in ["film.gif", "film.png", "film.y4m"] {
-        assert!(film(file, "1") == film(file, "2"), "{file}");
+        assert!(read(file, "1") == read(file, "2"), "{file}");
     }
     film("frame%d.png", "2");
     let frames: Vec<Vec<u8>> = (0..7)
@@ -227,7 +230,7 @@ fn steps_grow_out_of_the_ones_before() {
             "{rule}"
         );
     }
-    // At the start, the Koch curve lies on the one before.
+    // At the start, the Koch curve lies on the one before. Its strokes are shorter, and round off at their joins.
     let picture = |more: &[&str]| {
         let options = [
             "--size",
@@ -243,7 +246,7 @@ fn steps_grow_out_of_the_ones_before() {
     let before = picture(&["--steps", "3"]);
     let start = picture(&["--steps", "4", "--between", "0"]);
     let apart = before.iter().zip(&start).map(|(a, b)| a.abs_diff(*b)).max();
-    assert!(apart.unwrap() <= 2, "{apart:?}");
+    assert!(apart.unwrap() <= 8, "{apart:?}");
     // A growing rule in space, to the pixel.
     succeeds(
         folder,
@@ -315,8 +318,8 @@ fn impossible_films_are_refused_and_leave_nothing() {
             2,
             "larger than",
         ),
-        (&["pythagoras", "--set", "angle=20..700"], 1, "angle"),
-        (&["pythagoras", "--set", "angel=20..70"], 1, "angle"),
+        (&["pythagoras", "--set", "angle=20..700"], 2, "angle"),
+        (&["pythagoras", "--set", "angel=20..70"], 2, "angle"),
         (
             &["pythagoras", "--set", "angle=20..70", "--fps", "60"],
             1,

@@ -34,5 +34,5 @@ kfrac show monkeys-tree -o monkeys-tree-rule.svg
 kfrac animate tree-libeskind-hadas --set angle=-8..28 --bounce --frames 48 --size 320 -o bending-tree.gif
 kfrac animate pythagoras --steps 0..9 --hold 15 --frames 90 --size 360 --color-by step --palette earth-to-leaf -o growing-tree.gif
 kfrac animate koch-snowflake --zoom loop --at '0.(1)' --detail 0.5 --frames 48 --size 320x240 --stroke-width 1.5 -o endless-koch.gif
-kfrac animate complex-pair --set 's=circle([0,0],0.7)' --loop --frames 90 --size 240 -o orbit.gif
+kfrac animate complex-pair --set 's=circle([0,0],0.7)' --loop --frames 60 --size 240 -o orbit.gif
 kfrac animate menger --from 0..90,25 --loop --frames 36 --shade both --size 240x240 -o turning-sponge.gif
