@@ -197,7 +197,9 @@ fn endless_zooms_close() {
             apart / frame.len() as f64 > 1.0,
             "{rule} at {at} moves by {apart}"
         );
-        ["zoom0.png", "zoom1.png"].map(|it| fs::remove_file(folder.join(it)).unwrap());
+        for file in ["zoom0.png", "zoom1.png"] {
+            fs::remove_file(folder.join(file)).unwrap();
+        }
     }
 }
 

@@ -15,7 +15,9 @@
 //! | `act` | other gestures |
 
 mod act;
+mod builder;
 mod drag;
+mod generators;
 mod maps;
 mod names;
 mod nice;
@@ -72,7 +74,7 @@ impl Hand {
 pub(super) fn scene(good: &Good, look: &Look) -> Scene {
     let names = Names::of(&good.parameters, &look.set);
     let raw = raw(good).unwrap_or_else(|_| Node::clone(&good.node));
-    let builder = scene::Builder::new(&good.source, &good.node, &raw, names);
+    let builder = builder::Builder::new(&good.source, &good.node, &raw, names);
     let why = match good.kind {
         _ if good.is_in_space => "files in space are designed in their text",
         Kind::Rule => return builder.rule(),

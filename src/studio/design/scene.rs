@@ -1,12 +1,9 @@
 //! Handles of a design: points and elements, with the places in the text that they edit.
 
-use std::sync::Arc;
-
 use serde::Serialize;
 
-use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
-use crate::edit::{Step, find};
+use crate::edit::Step;
 
 use super::maps;
 use super::names::{Basis, Names};
@@ -91,294 +88,9 @@ pub(super) struct Element {
     pub(super) entry: Option<usize>,
 }
 
-/// Builds a scene from an assembled document of the plane.
-pub(super) struct Builder<'a> {
-    source: &'a Arc<Source>,
-    root: &'a Node,
-    /// The values of the file alone.
-    raw: &'a Node,
-    names: Names,
-    scene: Scene,
-}
-
-fn below(at: &[Step], more: &[Step]) -> Vec<Step> {
-    at.iter().chain(more).cloned().collect()
-}
-
-impl<'a> Builder<'a> {
-    pub(super) fn new(
-        source: &'a Arc<Source>,
-        root: &'a Node,
-        raw: &'a Node,
-        names: Names,
-    ) -> Self {
-        let scene = Scene {
-            names: names.clone(),
-            ..Scene::default()
-        };
-        Self {
-            source,
-            root,
-            raw,
-            names,
-            scene,
-        }
-    }
-
-    /// Shows a production rule.
-    pub(super) fn rule(mut self) -> Scene {
-        self.component("initiator", "Initiator", Role::Initiator);
-        if find(self.root, &["generator".into()]).is_some() {
-            self.generator(&["generator".into()], "Generator");
-        }
-        if let Some(Value::Mapping(entries)) = self.root.get("generators").map(|it| &it.value) {
-            for (key, _) in entries {
-                let at = ["generators".into(), Step::Key(key.name.clone())];
-                self.scene.generators.push(key.name.clone());
-                self.generator(&at, &key.name);
-            }
-        }
-        self.component("base_element", "Base element", Role::BaseElement);
-        self.scene.select = self.root.get("select").map(json);
-        self.scene
-    }
-
-    /// Shows an iterated function system.
-    pub(super) fn system(mut self) -> Scene {
-        let vertices = ["vertices", "points"].map(Step::from);
-        if let Some(list) = find(self.root, &vertices) {
-            let mut panel = self.panel(&vertices, "Vertices", Role::Maps, list);
-            panel.id = "vertices".into();
-            if let Value::Sequence(points) = &list.value {
-                for (number, node) in points.iter().enumerate().take(MOST) {
-                    panel.add(node, below(&vertices, &[number.into()]));
-                }
-            }
-            let points = panel.points.iter().map(|point| [point.x, point.y]);
-            panel.window = window(points.chain([[0.0, 0.0], [1.0, 1.0]]));
-            self.scene.panels.push(panel);
-        }
-        self.maps();
-        self.condensation();
-        if self.scene.panels.is_empty() {
-            self.scene.why = Some(
-                "this system has neither maps nor vertices: it is designed in its text".into(),
-            );
-        }
-        self.scene
-    }
-
-    /// Shows condensation sets that are lines or polygons.
-    fn condensation(&mut self) {
-        let Some(Value::Sequence(sets)) = self.root.get("condensation").map(|it| &it.value) else {
-            return;
-        };
-        for (number, set) in sets.iter().enumerate() {
-            for form in ["segment", "polyline", "polygon"] {
-                if let Some(list) = set.get(form) {
-                    let at = ["condensation".into(), number.into(), form.into()];
-                    let title = format!("Condensation set {}: {form}", number + 1);
-                    let mut panel = self.panel(&at, &title, Role::BaseElement, list);
-                    self.fill(&mut panel, list, form == "polygon");
-                    self.scene.panels.push(panel);
-                }
-            }
-        }
-    }
-
-    fn maps(&mut self) {
-        let at = [Step::from("maps")];
-        let Some(node) = self.root.get("maps") else {
-            return;
-        };
-        let mut panel = self.panel(&at, "Maps", Role::Maps, node);
-        panel.maps = maps::handles(node, &at, &self.names);
-        if panel.maps.len() > MOST / 4 {
-            panel.why = Some(format!("{} maps are too many to drag", panel.maps.len()));
-        }
-        let corners = panel.maps.iter().flat_map(maps::MapHandle::corners);
-        panel.window = window(corners.chain([[0.0, 0.0], [1.0, 1.0]]));
-        self.scene.panels.push(panel);
-    }
-
-    fn panel(&self, at: &[Step], title: &str, role: Role, node: &Node) -> Panel {
-        let is_own = Arc::ptr_eq(node.place.source(), self.source);
-        let file = node.place.source().name();
-        let id: Vec<_> = at.iter().map(Step::to_string).collect();
-        Panel {
-            id: id.join("/"),
-            title: title.to_owned(),
-            role,
-            why: (!is_own).then(|| {
-                format!("it is written in {file}: make it a part of this file to change it")
-            }),
-            closed: false,
-            points: Vec::new(),
-            elements: Vec::new(),
-            maps: Vec::new(),
-            ghosts: Vec::new(),
-            window: [0.0, 0.0, 1.0, 1.0],
-            list: at.to_vec(),
-            names: self.names.clone(),
-        }
-    }
-
-    /// Shows an initiator or a base element.
-    fn component(&mut self, key: &str, title: &str, role: Role) {
-        let at = [Step::from(key)];
-        let Some(node) = self.root.get(key) else {
-            return;
-        };
-        let inner = match role {
-            Role::BaseElement => "points",
-            _ => "elements",
-        };
-        let closed = matches!(
-            node.get("closed").map(|it| &it.value),
-            Some(Value::Bool(true))
-        );
-        let mut panel = match node.get(inner) {
-            Some(list) => {
-                let mut panel = self.panel(&below(&at, &[inner.into()]), title, role, list);
-                self.fill(&mut panel, list, closed);
-                panel
-            }
-            None => {
-                let mut panel = self.panel(&at, title, role, node);
-                self.fill(&mut panel, node, closed);
-                panel
-            }
-        };
-        panel.id = key.to_owned();
-        self.scene.panels.push(panel);
-    }
-
-    /// Shows a generator: each of its parts.
-    fn generator(&mut self, at: &[Step], title: &str) {
-        let Some(node) = find(self.root, at) else {
-            return;
-        };
-        let random = node.get("random");
-        let lists: Vec<(Vec<Step>, String, bool)> = match node.get("parts").map(|it| &it.value) {
-            Some(Value::Sequence(parts)) => parts
-                .iter()
-                .enumerate()
-                .map(|(number, part)| {
-                    let closed = matches!(
-                        part.get("closed").map(|it| &it.value),
-                        Some(Value::Bool(true))
-                    );
-                    let seeds = matches!(
-                        part.get("seeds").map(|it| &it.value),
-                        Some(Value::Bool(true))
-                    );
-                    let what = if seeds { "seed" } else { "part" };
-                    let steps = ["parts".into(), number.into(), "elements".into()];
-                    (
-                        below(at, &steps),
-                        format!("{title}, {what} {}", number + 1),
-                        closed,
-                    )
-                })
-                .collect(),
-            _ if node.get("elements").is_some() => {
-                vec![(below(at, &["elements".into()]), title.into(), false)]
-            }
-            _ => vec![(at.to_vec(), title.into(), false)],
-        };
-        for (list, title, closed) in lists {
-            let Some(elements) = find(self.root, &list) else {
-                continue;
-            };
-            let mut panel = self.panel(&list, &title, Role::Generator, elements);
-            panel.names = self.names.with_drawn(random, 0.5);
-            self.fill(&mut panel, elements, closed);
-            if random.is_some() {
-                panel.ghosts = self.ghosts(&list, elements, node, closed);
-            }
-            self.scene.panels.push(panel);
-        }
-    }
-
-    /// Returns the figures at the limits of random functions.
-    fn ghosts(
-        &self,
-        at: &[Step],
-        list: &Node,
-        generator: &Node,
-        closed: bool,
-    ) -> Vec<Vec<[f64; 2]>> {
-        let limits = [0.0, 1.0].map(|part| {
-            let mut panel = self.panel(at, "", Role::Generator, list);
-            panel.names = self.names.with_drawn(generator.get("random"), part);
-            self.fill(&mut panel, list, closed);
-            moved(&mut panel, generator);
-            let ends = panel.elements.iter().map(|element| element.to);
-            let first = panel.elements.first().map(|element| element.from);
-            let line = first.into_iter().chain(ends);
-            line.map(|point| [panel.points[point].x, panel.points[point].y])
-                .collect::<Vec<_>>()
-        });
-        limits.into()
-    }
-
-    /// Adds the points and elements of a list.
-    fn fill(&self, panel: &mut Panel, list: &Node, closed: bool) {
-        panel.closed = closed;
-        let Value::Sequence(entries) = &list.value else {
-            panel.why = Some("it is no list of points: it is changed in the text".into());
-            return;
-        };
-        if entries.len() > MOST {
-            panel.why = Some(format!("{} points are too many to drag", entries.len()));
-            return;
-        }
-        let mut end: Option<usize> = None;
-        for (number, entry) in entries.iter().enumerate() {
-            let at = below(&panel.list, &[number.into()]);
-            let (to, from) = match &entry.value {
-                Value::Mapping(_) => (entry.get("to"), entry.get("from")),
-                _ => (Some(entry), None),
-            };
-            let to_at = match &entry.value {
-                Value::Mapping(_) => below(&at, &["to".into()]),
-                _ => at.clone(),
-            };
-            let from = from
-                .and_then(|node| panel.add(node, below(&at, &["from".into()])))
-                .or(end);
-            let Some(to) = to.and_then(|node| panel.add(node, to_at)) else {
-                panel.why = Some("it has faces or other forms: it is changed in the text".into());
-                return;
-            };
-            if let Some(from) = from {
-                let raw = find(self.raw, &at).unwrap_or(entry);
-                panel.elements.push(element(raw, from, to, number));
-            }
-            end = Some(to);
-        }
-        if let (true, Some(last), Some(first)) = (closed, end, panel.elements.first()) {
-            let from = first.from;
-            let mut more = panel.elements[0].clone();
-            (more.from, more.to, more.entry) = (last, from, None);
-            (more.direction, more.fertile, more.visible) = (1, true, true);
-            panel.elements.push(more);
-        }
-        let is_set = panel.list.first() == Some(&"condensation".into());
-        if panel.role != Role::Initiator && !is_set {
-            let ends = [[0.0, 0.0], [1.0, 0.0]];
-            for point in &mut panel.points {
-                point.pinned = point.basis == Basis::Numbers && ends.contains(&[point.x, point.y]);
-            }
-        }
-        let points = panel.points.iter().map(|point| [point.x, point.y]);
-        panel.window = window(points.chain([[0.0, 0.0], [1.0, 0.0]]));
-    }
-}
-
 impl Panel {
     /// Adds a point, or a place where a known one is written.
-    fn add(&mut self, node: &Node, at: Vec<Step>) -> Option<usize> {
+    pub(super) fn add(&mut self, node: &Node, at: Vec<Step>) -> Option<usize> {
         let ([x, y], basis) = self.names.point(node)?;
         let text = match &node.value {
             Value::Sequence(parts) => {
@@ -427,7 +139,7 @@ impl Panel {
     }
 }
 
-fn element(entry: &Node, from: usize, to: usize, number: usize) -> Element {
+pub(super) fn element(entry: &Node, from: usize, to: usize, number: usize) -> Element {
     let flag = |key: &str| !matches!(entry.get(key).map(|it| &it.value), Some(Value::Bool(false)));
     let text = |key: &str| entry.get(key).and_then(Node::written).map(str::to_owned);
     let direction = text("direction")
@@ -448,7 +160,7 @@ fn element(entry: &Node, from: usize, to: usize, number: usize) -> Element {
 }
 
 /// Moves the inner points of a panel by the moves of a generator.
-fn moved(panel: &mut Panel, generator: &Node) {
+pub(super) fn moved(panel: &mut Panel, generator: &Node) {
     let Some(node) = generator.get("move") else {
         return;
     };
@@ -502,7 +214,7 @@ fn moved(panel: &mut Panel, generator: &Node) {
 }
 
 /// Returns the box of points, with a margin.
-fn window(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
+pub(super) fn window(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
     let all: Vec<_> = points
         .filter(|it| it.iter().all(|it| it.is_finite()))
         .collect();
@@ -523,7 +235,7 @@ fn window(points: impl Iterator<Item = [f64; 2]>) -> [f64; 4] {
 }
 
 /// Returns a value as the page has it.
-fn json(node: &Node) -> serde_json::Value {
+pub(super) fn json(node: &Node) -> serde_json::Value {
     match &node.value {
         Value::Sequence(items) => items.iter().map(json).collect(),
         Value::Mapping(entries) => {
