@@ -206,14 +206,11 @@ impl Model {
     }
 
     /// Returns the model whose step `steps` is drawn while it grows, as [`Rule::between`] does; `None` for models other
-    /// than production rules.
+    /// than production rules of the plane.
     #[must_use]
     pub fn between(&self, steps: u32, share: f64) -> Option<Self> {
         match self {
             Self::Rule(rule) => Some(Self::Rule(Arc::new(rule.between(steps, share)))),
-            Self::RuleInSpace(rule) => {
-                Some(Self::RuleInSpace(Arc::new(rule.between(steps, share))))
-            }
             _ => None,
         }
     }

@@ -60,7 +60,7 @@ pub(super) struct Arguments {
     set: Vec<Assignment>,
     /// Number of steps, or several as 0..6, between which a rule grows
     ///
-    /// In a production rule, the elements of a step move from the elements that they replace to their places. Other systems
+    /// In a production rule of the plane, the elements of a step move from the elements that they replace to their places. Other systems
     /// change from step to step at once.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,

@@ -59,7 +59,7 @@ pub(super) struct Arguments {
     /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it.
     #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
     steps: Option<u32>,
-    /// Draws the last step of a rule while it grows, at a share of its way from 0 to 1
+    /// Draws the last step of a rule of the plane while it grows, at a share of its way from 0 to 1
     ///
     /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
     #[arg(long, value_name = "SHARE", requires = "steps", value_parser = number::share, allow_negative_numbers = true)]
@@ -263,7 +263,7 @@ impl Arguments {
         if let (Some(share), Some(steps)) = (self.between, self.steps) {
             loaded.model = loaded.model.between(steps, share).ok_or_else(|| {
                 let message = format!(
-                    "--between applies to production rules, and {} is another kind",
+                    "--between applies to production rules of the plane, and {} is none",
                     loaded.name
                 );
                 Failure::Usage(message)

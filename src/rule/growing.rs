@@ -6,7 +6,7 @@ use crate::expression::Interval;
 use crate::geometry::Point;
 
 use super::frame::Place;
-use super::{Generator, Rule, RuleFrame};
+use super::{Generator, Rule};
 
 /// Growth of the points of a generator from the element that it replaces to their places.
 ///
@@ -51,7 +51,7 @@ impl Growing {
     }
 }
 
-impl<F: RuleFrame> Rule<F> {
+impl Rule {
     /// Returns the rule whose step `steps` is drawn while it grows: at a `share` of 0 the elements of the last
     /// replacement lie on the element that they replace, at 1 in their places.
     #[must_use]
