@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use crate::common::Draws;
 use kfrac::diagnostic::Source;
 use kfrac::document::node::{Key, Node, Value};
 use kfrac::edit::{Edit, EditError, Step, edit, find, steps};
@@ -52,19 +53,6 @@ fn all_steps(node: &Node, at: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
             entries.for_each(|(key, node)| visit(Step::Key(key.name.clone()), node));
         }
         _ => {}
-    }
-}
-
-/// Numbers that look drawn, the same in every run.
-struct Draws(u64);
-
-impl Draws {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).unwrap() % count
     }
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter, Writer};
 
-use super::{Film, FilmOptions, changed, failed, rows};
+use super::{FilmEncoder, FilmOptions, changed, failed, rows};
 
 /// Encoder of an animated PNG.
 pub(crate) struct Apng<W: Write> {
@@ -55,7 +55,7 @@ impl<W: Write> Apng<W> {
     }
 }
 
-impl<W: Write> Film for Apng<W> {
+impl<W: Write> FilmEncoder for Apng<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         let height = u32::try_from(pixels.len() / (4 * self.width as usize)).unwrap_or(u32::MAX);
         let area = match self.before.is_empty() {

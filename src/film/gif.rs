@@ -10,7 +10,7 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use gif::{AnyExtension, DisposalMethod, Encoder, Frame, Repeat};
 
-use super::{Film, FilmOptions, changed, failed, on_white, rows};
+use super::{FilmEncoder, FilmOptions, changed, failed, on_white, rows};
 use crate::fast_hash::FastMap;
 
 /// Largest size of all frames together while they wait for the palette, compressed.
@@ -167,7 +167,7 @@ impl<W: Write> Gif<W> {
     }
 }
 
-impl<W: Write> Film for Gif<W> {
+impl<W: Write> FilmEncoder for Gif<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         let is_opaque = self.options.is_opaque;
         let mut own = Vec::with_capacity(pixels.len());

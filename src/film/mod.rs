@@ -43,7 +43,7 @@ impl Rate {
 }
 
 /// Encoder of a film.
-pub(crate) trait Film {
+pub(crate) trait FilmEncoder {
     /// Encodes the next frame: four bytes a pixel, red, green, blue and alpha, in rows from the top.
     fn add(&mut self, pixels: &[u8]) -> io::Result<()>;
 

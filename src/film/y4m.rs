@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Film, FilmOptions, on_white};
+use super::{FilmEncoder, FilmOptions, on_white};
 
 /// Encoder of YUV4MPEG2: three planes of full size a frame, in the limited range of ITU-R BT.601, on white paper.
 pub(crate) struct Y4m<W> {
@@ -27,7 +27,7 @@ impl<W: Write> Y4m<W> {
     }
 }
 
-impl<W: Write> Film for Y4m<W> {
+impl<W: Write> FilmEncoder for Y4m<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         self.planes.iter_mut().for_each(Vec::clear);
         for &pixel in pixels.as_chunks::<4>().0 {

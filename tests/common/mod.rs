@@ -106,3 +106,22 @@ pub(crate) fn grown(graph: &Graph, growth: &Growth<'_>) -> Vec<Grown> {
     walk(graph, growth, &mut collector).unwrap();
     collector.0
 }
+
+/// Numbers that look drawn, the same in every run.
+pub(crate) struct Draws(pub(crate) u64);
+
+impl Draws {
+    /// Returns a number below a count.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(self.0 >> 33).unwrap() % count
+    }
+
+    /// Returns a number from 0 to 1, in millionths.
+    pub(crate) fn unit(&mut self) -> f64 {
+        self.below(1_000_001) as f64 / 1_000_000.0
+    }
+}

@@ -1,5 +1,6 @@
 //! Design by hand: scripts of gestures lead to the files that a person would have written, and back.
 
+use crate::common::Draws;
 use kfrac::Fractal;
 use serde_json::{Value, json};
 
@@ -471,23 +472,6 @@ maps:
     hand.undo();
     hand.undo();
     assert_eq!(hand.text(), text);
-}
-
-/// Numbers that look drawn, the same in every run.
-struct Draws(u64);
-
-impl Draws {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).unwrap() % count
-    }
-
-    fn unit(&mut self) -> f64 {
-        self.below(1_000_001) as f64 / 1_000_000.0
-    }
 }
 
 /// Makes a random gesture.

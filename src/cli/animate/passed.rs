@@ -6,9 +6,10 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 20] = [
+const OTHERS: [&str; 22] = [
     "rule", "set", "steps", "between", "output", "format", "watch", "open", "seed", "threads",
-    "quiet", "zoom", "turn", "from", "depth", "plot", "pens", "svg", "mesh", "size",
+    "quiet", "zoom", "turn", "from", "depth", "plot", "pens", "svg", "mesh", "size", "morph",
+    "disk",
 ];
 
 /// Options of `kfrac animate` that change nothing of a film.

@@ -1,11 +1,12 @@
 //! Files of films.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-use crate::film::{Apng, Film as Encoder, FilmOptions, Gif, Y4m};
+use crate::film::{Apng, FilmEncoder, FilmOptions, Gif, Y4m};
 
 use crate::render::Labels;
 use crate::style::Named;
@@ -46,7 +47,7 @@ impl Format {
         self,
         out: &'o mut dyn Write,
         options: &FilmOptions,
-    ) -> io::Result<Box<dyn Encoder + 'o>> {
+    ) -> io::Result<Box<dyn FilmEncoder + 'o>> {
         Ok(match self {
             Self::Gif => Box::new(Gif::begin(out, options)?),
             Self::Apng => Box::new(Apng::begin(out, options)?),
@@ -221,17 +222,14 @@ impl Numbered {
 
     /// Takes away the numbers of frames whose files exist and have been drawn by an equal command.
     fn omit_finished(&self, film: &Film<'_>, numbers: &mut Vec<usize>) -> Result<(), Failure> {
-        let found = |number: &usize| provenance(&self.path(*number)).map(|text| (*number, text));
-        let existing: Vec<(usize, String)> = numbers.iter().filter_map(found).collect();
-        let mut finished = Vec::new();
-        let surveyed: Vec<usize> = existing.iter().map(|(number, _)| *number).collect();
+        let existing = numbers.iter().copied();
+        let existing: Vec<usize> = existing.filter(|it| self.path(*it).exists()).collect();
+        let mut finished = BTreeSet::new();
         film.frames
-            .draw(surveyed, Purpose::Survey, &[], |number, done| {
-                let is_equal = |(own, text): &(usize, String)| {
-                    *own == number && Some(text) == done.provenance.as_ref()
-                };
-                if existing.iter().any(is_equal) {
-                    finished.push(number);
+            .draw(existing, Purpose::Survey, &[], |number, done| {
+                let expected = done.provenance;
+                if expected.is_some() && provenance(&self.path(number)) == expected {
+                    finished.insert(number);
                 }
                 Ok(())
             })?;
@@ -242,10 +240,9 @@ impl Numbered {
 
 /// Returns the text from which a PNG was made; `None` without a complete file.
 fn provenance(path: &Path) -> Option<String> {
-    let file = std::fs::File::open(path).ok()?;
-    let reader = png::Decoder::new(io::BufReader::new(file))
-        .read_info()
-        .ok()?;
+    const END: &[u8] = b"IEND\xAE\x42\x60\x82";
+    let bytes = std::fs::read(path).ok().filter(|it| it.ends_with(END))?;
+    let reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().ok()?;
     let texts = &reader.info().utf8_text;
     let comment = texts.iter().find(|text| text.keyword == "Comment")?;
     comment.get_text().ok()

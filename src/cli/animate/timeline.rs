@@ -62,6 +62,15 @@ impl Timeline {
         self.frames + 2 * self.hold
     }
 
+    /// Returns an error if a film has too many frames.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        const MOST: u32 = 100_000;
+        match self.count() <= MOST {
+            true => Ok(()),
+            false => Err(Failure::Usage(format!("a film has up to {MOST} frames"))),
+        }
+    }
+
     /// Returns the moment of a frame.
     pub(super) fn moment(&self, frame: u32) -> Moment {
         let Self {
@@ -224,17 +233,6 @@ pub(super) fn rate(text: &str) -> Result<crate::film::Rate, String> {
     )]
     let frames = (rate * f64::from(seconds)).round() as u32;
     Ok(crate::film::Rate { frames, seconds })
-}
-
-impl Timeline {
-    /// Returns an error if a film has too many frames.
-    pub(super) fn check(&self) -> Result<(), Failure> {
-        const MOST: u32 = 100_000;
-        match self.count() <= MOST {
-            true => Ok(()),
-            false => Err(Failure::Usage(format!("a film has up to {MOST} frames"))),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 
-use crate::film::{Film, FilmOptions, Y4m};
+use crate::film::{FilmEncoder, FilmOptions, Y4m};
 
 /// Encoder of a film by the program ffmpeg.
 pub(super) struct Video<'o> {
@@ -117,7 +117,7 @@ fn parts(mut pipe: impl Read + Send + 'static) -> Receiver<io::Result<Vec<u8>>> 
     parts
 }
 
-impl Film for Video<'_> {
+impl FilmEncoder for Video<'_> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         let added = { self.frames.as_mut() }.map_or(Ok(()), |frames| frames.add(pixels));
         if added.is_err() {
