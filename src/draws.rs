@@ -171,6 +171,21 @@ impl Variable {
         })
     }
 
+    /// Returns the variable without its expressions as written.
+    pub(crate) fn in_doubles(&self) -> Self {
+        let distribution = match &self.distribution {
+            Distribution::Uniform(a, b) => Distribution::Uniform(a.in_doubles(), b.in_doubles()),
+            Distribution::Normal(a, b) => Distribution::Normal(a.in_doubles(), b.in_doubles()),
+            Distribution::Choice(all) => {
+                Distribution::Choice(all.iter().map(Program::in_doubles).collect())
+            }
+        };
+        Self {
+            distribution,
+            ..self.clone()
+        }
+    }
+
     /// Returns the edge of the element to which the draw belongs, as of [`Corner::OnEdge`]; `None` if it belongs to the
     /// element.
     #[must_use]

@@ -30,7 +30,8 @@
 //! |---|---|
 //! | parameters, a family of curves | [`Fractal::set`] |
 //! | elements one by one, tables | [`Fractal::elements`], [`Fractal::write`] |
-//! | raw pixels, frames of a film, cancelling | [`Fractal::pixels`], [`Fractal::view`], [`Fractal::cancel`] |
+//! | raw pixels, frames of a film, cancelling | [`Fractal::pixels`], [`Fractal::frames`], [`Fractal::cancel`] |
+//! | the way to another fractal | [`Fractal::toward`], [`tween`] |
 //! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::bounds`], [`Fractal::dimension`] |
 //! | sets in space: camera and shading, elements, extent | [`Fractal::space`], [`Fractal::elements_in_space`], [`Fractal::bounds_in_space`] |
 //! | mistakes in a file, with their places | [`Error::diagnostics`] |
@@ -167,6 +168,7 @@ mod saturating;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod style;
+pub mod tween;
 mod written;
 pub mod zoom;
 
@@ -174,7 +176,7 @@ pub use bits::Bits;
 pub use count::Count;
 pub use draws::{Corner, Distribution, Path, Variable};
 pub use fit::fit;
-pub use fractal::{Dimension, Error, Fractal, Goal, proposed_steps};
+pub use fractal::{Dimension, Error, Fractal, Frames, Goal, proposed_steps};
 pub use grow::Element;
 pub use kind::Kind;
 pub use metadata::{Description, Metadata, Parameter};

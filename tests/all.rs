@@ -48,6 +48,7 @@ mod terminal;
 mod threads;
 mod tints;
 mod turns;
+mod tweens;
 mod vectors;
 mod visible;
 mod windows;

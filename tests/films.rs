@@ -395,3 +395,278 @@ fn videos_need_their_program() {
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+/// Returns the texts of the style sheet of an animated SVG, after its structure has been checked by a reader of XML.
+fn style_sheet(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let mut nodes = document.descendants();
+    let style = nodes.find(|it| it.has_tag_name(("http://www.w3.org/2000/svg", "style")));
+    style.unwrap().text().unwrap().to_owned()
+}
+
+#[test]
+fn lines_of_an_svg_move_through_the_pictures_of_all_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let film = [
+        "animate",
+        "pythagoras",
+        "--set",
+        "angle=30..60",
+        "--steps",
+        "3",
+        "--frames",
+        "5",
+    ];
+    let size = ["--size", "120x90", "--fit", "each", "-o"];
+    succeeds(
+        folder,
+        &[&film[..], &["--bounce"], &size, &["film.svg"]].concat(),
+    );
+    let sheet = style_sheet(&folder.join("film.svg"));
+    let picture = ["grow", "pythagoras", "--set", "angle=30", "--steps", "3"];
+    let picture = [&picture[..], &["--size", "120x90", "-o", "one.svg"]].concat();
+    succeeds(folder, &picture);
+    let one = fs::read_to_string(folder.join("one.svg")).unwrap();
+    let paths: Vec<&str> = { one.split(" d=\"").skip(1) }
+        .map(|it| it.split('"').next().unwrap())
+        .collect();
+    assert!(!paths.is_empty());
+    for data in paths {
+        // The first frame, and the last moment, which returns to it.
+        let key = format!("{{d:path(\"{}\")}}", data.replace('\n', " "));
+        assert!(sheet.contains(&format!("0%{key}")) && sheet.contains(&format!("100%{key}")));
+    }
+    assert!(sheet.contains("prefers-reduced-motion"));
+    // Five frames at 30 a second.
+    let text = fs::read_to_string(folder.join("film.svg")).unwrap();
+    assert!(text.contains(" linear 0.1667s infinite\""), "{text}");
+    let nested = [&film[..], &["--svg", "instanced"], &size, &["nested.svg"]].concat();
+    succeeds(folder, &nested);
+    assert!(style_sheet(&folder.join("nested.svg")).contains("transform:translate("));
+    for (arguments, message) in [
+        (&["koch", "--turn", "0..90", "--steps", "7"][..], "20000"),
+        (
+            &["pythagoras", "--steps", "0..3", "--cuts"],
+            "does not have the lines",
+        ),
+        (
+            &["koch", "--draw", "--turn", "0..90"],
+            "changes in nothing else",
+        ),
+    ] {
+        let all = [&["animate"], arguments, &["-o", "wrong.svg"]].concat();
+        let (status, said) = said(folder, &all);
+        assert!(status == Some(2) && said.contains(message), "{said}");
+        assert!(!folder.join("wrong.svg").exists());
+    }
+}
+
+/// A pen draws lines in their order: what it has drawn stays, and at the end all is drawn.
+#[test]
+fn pens_draw_to_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for rule in ["koch", "random-tree", "dragon", "pythagoras-squares"] {
+        let draw = |file: &str, share: &[&str]| {
+            let picture = [
+                "grow",
+                rule,
+                "--steps",
+                "4",
+                "--size",
+                "160x120",
+                "--background",
+                "white",
+            ];
+            succeeds(folder, &[&picture[..], share, &["-o", file]].concat());
+            pixels(&folder.join(file))
+        };
+        let whole = draw("whole.png", &[]);
+        assert!(draw("end.png", &["--drawn", "1"]) == whole, "{rule}");
+        let blank = draw("start.png", &["--drawn", "0"]);
+        assert!(blank.iter().all(|it| *it == 255), "{rule}");
+        let inked = |pixels: &[u8]| pixels.chunks_exact(4).filter(|it| **it != [255; 4]).count();
+        let shares = ["0.2", "0.5", "0.8"].map(|share| draw("part.png", &["--drawn", share]));
+        let counts = shares.each_ref().map(|it| inked(it));
+        assert!(counts.is_sorted() && counts[0] > 0, "{rule}: {counts:?}");
+        assert!(
+            counts[2] < inked(&whole) && counts[2] * 2 > inked(&whole),
+            "{rule}: {counts:?}"
+        );
+    }
+    // Half of the length of a curve is half of its lines.
+    let list = [
+        "grow", "koch", "--steps", "3", "--drawn", "0.5", "-o", "half.svg",
+    ];
+    succeeds(folder, &list);
+    let half = fs::read_to_string(folder.join("half.svg")).unwrap();
+    let data = half
+        .split(" d=\"")
+        .nth(1)
+        .unwrap()
+        .split('"')
+        .next()
+        .unwrap();
+    let numbers = data.replace('-', " -").replace(['M', 'l'], " ");
+    assert_eq!(numbers.split_whitespace().count(), 2 + 2 * 32);
+    succeeds(
+        folder,
+        &[
+            "animate", "koch", "--draw", "--steps", "2", "--frames", "5", "-o", "draw.svg",
+        ],
+    );
+    let sheet = style_sheet(&folder.join("draw.svg"));
+    assert!(sheet.contains("0%{visibility:hidden;stroke-dashoffset:1"));
+    assert!(sheet.contains("40%{visibility:visible;stroke-dashoffset:0.5;"));
+    let (status, said) = said(
+        folder,
+        &["grow", "koch", "--drawn", "0.5", "-o", "half.csv"],
+    );
+    assert!(status == Some(2) && said.contains("--drawn"), "{said}");
+}
+
+/// A film leads from one rule to another one: its ends are their pictures.
+#[test]
+fn tweens_lead_from_rule_to_rule() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let options = ["--steps", "4", "--size", "120x60", "--background", "white"];
+    let film = [
+        "animate", "koch", "--to", "levy", "--fit", "each", "--frames", "3", "-o", "t%d.png",
+    ];
+    succeeds(folder, &[&film[..], &options].concat());
+    for (rule, frame) in [("koch", "t0.png"), ("levy", "t2.png")] {
+        succeeds(
+            folder,
+            &[&["grow", rule, "-o", "one.png"], &options[..]].concat(),
+        );
+        assert!(
+            pixels(&folder.join(frame)) == pixels(&folder.join("one.png")),
+            "{rule}"
+        );
+    }
+    let half = [
+        "grow", "koch", "--to", "levy", "--share", "0.5", "-o", "one.png",
+    ];
+    succeeds(folder, &[&half[..], &options].concat());
+    assert!(pixels(&folder.join("t1.png")) == pixels(&folder.join("one.png")));
+    let file = std::io::BufReader::new(fs::File::open(folder.join("one.png")).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    let mut texts = reader.info().utf8_text.iter();
+    let comment = texts
+        .find(|it| it.keyword == "Comment")
+        .unwrap()
+        .get_text()
+        .unwrap();
+    assert!(
+        comment.contains("--to=levy --share=0.5") && comment.contains("title: Lévy"),
+        "{comment}"
+    );
+    for (arguments, message) in [
+        (
+            &["koch", "--to", "gasket"][..],
+            "a system of maps in the plane",
+        ),
+        (&["koch", "--to", "kock"], "'koch'"),
+        (&["plant-a", "--to", "plant-b"], "L-systems have no tweens"),
+    ] {
+        let (status, said) = said(
+            folder,
+            &[&["animate"], arguments, &["-o", "no.gif"]].concat(),
+        );
+        assert!(
+            status.is_some_and(|it| it > 0) && said.contains(message),
+            "{said}"
+        );
+    }
+}
+
+/// A file describes its film, and the command line has the last word.
+#[test]
+fn files_describe_their_films() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let rule = "params: {angle: {value: 30, min: 5, max: 80}}
+initiator: segment
+generator: [[0, 0], [1/3, 0], [1/2, tan(angle)/6], [2/3, 0], [1, 0]]
+steps: 3
+animation: {set: {angle: 10..60}, frames: 4, loop: true, ease: linear}
+";
+    fs::write(folder.join("mine.yaml"), rule).unwrap();
+    let film = |arguments: &[&str]| {
+        let size = ["--size", "60x40", "-o", "film.png"];
+        succeeds(folder, &[&["animate"], arguments, &size].concat());
+        fs::read(folder.join("film.png")).unwrap()
+    };
+    let own = film(&["mine.yaml"]);
+    // The options of the file are among those of the film.
+    let reader = png::Decoder::new(std::io::Cursor::new(&own))
+        .read_info()
+        .unwrap();
+    let mut texts = reader.info().utf8_text.iter();
+    let comment = texts
+        .find(|it| it.keyword == "Comment")
+        .unwrap()
+        .get_text()
+        .unwrap();
+    assert!(comment.contains("kfrac animate mine.yaml"), "{comment}");
+    for option in [
+        "--set=angle=10..60",
+        "--frames=4",
+        "--loop ",
+        "--size=60x40",
+    ] {
+        assert!(comment.contains(option), "{option}: {comment}");
+    }
+    let plain = rule.split("animation").next().unwrap();
+    fs::write(folder.join("plain.yaml"), plain).unwrap();
+    let frames = |bytes: &[u8]| {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let count = reader.info().animation_control().unwrap().num_frames;
+        let mut all = Vec::new();
+        let mut part = vec![0; 4 * 60 * 40];
+        for _ in 0..count {
+            let read = reader.next_frame(&mut part).unwrap();
+            all.push(part[..read.buffer_size()].to_vec());
+        }
+        all
+    };
+    let options = [
+        "--set",
+        "angle=10..60",
+        "--frames",
+        "4",
+        "--loop",
+        "--ease",
+        "linear",
+    ];
+    let given = film(&[&["plain.yaml"], &options[..]].concat());
+    assert!(frames(&own) == frames(&given) && frames(&own).len() == 4);
+    let other = film(&["mine.yaml", "--frames", "6", "--bounce"]);
+    assert_eq!(frames(&other).len(), 6);
+    for (line, message) in [
+        ("{set: {angel: 10..60}}", "there is no parameter 'angel'"),
+        ("{set: {angle: 10..x}}", "set:"),
+        ("{turn: 0..3..4}", "turn:"),
+        ("{turm: 0..90}", "did you mean 'turn'?"),
+        ("{frames: many}", "frames"),
+    ] {
+        fs::write(
+            folder.join("wrong.yaml"),
+            format!("{plain}animation: {line}\n"),
+        )
+        .unwrap();
+        for command in ["check", "animate"] {
+            let (status, said) = said(folder, &[command, "wrong.yaml"]);
+            assert!(
+                status == Some(1) && said.contains(message),
+                "{command} {line}: {said}"
+            );
+            assert!(said.contains("wrong.yaml:5:"), "{said}");
+        }
+    }
+}

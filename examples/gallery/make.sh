@@ -36,3 +36,4 @@ kfrac animate pythagoras --steps 0..9 --hold 15 --frames 90 --size 360 --color-b
 kfrac animate koch-snowflake --zoom loop --at '0.(1)' --detail 0.5 --frames 48 --size 320x240 --stroke-width 1.5 -o endless-koch.gif
 kfrac animate complex-pair --set 's=circle([0,0],0.7)' --loop --frames 60 --size 240 -o orbit.gif
 kfrac animate menger --from 0..90,25 --loop --frames 36 --shade both --size 240x240 -o turning-sponge.gif
+kfrac animate koch --to levy --detail 0.8 --frames 60 --bounce --hold 6 --size 360 --color-by none --stroke '#4b3f8f' -o koch-to-levy.gif

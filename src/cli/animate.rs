@@ -1,12 +1,15 @@
 //! `kfrac animate`: films of families, of growth, of zooms, and of turns in space.
 
 mod endless;
+mod file;
 mod fit;
+mod forecast;
 mod frames;
 mod passed;
 mod plan;
 mod target;
 mod timeline;
+mod vector;
 mod video;
 
 use std::num::NonZero;
@@ -22,9 +25,10 @@ use super::family::Assignment;
 use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
-use super::{Failure, growth, help, length, number, picture, rule, steps, text};
+use super::{Failure, growth, help, length, number, picture, rule, steps, text, tween};
+pub(super) use file::mistakes;
 use fit::Fit;
-use passed::FrameOptions;
+use passed::{FrameOptions, Given};
 use plan::{Seeds, Zooms};
 use target::Format;
 use timeline::{Ease, Keys};
@@ -33,19 +37,22 @@ pub(super) use timeline::Moment;
 
 /// Draws a film: a family of fractals, growth, a zoom, or a turn in space
 ///
-/// Every frame is the picture that `kfrac grow` draws with the values of its moment. Ranges such as angle=10..80 and lists
+/// Without options, it is the film that the file describes by `animation`. Every frame is the picture that `kfrac grow` draws with the values of its moment. Ranges such as angle=10..80 and lists
 /// such as angle=10,80,40 change in the course of the film, any number of them together. The output file appears complete
 /// or not at all, and its bytes do not depend on the number of threads.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// Rule file, name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
     rule: PathBuf,
     /// Output file, or - for standard output [default: NAME.gif]
     ///
     /// .gif, .png or .apng for an animated PNG, .y4m for other encoders, .mp4 and .webm by the program ffmpeg if it is
-    /// installed. A name with a number, as film-%04d.png, is a PNG for each frame; those of the plane that exist already, drawn
+    /// installed. In an .svg the lines of one drawing move, up to 20,000 elements in all frames together; with --svg instanced
+    /// there is no such limit. Chromium and Firefox show it. A name with a number, as film-%04d.png, is a PNG for each frame; those of the plane that exist already, drawn
     /// by an equal command, are kept.
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -67,6 +74,15 @@ pub(super) struct Arguments {
     /// Changes from step to step at once
     #[arg(long, requires = "steps")]
     cuts: bool,
+    /// Leads from the rule to another one of its kind
+    ///
+    /// Generators, elements, maps, objects and instances correspond to each other by their order; one that has no
+    /// counterpart grows out of a point.
+    #[arg(long, value_name = "RULE2", help_heading = "Tween")]
+    to: Option<PathBuf>,
+    /// Draws the picture line by line, as a pen does
+    #[arg(long)]
+    draw: bool,
     /// Seed of random draws, or several as 1..24, each for an equal part of the film
     #[arg(long, value_name = "S", default_value = "0", value_parser = Seeds::parse)]
     seed: Seeds,
@@ -138,6 +154,10 @@ Examples:
       Shows 24 individuals of a random tree
   kfrac animate menger --from 0..360,25 --loop -o turn.gif
       Turns a set in space
+  kfrac animate koch --to levy --steps 6 --bounce -o tween.gif
+      Leads from a curve to another one and back
+  kfrac animate dragon --draw --steps 8 -o draw.gif
+      Draws a curve from its start to its end
   kfrac animate pythagoras --set angle=20..70 -o - | ffmpeg -i - -pix_fmt yuv420p sway.mp4
       Pipes the frames to an encoder, with its own options
   kfrac animate pythagoras --set angle=20..70 --only 30..40 -o sway-%04d.png
@@ -152,11 +172,26 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         set: Vec::new(),
         omit: Vec::new(),
     };
-    let loaded: Loaded = named.load_from(&source, catalogue, arguments.quiet)?;
+    let mut loaded: Loaded = named.load_from(&source, catalogue, arguments.quiet)?;
+    let completed = file::complete(arguments, &loaded.document)?;
+    let arguments = completed.as_ref().unwrap_or(arguments);
+    let other = { arguments.to.as_ref() }.map(|to| tween::load(to, catalogue, arguments.quiet));
+    let other = other.transpose()?;
+    let half_way = { other.as_ref() }.map(|other| plan::half_way(arguments, &loaded, other));
+    let half_way = half_way.transpose()?;
+    loaded.beside = other.into_iter().map(|it| (it.name, it.document)).collect();
     let default = named.file("", "gif");
     let path = arguments.output.as_ref().unwrap_or(&default);
-    let film = plan::film(arguments, &loaded, source, catalogue, path)?;
-    let report = target::write(arguments, film, &loaded, path)?;
+    let format = Format::of(arguments, path)?;
+    let is_vector = format == Some(Format::Svg);
+    let film = plan::film(
+        arguments, &loaded, half_way, is_vector, source, catalogue, path,
+    )?;
+    if !arguments.quiet && !is_vector {
+        let note = forecast::note(&film, format)?;
+        note.iter().for_each(|note| text::print_message(note));
+    }
+    let report = target::write(arguments, film, &loaded, format, path)?;
     if !arguments.quiet {
         text::print_message(&format!("{report}, {:.2} s", start.elapsed().as_secs_f64()));
     }

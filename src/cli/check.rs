@@ -11,7 +11,7 @@ use crate::document::Document;
 use crate::model::Model;
 
 use super::component::Component;
-use super::{Failure, help, output, rule, text};
+use super::{Failure, animate, help, output, rule, text};
 
 /// Reports all errors in rule files
 ///
@@ -111,6 +111,7 @@ pub(crate) fn checked(
     if let Err(error) = compiled {
         diagnostics.push(model.diagnostic(&error));
     }
+    diagnostics.extend(animate::mistakes(&document));
     Ok((document, model, diagnostics))
 }
 

@@ -33,6 +33,7 @@ use super::held::Held;
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
+use super::tween::TweenArguments;
 use super::{Failure, format, help, number, output, readable, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
@@ -52,6 +53,8 @@ use zoom::ZoomArguments;
 pub(super) struct Arguments {
     #[command(flatten)]
     rule: RuleArguments,
+    #[command(flatten)]
+    tween: TweenArguments,
     /// Number of steps: how often fertile elements are replaced [default: from the rule]
     ///
     /// If the rule gives no number, the default is the deepest step up to 12 with no more than 20,000
@@ -64,6 +67,11 @@ pub(super) struct Arguments {
     /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
     #[arg(long, value_name = "SHARE", requires = "steps", value_parser = number::share, allow_negative_numbers = true)]
     between: Option<f64>,
+    /// Draws a picture up to a share of the length of its outlines, from 0 to 1, as a pen draws them
+    ///
+    /// Colour after colour, and in a colour along the elements; with --plot in the order of the plot.
+    #[arg(long, value_name = "SHARE", value_parser = number::share, allow_negative_numbers = true)]
+    drawn: Option<f64>,
     /// Stops replacing elements that are smaller than this number of pixels
     ///
     /// Without --steps, growth continues until all elements are smaller. L-systems that start anew at every
@@ -214,6 +222,7 @@ pub(crate) fn hold(
     arguments.growth.held = Some(held);
     let plan = Plan::of(&arguments)?;
     let loaded = arguments.rule.load_from(source, catalogue, true)?;
+    let loaded = arguments.tween.apply(loaded, catalogue, true)?;
     let (_, summary, _) = arguments.grow(&plan, loaded)?;
     Ok(summary)
 }
@@ -249,10 +258,10 @@ impl Arguments {
         files: &mut Vec<PathBuf>,
     ) -> Result<PathBuf, Failure> {
         let start = Instant::now();
-        let loaded = self.rule.load(catalogue, self.growth.quiet)?;
-        *files = { loaded.document.paths().into_iter() }
-            .map(Path::to_path_buf)
-            .collect();
+        let quiet = self.growth.quiet;
+        let loaded = self.rule.load(catalogue, quiet)?;
+        let loaded = self.tween.apply(loaded, catalogue, quiet)?;
+        *files = loaded.paths();
         let (path, summary, bytes) = self.grow(plan, loaded)?;
         self.report(&path, &summary, bytes, start);
         Ok(path)
@@ -339,10 +348,17 @@ impl Arguments {
         }
     }
 
-    /// Returns the turn, and the share of the last step, with their values where they are given.
-    fn own_options(&self) -> impl Iterator<Item = (&'static str, String)> + use<> {
-        let all = [("turn", self.turn), ("between", self.between)];
-        { all.into_iter() }.filter_map(|(name, value)| Some((name, value?.to_string())))
+    /// Returns the turn, and the shares of the last step and of the pen's way, with their values where they are given.
+    fn own_options(&self) -> Vec<(&'static str, String)> {
+        let all = [
+            ("turn", self.turn),
+            ("between", self.between),
+            ("drawn", self.drawn),
+        ];
+        let given = all.into_iter();
+        given
+            .filter_map(|(name, value)| Some((name, value?.to_string())))
+            .collect()
     }
 
     /// Prints what has been written, unless messages are suppressed.

@@ -282,9 +282,13 @@ fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Size
     Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
-/// Estimates the bytes of a PNG, if possible. For a detail, they are those of the first step whose mean
-/// element is as small.
-pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) -> Option<f64> {
+/// Estimates the cost of a PNG, if possible. For a detail, it is that of the first step whose mean element is as
+/// small.
+pub(super) fn png_estimate(
+    graph: &Graph,
+    goal: Goal,
+    options: &render::Options,
+) -> Option<SizeEstimate> {
     const MAX_STEPS: u32 = 1_000;
     let steps = match goal {
         Goal::Steps(steps, _) => steps.min(MAX_STEPS),
@@ -310,8 +314,7 @@ pub(super) fn png_bytes(graph: &Graph, goal: Goal, options: &render::Options) ->
             return None;
         }
     }
-    let estimate = Estimator::new(graph, options).at(&forecast, &bounds);
-    estimate.map(|estimate| estimate.png_bytes)
+    Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
 /// Returns the bounding box of an approximant: from the graph, or else by a walk that is not too long.

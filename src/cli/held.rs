@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use crate::estimate::SizeEstimate;
 use crate::geometry::Homothety;
 use crate::render::space::Sight;
 use crate::render::{Canvas, Picture, PngEncoding};
@@ -39,6 +40,8 @@ pub(crate) struct Done {
     pub(crate) sight: Option<Sight>,
     /// Width and height of a picture.
     pub(crate) size: [u32; 2],
+    /// Cost of a picture that is surveyed, where the graph determines it.
+    pub(crate) estimate: Option<SizeEstimate>,
     /// Text from which a picture that is surveyed can be made again.
     pub(crate) provenance: Option<String>,
 }

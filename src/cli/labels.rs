@@ -57,6 +57,9 @@ fn add_content(provenance: &mut String, loaded: &Loaded) {
         provenance.push_str(&format!("# {} = {}\n", parameter.name, parameter.value));
     }
     provenance.push_str(&loaded.document.to_yaml());
+    for (name, document) in &loaded.beside {
+        provenance.push_str(&format!("---\n# {}\n{}", quoted(name), document.to_yaml()));
+    }
 }
 
 /// Returns the command that reproduces the picture from the resolved rule.
@@ -76,10 +79,12 @@ fn command(
     });
     let omitted: Vec<_> = loaded.omitted.iter().map(u32::to_string).collect();
     let omitted = (!omitted.is_empty()).then(|| ("omit".to_owned(), omitted.join(",")));
+    let made_by = loaded.made_by.iter();
+    let made_by = made_by.map(|(name, value)| ((*name).to_owned(), value.clone()));
     let options = options
         .into_iter()
         .map(|(name, value)| (name.to_string(), value));
-    for (name, value) in settings.chain(omitted).chain(options) {
+    for (name, value) in settings.chain(omitted).chain(made_by).chain(options) {
         command.push_str(&format!(" --{name}"));
         // An equals sign allows values that begin with a minus; flags have no value.
         if !value.is_empty() {

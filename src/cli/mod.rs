@@ -48,6 +48,7 @@ mod structure;
 mod studio;
 mod system;
 mod text;
+mod tween;
 pub(crate) mod watch;
 
 use std::io;

@@ -70,6 +70,10 @@ pub(super) struct Loaded {
     pub(super) settings: Vec<Setting>,
     /// Omitted maps, numbered as on the command line.
     pub(super) omitted: Vec<u32>,
+    /// Names and files of further rules of which the model is made.
+    pub(super) beside: Vec<(String, Document)>,
+    /// Options, with their values, by which the model is made of all rules.
+    pub(super) made_by: Vec<(&'static str, String)>,
     /// Seed and limit of the number of elements, for graphs that depend on them.
     growth: (u64, u64),
     /// Map from the coordinates of compiled graphs to those of the file; [`Model::place`] if `None`.
@@ -79,6 +83,13 @@ pub(super) struct Loaded {
 }
 
 impl Loaded {
+    /// Returns the paths of the files of which the model is made.
+    pub(super) fn paths(&self) -> Vec<PathBuf> {
+        let all = { self.beside.iter() }.map(|(_, document)| document);
+        let paths = all.chain([&self.document]).flat_map(Document::paths);
+        paths.map(Path::to_path_buf).collect()
+    }
+
     /// Sets the seed and the limit of the number of elements.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
         self.growth = (growth.seed, growth.max_elements());
@@ -329,6 +340,8 @@ impl RuleArguments {
             model,
             settings,
             omitted: self.omit.clone(),
+            beside: Vec::new(),
+            made_by: Vec::new(),
             growth: (0, Model::MAX_ELEMENTS),
             place: None,
             turn: 0.0,

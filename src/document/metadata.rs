@@ -5,7 +5,7 @@ use crate::expression::PARTS;
 use crate::metadata::Description;
 use crate::style::{SpaceView, Style, View};
 
-use super::{Written, WrittenNumber};
+use super::{FilmOption, Written, WrittenNumber};
 
 /// Metadata of a file as written.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct MetadataDocument {
     pub view: View,
     /// View of a set in space.
     pub space: SpaceView,
+    /// Options of the film of the file, in its order.
+    pub animation: Vec<FilmOption>,
     /// Whether all parents, components and fractals were found. Otherwise unknown names may be defined
     /// in a missing file and are not reported.
     pub complete: bool,

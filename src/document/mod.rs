@@ -8,6 +8,7 @@
 //!
 #![doc = include_str!("../../library/README.md")]
 
+mod animation;
 mod assemble;
 mod data;
 mod ifs;
@@ -27,6 +28,7 @@ mod style;
 mod view;
 mod yaml;
 
+pub use animation::FilmOption;
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
     InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument, Scales,

@@ -59,7 +59,11 @@ impl<'n> Fields<'n> {
         self.field(key).map_or(self.place, |field| field.key)
     }
 
-    /// Returns the definition of a key in the shape.
+    /// Returns whether a key is a flag.
+    pub(super) fn is_flag(&self, key: &'static str) -> bool {
+        { self.member(key) }.is_some_and(|member| matches!(member.holds, Form::Flag(_)))
+    }
+
     /// Returns whether a key may hold the name of a file.
     pub(super) fn holds_file(&self, key: &'static str) -> bool {
         let is_file = |form: &Form| matches!(form, Form::File(_));
@@ -74,6 +78,7 @@ impl<'n> Fields<'n> {
         { self.member(key) }.is_some_and(|member| matches!(member.holds, Form::Flag(true)))
     }
 
+    /// Returns the definition of a key in the shape.
     fn member(&self, key: &'static str) -> Option<&'static Member> {
         self.shape.members().find(|member| member.name == key)
     }

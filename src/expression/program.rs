@@ -191,6 +191,14 @@ impl Program {
         Self::of(Op::Slot(UNKNOWN))
     }
 
+    /// Returns the program without its operations as written: long numbers evaluate those of doubles.
+    pub(crate) fn in_doubles(&self) -> Self {
+        Self {
+            unfolded: None,
+            ..self.clone()
+        }
+    }
+
     fn of(op: Op) -> Self {
         Self {
             ops: vec![op],

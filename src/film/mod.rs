@@ -2,12 +2,14 @@
 
 mod apng;
 mod gif;
+mod svg;
 mod y4m;
 
 use std::io;
 
 pub(crate) use apng::Apng;
 pub(crate) use gif::Gif;
+pub(crate) use svg::{write_drawn, write_frames};
 pub(crate) use y4m::Y4m;
 
 use crate::render::Labels;

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::grow::WalkError;
 use crate::output_file::WriteError;
 use crate::render::RenderError;
+use crate::tween::TweenError;
 
 /// An error of [`Fractal`](super::Fractal).
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +31,9 @@ pub enum Error {
     /// The set lies in the plane, and the result is of space.
     #[error("it lies in the plane: {0}")]
     InPlane(&'static str),
+    /// There is no tween between two fractals.
+    #[error(transparent)]
+    Tween(#[from] TweenError),
     /// No dimension is decided or measured.
     #[error("it has no dimension: {0}")]
     NoDimension(String),

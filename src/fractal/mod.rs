@@ -4,6 +4,7 @@
 //! the other methods grow it anew for each result.
 
 mod error;
+mod frames;
 mod goal;
 mod options;
 mod results;
@@ -28,6 +29,7 @@ use crate::render::{PngEncoding, Size};
 use crate::style::{Style, View};
 
 pub use error::Error;
+pub use frames::Frames;
 #[cfg(feature = "cli")]
 pub(crate) use goal::steps_of_graph;
 pub use goal::{Goal, proposed_steps};

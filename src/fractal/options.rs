@@ -196,7 +196,7 @@ impl Fractal {
         self
     }
 
-    fn anew(mut self) -> Self {
+    pub(super) fn anew(mut self) -> Self {
         self.graph = OnceLock::new();
         self.graph_in_space = OnceLock::new();
         self.drawn_in_space = OnceLock::new();

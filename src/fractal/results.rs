@@ -409,7 +409,7 @@ impl Fractal {
     }
 
     /// Draws the approximant of the goal. The window is that of the file's coordinates.
-    fn draw_by<T>(
+    pub(super) fn draw_by<T>(
         &self,
         options: &Options,
         mut draw: impl FnMut(&Graph, &Growth<'_>, &Options) -> Result<T, RenderError>,

@@ -40,6 +40,7 @@ mod paint_key;
 mod painter;
 mod passes;
 mod pdf;
+mod pen_way;
 mod picture;
 mod pixels;
 mod plot;
@@ -66,7 +67,6 @@ pub use options::{Detail, Format, Labels, Options, PngEncoding};
 pub(crate) use paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
 pub use picture::{Empty, Instanced, NearestPoint, Picture};
 pub(crate) use pixels::draw_paths;
-#[cfg(feature = "cli")]
 pub(crate) use pixels::survey;
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
@@ -75,6 +75,8 @@ pub(crate) use prepass::Prepass;
 pub(crate) use scene::Scene;
 pub use short_cuts::{ShortCut, ShortCuts};
 pub(crate) use surface::Surface;
+#[cfg(feature = "cli")]
+pub(crate) use svg::escaped;
 pub(crate) use tracer::Tracer;
 pub use unit::Unit;
 pub use write::write;

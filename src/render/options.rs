@@ -103,6 +103,9 @@ pub struct Options {
     /// depend on it, unless a path of many thousand vertices is drawn that is dashed, stroked more than 4
     /// pixels wide, or filled with a colour that is not opaque.
     pub band: u64,
+    /// Share of the length of all outlines, from 0 to 1, to which the picture is drawn, in the order in which a pen
+    /// draws them: colour after colour, and in a colour along the elements. Has no effect on instanced SVG and on DXF.
+    pub drawn: f64,
     /// Encoding of a PNG.
     pub png: PngEncoding,
     /// Size below which elements are not replaced; none by default.
@@ -126,6 +129,7 @@ setters!(Options {
     instanced: bool,
     in_one_piece: u64,
     band: u64,
+    drawn: f64,
     png: PngEncoding,
     detail: Option<Detail>,
     labels: Labels,
@@ -145,6 +149,7 @@ impl Default for Options {
             instanced: false,
             in_one_piece: 1 << 24,
             band: 1 << 21,
+            drawn: 1.0,
             png: PngEncoding::default(),
             detail: None,
             short_cuts: ShortCuts::default(),

@@ -118,7 +118,6 @@ impl Pixels {
 /// # Errors
 ///
 /// As for [`write`](super::write).
-#[cfg(feature = "cli")]
 pub(crate) fn survey(
     graph: &Graph,
     growth: &Growth<'_>,

@@ -271,7 +271,7 @@ fn fine(pixels: [u32; 2]) -> [u64; 2] {
 }
 
 /// Escapes text for XML, and removes characters that XML excludes.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

@@ -12,6 +12,7 @@ use super::drawing::{Drawing, Page};
 use super::error::RenderError;
 use super::options::{Format, Options};
 use super::pdf::Pdf;
+use super::pen_way::PenWay;
 use super::picture::Picture;
 use super::plot::{Plot, Plotted};
 use super::png::Png;
@@ -41,7 +42,8 @@ pub fn write(
         }
     };
     let (size, cancel) = (layout.canvas.size(), growth.cancel);
-    if options.format == Format::Png && !options.plot && !options.draws_in_one_piece(size) {
+    let is_whole = !options.plot && options.drawn >= 1.0;
+    if options.format == Format::Png && is_whole && !options.draws_in_one_piece(size) {
         bands::write_layout(&layout, options, out)?;
         return Ok(layout.picture(None));
     }
@@ -77,10 +79,10 @@ pub(super) fn write_in(
     };
     if options.plot {
         let plot = Plot::of(drawing, options, cancel)?;
-        write_paths(&plot, format, options, cancel, out)?;
+        write_so_far(&plot, format, options, cancel, out)?;
         return Ok(Some(plot.plotted));
     }
-    write_paths(drawing, format, options, cancel, out)?;
+    write_so_far(drawing, format, options, cancel, out)?;
     Ok(None)
 }
 
@@ -90,6 +92,24 @@ enum PathFormat {
     Svg,
     Png,
     Pdf,
+}
+
+/// Writes the part of a drawing that the options ask for.
+fn write_so_far(
+    drawing: &impl Drawing,
+    format: PathFormat,
+    options: &Options,
+    cancel: Option<&AtomicBool>,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
+    if options.drawn >= 1.0 {
+        return write_paths(drawing, format, options, cancel, out);
+    }
+    let so_far = PenWay {
+        drawing,
+        share: options.drawn,
+    };
+    write_paths(&so_far, format, options, cancel, out)
 }
 
 fn write_paths(

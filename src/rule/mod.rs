@@ -16,7 +16,7 @@ pub use crate::geometry::{BaseElement, Piece, arc};
 pub use body::{Body, Surface};
 pub(crate) use extent::Extent;
 pub use frame::{RuleFrame, Turn};
-pub(crate) use frame::{constant, newell};
+pub(crate) use frame::{constant, evaluated, newell};
 pub(crate) use generator::Origin;
 pub use generator::{
     ElementContext, Generator, ListedAttitude, ListedElement, Move, Part, Placement,

@@ -33,6 +33,8 @@ pub(super) enum Purpose {
     Pixels,
     /// PNGs, as `kfrac grow` writes them.
     Png,
+    /// Lines, as SVG.
+    Lines,
     /// Numbers of the pictures, without pixels in the plane.
     Survey,
 }
@@ -82,12 +84,16 @@ impl Frames<'_> {
     fn grow(&self, number: usize, purpose: Purpose, more: &[String]) -> Result<Done, Failure> {
         let encoding = match purpose {
             Purpose::Png => PngEncoding::default(),
-            Purpose::Pixels | Purpose::Survey => PngEncoding::raw(),
+            Purpose::Pixels | Purpose::Lines | Purpose::Survey => PngEncoding::raw(),
         };
         let mut held = Held::new(MAX_BYTES, encoding);
         held.surveys = purpose == Purpose::Survey;
         let held = Arc::new(held);
-        let arguments = [&self.arguments[number], more].concat();
+        let format = match purpose {
+            Purpose::Lines => "--format=svg",
+            _ => "--format=png",
+        };
+        let arguments = [&self.arguments[number], more, &[format.into()]].concat();
         grow::hold(&arguments, &self.source, self.catalogue, Arc::clone(&held))?;
         Ok(held.take())
     }

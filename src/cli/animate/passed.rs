@@ -6,33 +6,28 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 22] = [
+const OTHERS: [&str; 24] = [
     "rule", "set", "steps", "between", "output", "format", "watch", "open", "seed", "threads",
-    "quiet", "zoom", "turn", "from", "depth", "plot", "pens", "svg", "mesh", "size", "morph",
-    "disk",
+    "quiet", "zoom", "turn", "from", "depth", "plot", "pens", "mesh", "size", "morph", "disk",
+    "to", "share", "drawn",
 ];
 
 /// Options of `kfrac animate` that change nothing of a film.
-const WITHOUT_EFFECT: [&str; 7] = [
-    "rule", "output", "format", "threads", "quiet", "only", "library",
-];
+const WITHOUT_EFFECT: [&str; 5] = ["output", "format", "threads", "quiet", "only"];
 
 /// Options of `kfrac grow` as they are given.
 pub(super) struct FrameOptions {
     passed: Vec<String>,
-    /// All options of the film with their values, which are empty for flags.
-    written: Vec<(String, String)>,
 }
+
+/// All options of a film with their values, which are empty for flags. It is read before the options themselves, which
+/// leave nothing to read.
+pub(super) struct Given(Vec<(String, String)>);
 
 impl FrameOptions {
     /// Returns the options as arguments.
     pub(super) fn arguments(&self) -> &[String] {
         &self.passed
-    }
-
-    /// Returns all options of the film with their values, for labels.
-    pub(super) fn written(&self) -> Vec<(String, String)> {
-        self.written.clone()
     }
 
     /// Iterates over the options with their values, which are empty for flags.
@@ -91,11 +86,7 @@ impl FromArgMatches for FrameOptions {
             let values = matches.get_raw(name).into_iter().flatten();
             given.extend(values.map(|value| format!("--{long}={}", value.to_string_lossy())));
         }
-        let written = written(matches);
-        Ok(Self {
-            passed: given,
-            written,
-        })
+        Ok(Self { passed: given })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
@@ -104,12 +95,47 @@ impl FromArgMatches for FrameOptions {
     }
 }
 
-/// Returns the options of a film as they are written.
-fn written(matches: &ArgMatches) -> Vec<(String, String)> {
+impl Given {
+    /// Returns all options.
+    pub(super) fn all(&self) -> &[(String, String)] {
+        &self.0
+    }
+
+    /// Returns the options that change the film, for labels.
+    pub(super) fn labelled(&self) -> Vec<(String, String)> {
+        let effective =
+            { self.0.iter() }.filter(|(name, _)| !WITHOUT_EFFECT.contains(&name.as_str()));
+        effective.cloned().collect()
+    }
+}
+
+impl Args for Given {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
+
+impl FromArgMatches for Given {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        Ok(Self(all_given(matches)))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// Returns the options of a film as they are given.
+fn all_given(matches: &ArgMatches) -> Vec<(String, String)> {
     let mut written = Vec::new();
     for id in matches.ids().map(clap::Id::as_str) {
         // Groups of options have the names of types.
-        let is_option = !id.starts_with(char::is_uppercase) && !WITHOUT_EFFECT.contains(&id);
+        let is_option = !id.starts_with(char::is_uppercase) && !["rule", "library"].contains(&id);
         if !is_option || matches.value_source(id) != Some(ValueSource::CommandLine) {
             continue;
         }

@@ -6,12 +6,16 @@ use std::sync::atomic::AtomicU32;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
+use crate::fractal::Goal;
+use crate::model::Model;
 use crate::parallel::all_cores;
+use crate::style::Named;
+use crate::tween::TweenBy;
 use crate::zoom::Factor;
 
 use super::super::family::Assignment;
 use super::super::rule::Loaded;
-use super::super::{Failure, number};
+use super::super::{Failure, number, tween};
 use super::frames::Frames;
 use super::timeline::{Ease, Keys, Moment, Timeline};
 use super::{Arguments, endless, fit};
@@ -123,10 +127,23 @@ impl Course {
     }
 }
 
-/// Returns the film of arguments.
+/// Returns the rule half-way to another one, and an error if there is no tween between them.
+pub(super) fn half_way(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    other: &Loaded,
+) -> Result<Model, Failure> {
+    let by = arguments.others.value("by").and_then(TweenBy::from_name);
+    tween::between(loaded, other, 0.5, by.unwrap_or_default())
+}
+
+/// Returns the film of arguments. `half_way` is the rule in the middle of a tween; frames have no paper if the film
+/// `is_vector`.
 pub(super) fn film<'a>(
     arguments: &Arguments,
     loaded: &Loaded,
+    half_way: Option<Model>,
+    is_vector: bool,
     source: Arc<Source>,
     catalogue: &'a Catalogue,
     path: &Path,
@@ -135,7 +152,8 @@ pub(super) fn film<'a>(
     let timeline = timeline(arguments);
     timeline.check()?;
     let course = Course::of(arguments, loaded)?;
-    let common = common(arguments, loaded);
+    let mut common = common(arguments, loaded, !is_vector);
+    common.extend(half_way.and_then(|model| steps_of(arguments, model)));
     let frame = |number: u32| {
         let moment = timeline.moment(number);
         let own = at(arguments, loaded, &moment, &timeline, course.as_ref());
@@ -150,6 +168,25 @@ pub(super) fn film<'a>(
     };
     let size = fit::fit(arguments, loaded, &mut frames, path)?;
     Ok(Film { frames, size })
+}
+
+/// Returns the number of steps of a tween as an option, if neither steps nor a detail are given and the rule in its
+/// middle has such a number.
+fn steps_of(arguments: &Arguments, half_way: Model) -> Option<String> {
+    let is_given = arguments.steps.is_some() || arguments.others.gives("detail");
+    let steps = match half_way.is_in_space() {
+        true => half_way.metadata().steps,
+        false => Some(half_way).and_then(|model| {
+            let goal = Goal::choose(&model, None, None, |steps| model.compile(steps));
+            match goal.ok()? {
+                Goal::Steps(steps, _) => Some(steps),
+                Goal::Detail(_) => None,
+            }
+        }),
+    };
+    steps
+        .filter(|_| !is_given && arguments.zoom.is_none())
+        .map(|steps| format!("--steps={steps}"))
 }
 
 /// Refuses options that exclude each other, and films in which nothing changes.
@@ -190,11 +227,14 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
         !matches!(arguments.zoom, None | Some(Zooms::One(_))),
         arguments.turn.as_ref().is_some_and(Keys::changes),
         arguments.from.iter().flatten().any(Keys::changes),
+        arguments.to.is_some(),
+        arguments.draw,
     ];
     match changes.contains(&true) {
         true => Ok(()),
         false => wrong(
-            "nothing changes in the film: give a range to --set, --steps, --zoom, --seed, --turn or --from".into(),
+            "nothing changes in the film: give a range to --set, --steps, --zoom, --seed, --turn or --from, or --to or --draw"
+                .into(),
         ),
     }
 }
@@ -202,7 +242,7 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
 fn timeline(arguments: &Arguments) -> Timeline {
     let seeds = arguments.seed.count();
     let is_endless = matches!(arguments.zoom, Some(Zooms::Loop));
-    let is_even = arguments.is_loop || arguments.zoom.is_some() || seeds > 1;
+    let is_even = arguments.is_loop || arguments.draw || arguments.zoom.is_some() || seeds > 1;
     let default = if is_even { Ease::Linear } else { Ease::InOut };
     Timeline {
         frames: arguments
@@ -217,12 +257,13 @@ fn timeline(arguments: &Arguments) -> Timeline {
 }
 
 /// Returns the arguments of all frames: the rule, and options that do not change.
-fn common(arguments: &Arguments, loaded: &Loaded) -> Vec<String> {
+fn common(arguments: &Arguments, loaded: &Loaded, has_paper: bool) -> Vec<String> {
     let mut common = vec![arguments.rule.display().to_string()];
     common.extend_from_slice(arguments.others.arguments());
-    common.extend(["--threads=1", "--format=png", "--output=-"].map(String::from));
+    common.extend(["--threads=1", "--output=-"].map(String::from));
     let style = &loaded.model.metadata().style;
-    if !loaded.model.is_in_space()
+    if has_paper
+        && !loaded.model.is_in_space()
         && style.background.is_none()
         && !arguments.others.gives("background")
     {
@@ -249,6 +290,13 @@ fn at(
     own.extend(
         { arguments.steps.iter() }.flat_map(|it| steps(arguments, loaded, it.as_slice(), moment)),
     );
+    let share = super::super::family::plain(moment.share());
+    if let Some(to) = &arguments.to {
+        own.extend([format!("--to={}", to.display()), format!("--share={share}")]);
+    }
+    if arguments.draw {
+        own.push(format!("--drawn={share}"));
+    }
     let mut turn = { arguments.turn.as_ref() }.map(|keys| keys.at(moment));
     if let Some(course) = course {
         let share = moment.share();

@@ -17,6 +17,7 @@ use super::super::{Failure, format, output, progress, readable};
 use super::Arguments;
 use super::frames::{Frames, Purpose};
 use super::plan::Film;
+use super::vector;
 use super::video::Video;
 
 /// Format of a film.
@@ -28,6 +29,8 @@ pub(super) enum Format {
     /// Container that ffmpeg writes.
     Mp4,
     Webm,
+    /// Lines that move.
+    Svg,
 }
 
 impl Named for Format {
@@ -38,11 +41,23 @@ impl Named for Format {
         ("y4m", Self::Y4m),
         ("mp4", Self::Mp4),
         ("webm", Self::Webm),
+        ("svg", Self::Svg),
     ];
 }
 
 impl Format {
-    /// Begins a film in this format.
+    /// Returns the format of the file that arguments name; `None` for a PNG for each frame.
+    pub(super) fn of(arguments: &Arguments, path: &Path) -> Result<Option<Self>, Failure> {
+        if Numbered::of(path)?.is_some() {
+            return Ok(None);
+        }
+        match (arguments.format, path == Path::new("-")) {
+            (None, true) => Ok(Some(Self::Y4m)),
+            (asked, _) => format::choose(asked, Some(path)).map(Some),
+        }
+    }
+
+    /// Begins a film of pixels in this format.
     fn begin<'o>(
         self,
         out: &'o mut dyn Write,
@@ -52,6 +67,7 @@ impl Format {
             Self::Gif => Box::new(Gif::begin(out, options)?),
             Self::Apng => Box::new(Apng::begin(out, options)?),
             Self::Y4m => Box::new(Y4m::begin(out, options)?),
+            Self::Svg => return Err(io::ErrorKind::Unsupported.into()),
             Self::Mp4 | Self::Webm => Box::new(Video::begin(out, options, self == Self::Mp4)?),
         })
     }
@@ -60,21 +76,19 @@ impl Format {
 /// Writes a film, and describes what has been written.
 pub(super) fn write(
     arguments: &Arguments,
-    film: Film<'_>,
+    mut film: Film<'_>,
     loaded: &Loaded,
+    format: Option<Format>,
     path: &Path,
 ) -> Result<String, Failure> {
     if let Some(numbered) = Numbered::of(path)? {
         return numbered.write(arguments, &film);
     }
+    let format = format.unwrap_or(Format::Gif);
     if arguments.only.is_some() {
         let message = "--only draws some frames of a film in PNGs: name them with a number, as -o film-%04d.png";
         return Err(Failure::Usage(message.into()));
     }
-    let format = match (arguments.format, path == Path::new("-")) {
-        (None, true) => Format::Y4m,
-        (asked, _) => format::choose(asked, Some(path))?,
-    };
     let count = film.frames.arguments.len();
     let frames = u32::try_from(count).unwrap_or(u32::MAX);
     let mut options = FilmOptions {
@@ -87,6 +101,9 @@ pub(super) fn write(
     };
     let explain = |error: io::Error| output::failed(error, path);
     let ((), bytes) = output::write(path, true, |out, _| {
+        if format == Format::Svg {
+            return vector::write(arguments, &mut film, &options, path, out);
+        }
         watched(arguments, &film.frames, count, || {
             let mut out = Some(out as &mut dyn Write);
             let mut encoder = None;
@@ -115,7 +132,7 @@ pub(super) fn write(
 }
 
 /// Draws frames while the number of finished ones is shown.
-fn watched<T>(
+pub(super) fn watched<T>(
     arguments: &Arguments,
     frames: &Frames<'_>,
     count: usize,
@@ -129,7 +146,7 @@ fn watched<T>(
 /// Returns the labels of a film.
 fn described(arguments: &Arguments, loaded: &Loaded, frames: u32) -> Labels {
     let shown = format!("Film of {frames} frames");
-    labels(loaded, &shown, "animate", arguments.others.written())
+    labels(loaded, &shown, "animate", arguments.given.labelled())
 }
 
 /// File for each frame, with its number in the name.

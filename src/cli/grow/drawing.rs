@@ -92,6 +92,7 @@ impl<'a> Drawing<'a> {
         let surveys = matches!(self.shown, ShownPart::Window);
         let held = arguments.growth.held.as_ref();
         if let Some(held) = held.filter(|held| held.surveys && surveys) {
+            held.done().estimate = growth::png_estimate(&graph, *goal, &options);
             let picture = self
                 .surveyed(graph)
                 .map_err(|error| arguments.growth.explain(error, loaded, path))?;
@@ -270,10 +271,10 @@ impl<'a> Drawing<'a> {
             return;
         };
         if u64::from(width) * u64::from(height) > options.in_one_piece {
-            let bytes = growth::png_bytes(graph, self.goal, options)
-                .map_or_else(String::new, |bytes| {
-                    format!(", to about {}", readable::rough_bytes(bytes))
-                });
+            let estimate = growth::png_estimate(graph, self.goal, options);
+            let bytes = estimate.map_or_else(String::new, |estimate| {
+                format!(", to about {}", readable::rough_bytes(estimate.png_bytes))
+            });
             let pixels = f64::from(width) * f64::from(height);
             self.arguments.growth.note(&format!(
                 "note: {width} x {height} pixels are drawn in bands, in about {}{bytes}",
@@ -317,6 +318,7 @@ impl<'a> Drawing<'a> {
             pens: plot.pens(picture),
             instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),
+            drawn: self.arguments.drawn.unwrap_or(1.0),
             png: growth.png_encoding(),
             detail: goal.detail_in(unit),
             labels: labels(&self.loaded, &goal.described(), "grow", options),

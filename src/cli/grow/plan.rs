@@ -121,6 +121,7 @@ impl Plan {
             refuse(zoom.has_centre(), NO_ZOOM_OF_POINTS)?;
             let lines = [
                 ("--plot", plot.is_asked()),
+                ("--drawn", arguments.drawn.is_some()),
                 ("--svg instanced", svg.is_instanced()),
             ];
             let lines = picture.of_lines().into_iter().chain(lines);
@@ -211,6 +212,11 @@ impl Plan {
         refuse(
             is_nested && zoom.is_asked(),
             "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them",
+        )?;
+        refuse(
+            arguments.drawn.is_some()
+                && (is_table || is_nested || drawn == Some(render::Format::Dxf)),
+            "--drawn draws a part of all lines: write a .png, .svg or .pdf of single lines",
         )?;
         refuse(
             zoom.is_asked() && arguments.between.is_some(),

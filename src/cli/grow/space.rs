@@ -200,6 +200,7 @@ fn check(arguments: &Arguments, loaded: &Loaded, plan: &Plan) -> Result<&'static
         ("--svg instanced", arguments.svg.is_instanced()),
         ("--at", arguments.zoom.has_centre()),
         ("--turn", arguments.turn.is_some()),
+        ("--drawn", arguments.drawn.is_some()),
         ("--view", arguments.picture.has_view()),
         ("sizes in millimetres", arguments.size.unit != Unit::Pixel),
     ];

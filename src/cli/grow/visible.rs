@@ -70,6 +70,7 @@ pub(super) fn draw(
         .chain(plot.options())
         .chain([("size", size.to_string())])
         .chain(picture.options())
+        .chain(arguments.own_options())
         .chain(arguments.space.options());
     let options = render::Options {
         format,
@@ -79,6 +80,7 @@ pub(super) fn draw(
         unit: size.unit,
         plot: plot.is_asked(),
         pens: plot.pens(picture),
+        drawn: arguments.drawn.unwrap_or(1.0),
         threads: growth.threads(),
         labels: labels(loaded, &format!("Step {steps}"), "grow", all),
         ..render::Options::default()

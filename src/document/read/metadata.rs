@@ -1,6 +1,7 @@
 //! Reading of metadata, which files of all kinds have.
 
 use crate::diagnostic::Diagnostics;
+use crate::document::animation::{ANIMATION, read_animation};
 use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
@@ -25,7 +26,7 @@ pub(in crate::document) const DESCRIPTION: [Member; 5] = keys![
 const FORMAT: u32 = 1;
 
 /// Keys for the defaults of growing and drawing, and for published properties.
-pub(super) const LIKING: [Member; 5] = keys![
+pub(super) const LIKING: [Member; 6] = keys![
     steps: Form::Whole(0, Some(MAX_STEPS)),
         "The number of steps, unless another is asked for.";
     dimension: Form::Number, "The published similarity dimension. It does not change the picture.";
@@ -33,6 +34,7 @@ pub(super) const LIKING: [Member; 5] = keys![
         "The published dimension of the set itself, where it is smaller because copies overlap.";
     style: Form::Mapping(&STYLE), "How it is drawn.";
     view: Form::Mapping(&VIEW), "Which part of the plane is drawn, or how a set in space is seen.";
+    animation: Form::Mapping(&ANIMATION), "How `kfrac animate` makes a film of it, unless other options are given.";
 ];
 
 /// Reads the metadata of a file. The caller sets `complete`.
@@ -57,6 +59,9 @@ pub(in crate::document) fn read_metadata(
         style: fields.read(reader, "style").unwrap_or_default(),
         view,
         space,
+        animation: { fields.take("animation") }
+            .map(|node| read_animation(reader, node))
+            .unwrap_or_default(),
         complete: false,
         place: fields.place.clone(),
     }

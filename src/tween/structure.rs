@@ -1,0 +1,92 @@
+//! Tweens of structures of objects.
+
+use crate::ifs::PointOf;
+use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
+
+use super::maps::Tweened;
+use super::{Side, Tween, style, system};
+
+/// Returns the structure between two.
+pub(super) fn tween<M: Tweened>(
+    tween: Tween,
+    a: &Instancing<M>,
+    b: &Instancing<M>,
+) -> Instancing<M> {
+    let count = a.objects.len().max(b.objects.len());
+    let object = |number: usize| match [a, b].map(|it| it.objects.get(number)) {
+        [Some(a), Some(b)] => Some(object(tween, [a, b])),
+        [one, other] => one.or(other).cloned(),
+    };
+    Instancing {
+        metadata: tween.metadata([&a.metadata, &b.metadata]),
+        objects: (0..count).filter_map(object).collect(),
+        scene: instances(tween, [&a.scene, &b.scene]),
+        initial: system::set::<M>(tween, [a.initial.as_ref(), b.initial.as_ref()]),
+    }
+}
+
+/// Returns the object between two.
+fn object<M: Tweened>(tween: Tween, both: [&ObjectDefinition<M>; 2]) -> ObjectDefinition<M> {
+    let map = M::between(tween, both.map(|it| &it.map));
+    ObjectDefinition {
+        name: tween.pick(both).name.clone(),
+        instances: instances(tween, both.map(|it| it.instances.as_slice())),
+        transforms: [map.written()].into(),
+        slots: tween.pick(both).slots.clone(),
+        map,
+    }
+}
+
+/// Returns the instances between those of two objects, or of two scenes.
+fn instances<M: Tweened>(tween: Tween, both: [&[ObjectInstance<M>]; 2]) -> Vec<ObjectInstance<M>> {
+    let count = both[0].len().max(both[1].len());
+    let instance = |number: usize| match both.map(|it| it.get(number)) {
+        [Some(a), Some(b)] => Some(between(tween, [a, b])),
+        [Some(own), None] => Some(grown(tween, 0, own)),
+        [None, Some(own)] => Some(grown(tween, 1, own)),
+        [None, None] => None,
+    };
+    (0..count).filter_map(instance).collect()
+}
+
+/// Returns the instance between two.
+fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectInstance<M> {
+    let map = M::between(tween, both.map(|it| &it.map));
+    let shape = match both.map(|it| &it.master) {
+        [Master::Shape(a), Master::Shape(b)] => M::set(tween, [a, b]).map(Master::Shape),
+        _ => None,
+    };
+    let tint = match both.map(|it| it.tint) {
+        [Some(a), Some(b)] => Some(Tint {
+            colour: style::colour(tween, [a.colour, b.colour]),
+            alpha: tween.between([a.alpha, b.alpha]),
+        }),
+        [Some(a), None] => Some(fading(a, tween.of(0))),
+        [None, Some(b)] => Some(fading(b, tween.of(1))),
+        [None, None] => None,
+    };
+    ObjectInstance {
+        master: shape.unwrap_or_else(|| tween.pick(both).master.clone()),
+        tint,
+        transforms: [map.written()].into(),
+        map,
+    }
+}
+
+/// Returns a tint with a share of its coverage.
+fn fading(tint: Tint, share: f64) -> Tint {
+    Tint {
+        alpha: tint.alpha * share,
+        ..tint
+    }
+}
+
+/// Returns an instance of one side that grows out of the image of its origin.
+fn grown<M: Tweened>(tween: Tween, side: Side, own: &ObjectInstance<M>) -> ObjectInstance<M> {
+    let map = own.map.shrunk(tween.of(side), PointOf::<M>::default());
+    ObjectInstance {
+        transforms: [map.written()].into(),
+        map,
+        ..own.clone()
+    }
+}
