@@ -442,7 +442,8 @@ fn lines_of_an_svg_move_through_the_pictures_of_all_frames() {
     // Five frames at 30 a second.
     let text = fs::read_to_string(folder.join("film.svg")).unwrap();
     assert!(text.contains(" linear 0.1667s infinite\""), "{text}");
-    let nested = [&film[..], &["--svg", "instanced"], &size, &["nested.svg"]].concat();
+    let nested = ["--svg", "instanced", "--size", "120", "-o", "nested.svg"];
+    let nested = [&film[..], &nested].concat();
     succeeds(folder, &nested);
     assert!(style_sheet(&folder.join("nested.svg")).contains("transform:translate("));
     for (arguments, message) in [

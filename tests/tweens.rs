@@ -49,7 +49,7 @@ fn tweens_begin_and_end_with_their_fractals_and_do_not_jump() {
         };
         for by in COURSES {
             let at = |share: f64| a.toward(b, share, by).map(|it| it.steps(2));
-            let half = match at(0.25) {
+            let half = match at(0.23) {
                 Ok(half) => half,
                 Err(error) => {
                     refused.push(format!("{name} to {other}: {error}"));
@@ -59,7 +59,7 @@ fn tweens_begin_and_end_with_their_fractals_and_do_not_jump() {
             assert_eq!(at(0.0).unwrap().model(), a.model(), "{name} to {other}");
             assert_eq!(at(1.0).unwrap().model(), b.model(), "{name} to {other}");
             let before = ends(&half);
-            let after = ends(&at(0.25 + 1e-7).unwrap());
+            let after = ends(&at(0.23 + 1e-7).unwrap());
             assert_eq!(before.len(), after.len(), "{name} to {other}");
             let size = size(&before).max(size(&ends(b)));
             for (before, after) in before.iter().zip(&after) {

@@ -184,6 +184,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let path = arguments.output.as_ref().unwrap_or(&default);
     let format = Format::of(arguments, path)?;
     let is_vector = format == Some(Format::Svg);
+    if arguments.others.gives("svg") && !is_vector {
+        let message = "--svg applies to SVG only: write a .svg";
+        return Err(Failure::Usage(message.into()));
+    }
     let film = plan::film(
         arguments, &loaded, half_way, is_vector, source, catalogue, path,
     )?;

@@ -118,6 +118,7 @@ impl Pixels {
 /// # Errors
 ///
 /// As for [`write`](super::write).
+#[cfg(feature = "cli")]
 pub(crate) fn survey(
     graph: &Graph,
     growth: &Growth<'_>,

@@ -89,11 +89,13 @@ impl Frames<'_> {
         let mut held = Held::new(MAX_BYTES, encoding);
         held.surveys = purpose == Purpose::Survey;
         let held = Arc::new(held);
-        let format = match purpose {
-            Purpose::Lines => "--format=svg",
-            _ => "--format=png",
-        };
-        let arguments = [&self.arguments[number], more, &[format.into()]].concat();
+        let mut arguments = [&self.arguments[number], more].concat();
+        if purpose == Purpose::Lines {
+            arguments.push("--format=svg".into());
+        } else {
+            arguments.retain(|it| !it.starts_with("--svg="));
+            arguments.push("--format=png".into());
+        }
         grow::hold(&arguments, &self.source, self.catalogue, Arc::clone(&held))?;
         Ok(held.take())
     }
