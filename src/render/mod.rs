@@ -67,7 +67,6 @@ pub use options::{Detail, Format, Labels, Options, PngEncoding};
 pub(crate) use paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
 pub use picture::{Empty, Instanced, NearestPoint, Picture};
 pub(crate) use pixels::draw_paths;
-#[cfg(feature = "cli")]
 pub(crate) use pixels::survey;
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};

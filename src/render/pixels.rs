@@ -13,7 +13,6 @@ use super::cells::DrawingMethod;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::options::{Labels, Options, PngEncoding};
-#[cfg(feature = "cli")]
 use super::picture::Picture;
 use super::plot::Plot;
 use super::png::{Png, TooManyPixels, write_pixels};
@@ -118,7 +117,6 @@ impl Pixels {
 /// # Errors
 ///
 /// As for [`write`](super::write).
-#[cfg(feature = "cli")]
 pub(crate) fn survey(
     graph: &Graph,
     growth: &Growth<'_>,
