@@ -8,6 +8,7 @@ On a fresh Debian:
     cargo build --release
     python3 benches/peers.py            # about ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; small cases only
+    python3 benches/peers.py --films    # films only; half a minute
     python3 -m pip install numba        # to compare the chaos game with numba, and boxes with numpy
     python3 -m pip install trimesh scipy    # to compare voxels with trimesh
     cargo install l-system-fractals     # for the Koch curve as an L-system
@@ -21,12 +22,15 @@ The inputs are in benches/peers: the same curves for cfdg, and rules that the li
 Colours are switched off: both cfdg and kfrac draw black bars. kfrac and flam3 run on one thread, then on
 two. Programs other than cfdg are skipped if they are not installed (numba: for the Python that runs
 this script). The times of numba and numpy are those of their loops, the time of kfrac that of the whole command.
+The times of films are processor times of whole commands, divided by the number of frames: kfrac writes pixels to a
+pipe, and its peers write their files.
 """
 
 import argparse
 import importlib.util
 import json
 import os
+import resource
 import shutil
 import statistics
 import subprocess
@@ -79,6 +83,35 @@ SPACE = [
 ]
 TWO_THREADS = 1.8
 
+# Film of 640 x 480 pixels: title, kfrac's rule and options, number of frames, largest number of processor milliseconds a
+# frame; name of the peer, and the smallest ratio of times.
+FILMS = [
+    (
+        "family, tree of 2^17 branches",
+        [HERE / "peers/tree.yaml", "--set", "angle=10..60", "--steps", 16, *PLAIN],
+        60, 12, "cfdg, a process a frame", 15,
+    ),
+    (
+        "family, tree of 2^13 branches",
+        [HERE / "peers/tree.yaml", "--set", "angle=10..60", "--steps", 12, *PLAIN],
+        60, 3, "cfdg, a process a frame", None,
+    ),
+    ("growth to Koch 4^8", ["koch", "--steps", "7..8", *PLAIN], 60, 3, "cfdg --animate", None),
+    (
+        "family of ferns, 1 M points",
+        [HERE / "peers/fern.yaml", "--set", "bend=0.04..0.12", "--method", "chaos", "--points", "1M", "--quiet"],
+        60, 6, "flam3-animate", 10,
+    ),
+    (
+        "zoom to 1e1000",
+        ["koch", "--zoom", "1..1e1000", "--at", "0.(1)", "--detail", "0.5", "--quiet"],
+        300, 30, None, None,
+    ),
+]  # fmt: skip
+
+# Formats of a film of a tree, without a target.
+ENCODERS = ["y4m", "gif", "png"]
+
 # Title, command, and largest number of milliseconds.
 ALONE = [
     ("info koch --steps 2000 --json", ["info", "koch", "--steps", "2000", "--json"], 20),
@@ -114,6 +147,14 @@ def in_turn(commands, runs):
         (statistics.median(seconds for seconds, _ in column), max(mib for _, mib in column))
         for column in zip(*results)
     ]
+
+
+def processor_time(command, source=None, environment=None):
+    """Returns the seconds of processor time of a command, which must succeed."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    _, memory = run(command, source, environment)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, memory
 
 
 def row(name, *cells):
@@ -283,6 +324,67 @@ def beside_pov(kfrac, folder, quick):
     )
 
 
+def film_of(peer, name, folder, quick):
+    """Returns a command that makes a film with a peer, its environment, and its number of frames."""
+    draw = ["cfdg", "-q", "-w", 640, "-h", 480, "-m", 100_000_000, "-x", 0.0001, "-v", "AAAAAA"]
+    if peer == "cfdg --animate":
+        frames = 5 if quick else 30
+        command = [*draw, "-D", "depth=8", "--animate", frames, HERE / "peers/koch.cfdg", folder / "theirs.mov"]
+        return [(command, None)], frames
+    if peer == "flam3-animate":
+        frames = 5 if quick else 30
+        flame = (HERE / "peers/fern.flame").read_text()
+        # As many points as kfrac draws, in one sample of time.
+        for old, new in [
+            ('size="1024 1024"', 'size="640 480" passes="1" temporal_samples="1"'),
+            ('quality="100"', f'quality="{1e6 / (640 * 480)}"'),
+            ('scale="95"', 'scale="45"'),
+        ]:
+            flame = flame.replace(old, new)
+        bent = flame.replace("-0.04 0.04", "-0.12 0.12")
+        times = [it.replace("<flame", f'<flame time="{time}"', 1) for time, it in [(0, flame), (frames, bent)]]
+        (folder / "film.flame").write_text(f"<flames>{times[0]}{times[1]}</flames>")
+        settings = {"in": str(folder / "film.flame"), "prefix": str(folder / "theirs"), "nthreads": "1"}
+        settings |= {"begin": "0", "end": str(frames - 1)}
+        return [(["flam3-animate"], settings)], frames
+    depth = 16 if "2^17" in name else 12
+    angles = [10, 60] if quick else [10, 20, 30, 40, 50, 60]
+    commands = [
+        ([*draw, "-D", f"depth={depth}", "-D", f"angle={angle}", HERE / "peers/tree.cfdg", folder / "theirs.png"], None)
+        for angle in angles
+    ]
+    return commands, len(angles)
+
+
+def films(kfrac, folder, quick):
+    """Measures the processor time of frames on one thread, without an encoder, beside programs that draw such films."""
+    print()
+    row("films, CPU a frame", "kfrac", "target", "", "peer", "ratio", "target", "", "memory", "its memory")
+    animate = lambda options, frames: [
+        kfrac, "animate", *options, "--frames", frames, "--size", "640x480", "--threads", 1,
+    ]  # fmt: skip
+    for name, options, frames, most, peer, ratio in FILMS:
+        frames = frames // 4 if quick else frames
+        seconds, memory = processor_time([*animate(options, frames), "-o", "-"])
+        ours = 1000 * seconds / frames
+        cells = [f"{ours:.1f} ms", f"{most} ms", verdict(ours <= most)]
+        if peer is not None and shutil.which(peer.split()[0].rstrip(",")) is not None:
+            commands, count = film_of(peer, name, folder, quick)
+            measured = [processor_time(command, None, settings) for command, settings in commands]
+            theirs = 1000 * sum(seconds for seconds, _ in measured) / count
+            cells += [f"{theirs:.0f} ms", f"{theirs / ours:.1f} x"]
+            cells += ["", ""] if ratio is None else [f"{ratio} x", verdict(theirs / ours >= ratio)]
+            cells += [f"{memory:.0f} MiB", f"{max(memory for _, memory in measured):.0f} MiB"]
+        else:
+            cells += ["", "", "", "", f"{memory:.0f} MiB"]
+        row(name, *cells)
+    _, options, *_ = FILMS[1]
+    frames = 15 if quick else 60
+    for kind in ENCODERS:
+        seconds, memory = processor_time([*animate(options, frames), "-o", folder / f"ours.{kind}"])
+        row(f"tree of 2^13 branches to .{kind}", f"{1000 * seconds / frames:.1f} ms", *[""] * 6, f"{memory:.0f} MiB")
+
+
 def in_space(kfrac, folder, quick):
     """Measures pictures in space to the pixel, on one thread and on two."""
     print()
@@ -341,6 +443,7 @@ def alone(kfrac, quick):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="small fractals, few runs")
+    parser.add_argument("--films", action="store_true", help="films only")
     target = os.environ.get("CARGO_TARGET_DIR", HERE.parent / "target")
     parser.add_argument("--kfrac", default=Path(target) / "release/kfrac", help="the program")
     arguments = parser.parse_args()
@@ -350,6 +453,8 @@ def main():
     if shutil.which("cfdg") is None:
         sys.exit("there is no cfdg: run apt-get install contextfree")
     with tempfile.TemporaryDirectory() as folder:
+        if arguments.films:
+            return films(kfrac, Path(folder), arguments.quick)
         beside(kfrac, Path(folder), arguments.quick)
         if shutil.which("flam3-render") is not None:
             beside_flam3(kfrac, Path(folder), arguments.quick)
@@ -363,6 +468,7 @@ def main():
             beside_strings(kfrac, Path(folder), arguments.quick)
         if shutil.which("povray") is not None:
             beside_pov(kfrac, Path(folder), arguments.quick)
+        films(kfrac, Path(folder), arguments.quick)
         in_space(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)
         alone(kfrac, arguments.quick)

@@ -8,6 +8,8 @@
 use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
+#[cfg(feature = "cli")]
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -86,6 +88,20 @@ impl OutputFile {
         Self::begin(folder, &path, permissions).map_err(|error| failed(error.kind().into()))
     }
 
+    /// Creates a file for a while: it never appears under a name of its own.
+    #[cfg(feature = "cli")]
+    pub(crate) fn temporary() -> io::Result<Self> {
+        Self::begin(&std::env::temp_dir(), Path::new(""), None)
+    }
+
+    /// Reads bytes that have been written, from a place on.
+    #[cfg(feature = "cli")]
+    pub(crate) fn read_at(&mut self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
+        // The buffer is empty after the move.
+        self.file.seek(SeekFrom::Start(place))?;
+        self.file.get_mut().read_exact(bytes)
+    }
+
     /// Begins a file, with the permissions of the one that it replaces.
     fn begin(folder: &Path, path: &Path, permissions: Option<Permissions>) -> io::Result<Self> {
         remove_abandoned(folder);
@@ -110,7 +126,8 @@ impl OutputFile {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
             let name = format!("{PREFIX}{}-{number}{SUFFIX}", std::process::id());
             let part = folder.join(name);
-            match File::create_new(&part) {
+            let mut options = File::options();
+            match options.read(true).write(true).create_new(true).open(&part) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 file => break (file?, part),
             }

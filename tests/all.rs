@@ -41,6 +41,7 @@ mod schema;
 mod sheets;
 mod skeletons;
 mod snapshots;
+mod steadiness;
 mod studio;
 mod surroundings;
 mod systems;

@@ -188,9 +188,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let message = "--svg applies to SVG only: write a .svg";
         return Err(Failure::Usage(message.into()));
     }
-    let film = plan::film(
-        arguments, &loaded, half_way, is_vector, source, catalogue, path,
-    )?;
+    let film = plan::film(arguments, &loaded, half_way, is_vector, catalogue, path)?;
     if !arguments.quiet && !is_vector {
         let note = forecast::note(&film, format)?;
         note.iter().for_each(|note| text::print_message(note));

@@ -266,7 +266,8 @@ impl Arguments {
             };
             // A parameter that neither has is reported for the first.
             let settings = own.chain(&lost).cloned().collect();
-            both.push(arguments.resolve(document, settings, self.quiet || self.json)?);
+            let quiet = self.quiet || self.json;
+            both.push(arguments.resolve(document.into(), settings, quiet)?);
         }
         both.try_into()
             .map_err(|_| anyhow!("two fractals are compared").into())

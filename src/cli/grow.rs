@@ -13,7 +13,7 @@ mod watching;
 mod zoom;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::ValueHint;
@@ -21,6 +21,7 @@ use clap::{Args, FromArgMatches};
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
+use crate::document::Document;
 use crate::export;
 use crate::fractal::Goal;
 use crate::graph::Graph;
@@ -215,16 +216,61 @@ pub(crate) fn hold(
     catalogue: &Catalogue,
     held: Arc<Held>,
 ) -> Result<String, Failure> {
-    let command = Arguments::augment_args(clap::Command::new("grow").no_binary_name(true));
-    let usage = |error: clap::Error| Failure::usage(&error);
-    let matches = command.try_get_matches_from(arguments).map_err(usage)?;
-    let mut arguments = Arguments::from_arg_matches(&matches).map_err(usage)?;
-    arguments.growth.held = Some(held);
+    let arguments = Parser::new().parse(arguments, held)?;
     let plan = Plan::of(&arguments)?;
     let loaded = arguments.rule.load_from(source, catalogue, true)?;
     let loaded = arguments.tween.apply(loaded, catalogue, true)?;
     let (_, summary, _) = arguments.grow(&plan, loaded)?;
     Ok(summary)
+}
+
+/// Parser of arguments of the command.
+struct Parser(clap::Command);
+
+impl Parser {
+    fn new() -> Self {
+        let command = clap::Command::new("grow").no_binary_name(true);
+        Self(Arguments::augment_args(command))
+    }
+
+    fn parse(&mut self, arguments: &[String], held: Arc<Held>) -> Result<Arguments, Failure> {
+        let usage = |error: clap::Error| Failure::usage(&error);
+        let matches = self.0.try_get_matches_from_mut(arguments).map_err(usage)?;
+        let mut arguments = Arguments::from_arg_matches(&matches).map_err(usage)?;
+        arguments.growth.held = Some(held);
+        Ok(arguments)
+    }
+}
+
+/// Runs of the command with many arguments for one rule, which is read once.
+pub(super) struct Runs<'a> {
+    document: Arc<Document>,
+    catalogue: &'a Catalogue,
+    parser: Mutex<Parser>,
+}
+
+impl<'a> Runs<'a> {
+    pub(super) fn new(document: Arc<Document>, catalogue: &'a Catalogue) -> Self {
+        Self {
+            document,
+            catalogue,
+            parser: Mutex::new(Parser::new()),
+        }
+    }
+
+    /// Runs the command as [`hold`] does.
+    pub(super) fn hold(&self, arguments: &[String], held: Arc<Held>) -> Result<(), Failure> {
+        let arguments = {
+            let mut parser = self.parser.lock().unwrap_or_else(PoisonError::into_inner);
+            parser.parse(arguments, held)?
+        };
+        let plan = Plan::of(&arguments)?;
+        let settings = arguments.rule.settings()?;
+        let document = Arc::clone(&self.document);
+        let loaded = arguments.rule.resolve(document, settings, true)?;
+        let loaded = arguments.tween.apply(loaded, self.catalogue, true)?;
+        arguments.grow(&plan, loaded).map(|_| ())
+    }
 }
 
 impl Arguments {

@@ -16,7 +16,7 @@ use crate::graph::{Chain, Graph, Replacement, TooLarge};
 use crate::grow::{Growth, Progress, WalkError};
 use crate::model::Model;
 use crate::parallel::all_cores;
-use crate::render::{self, PngEncoding, RenderError, Size};
+use crate::render::{self, PngEncoding, RenderError, Size, Spares};
 use crate::rule::Placement;
 
 use super::held::Held;
@@ -80,7 +80,8 @@ impl GrowthArguments {
     ) -> Result<(T, u64), Failure> {
         match &self.held {
             Some(held) if path == Path::new("-") => {
-                let (written, bytes) = output::write_held(held.most, content)?;
+                let spare = std::mem::take(&mut held.done().bytes);
+                let (written, bytes) = output::write_held(spare, held.most, content)?;
                 let count = bytes.len() as u64;
                 held.done().bytes = bytes;
                 Ok((written, count))
@@ -108,6 +109,12 @@ impl GrowthArguments {
         self.held
             .as_ref()
             .map_or_else(PngEncoding::default, |held| held.png)
+    }
+
+    /// Returns the memory of finished pictures, for those that follow.
+    pub(super) fn spares(&self) -> Spares {
+        let held = self.held.as_ref();
+        held.map_or_else(Spares::default, |held| held.spares.clone())
     }
 
     /// Returns whether the limit of the number of elements is given.

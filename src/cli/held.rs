@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::estimate::SizeEstimate;
 use crate::geometry::Homothety;
 use crate::render::space::Sight;
-use crate::render::{Canvas, Picture, PngEncoding};
+use crate::render::{Canvas, Picture, PngEncoding, Spares};
 
 /// Destination of a command that runs within the program, in place of standard output and standard error.
 #[derive(Debug, Default)]
@@ -20,6 +20,8 @@ pub(crate) struct Held {
     pub(crate) most: usize,
     /// Whether a picture of the plane is not drawn: only its numbers are found.
     pub(crate) surveys: bool,
+    /// Memory of finished pictures, for those that follow.
+    pub(crate) spares: Spares,
     done: Mutex<Done>,
 }
 
@@ -54,6 +56,13 @@ impl Held {
             png,
             ..Self::default()
         }
+    }
+
+    /// Lets the output take the place of another one.
+    pub(crate) fn in_place_of(self, mut bytes: Vec<u8>) -> Self {
+        bytes.clear();
+        self.done().bytes = bytes;
+        self
     }
 
     /// Takes the results of the command that has ended.
@@ -95,8 +104,8 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    pub(super) fn new(most: usize) -> Self {
-        let bytes = Vec::new();
+    /// Returns an output in empty memory.
+    pub(super) fn new(bytes: Vec<u8>, most: usize) -> Self {
         Self { bytes, most }
     }
 }

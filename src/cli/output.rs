@@ -96,13 +96,14 @@ pub(super) fn write<T>(
     Ok((written, out.bytes))
 }
 
-/// Writes to memory, at most `most` bytes, and returns them.
+/// Writes to memory, at most `most` bytes, and returns them. `spare` is empty memory for them.
 pub(super) fn write_held<T>(
+    spare: Vec<u8>,
     most: usize,
     content: impl FnOnce(&mut Counted<Output>, Option<&Progress>) -> Result<T, Failure>,
 ) -> Result<(T, Vec<u8>), Failure> {
     let mut out = Counted {
-        inner: Output::Memory(Memory::new(most)),
+        inner: Output::Memory(Memory::new(spare, most)),
         bytes: 0,
     };
     let written = content(&mut out, None)?;

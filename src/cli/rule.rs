@@ -64,14 +64,14 @@ pub(super) type Member = (Vec<Setting>, Loaded);
 pub(super) struct Loaded {
     /// Name in messages.
     pub(super) name: String,
-    pub(super) document: Document,
+    pub(super) document: Arc<Document>,
     pub(super) model: Model,
     /// Parameters that were set.
     pub(super) settings: Vec<Setting>,
     /// Omitted maps, numbered as on the command line.
     pub(super) omitted: Vec<u32>,
     /// Names and files of further rules of which the model is made.
-    pub(super) beside: Vec<(String, Document)>,
+    pub(super) beside: Vec<(String, Arc<Document>)>,
     /// Options, with their values, by which the model is made of all rules.
     pub(super) made_by: Vec<(&'static str, String)>,
     /// Seed and limit of the number of elements, for graphs that depend on them.
@@ -86,7 +86,9 @@ impl Loaded {
     /// Returns the paths of the files of which the model is made.
     pub(super) fn paths(&self) -> Vec<PathBuf> {
         let all = { self.beside.iter() }.map(|(_, document)| document);
-        let paths = all.chain([&self.document]).flat_map(Document::paths);
+        let paths = all
+            .chain([&self.document])
+            .flat_map(|document| document.paths());
         paths.map(Path::to_path_buf).collect()
     }
 
@@ -291,9 +293,15 @@ impl RuleArguments {
         catalogue: &Catalogue,
         quiet: bool,
     ) -> Result<Loaded, Failure> {
-        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
+        let settings = self.settings()?;
         let document = input::document(source, catalogue)?;
-        self.resolve(document, settings?.concat(), quiet)
+        self.resolve(document.into(), settings, quiet)
+    }
+
+    /// Returns the settings of parameters, each of which has a single value.
+    pub(super) fn settings(&self) -> Result<Vec<Setting>, Failure> {
+        let settings: Result<Vec<_>, _> = self.set.iter().map(Assignment::settings).collect();
+        Ok(settings?.concat())
     }
 
     /// Returns the members of a family, each with its settings; `samples` is the number of values of a range.
@@ -308,10 +316,11 @@ impl RuleArguments {
         if swept.is_empty() {
             return Ok(Vec::new());
         }
-        let document = input::document(&open(&self.rule, catalogue)?, catalogue)?;
+        let document = Arc::new(input::document(&open(&self.rule, catalogue)?, catalogue)?);
         let members = swept.into_iter().enumerate().map(|(number, own)| {
             let settings = [fixed.as_slice(), &own].concat();
-            let mut loaded = self.resolve(document.clone(), settings, quiet || number > 0)?;
+            let document = Arc::clone(&document);
+            let mut loaded = self.resolve(document, settings, quiet || number > 0)?;
             loaded.settings.clone_from(&fixed);
             Ok((own, loaded))
         });
@@ -321,15 +330,19 @@ impl RuleArguments {
     /// Resolves the rule after it has been read.
     pub(super) fn resolve(
         &self,
-        document: Document,
+        document: Arc<Document>,
         settings: Vec<Setting>,
         quiet: bool,
     ) -> Result<Loaded, Failure> {
         let name = name_of(&self.rule).to_string_lossy().into_owned();
         for setting in &settings {
-            check_setting(setting, &settings, &document, &name)?;
+            check_name(setting, &document, &name)?;
         }
-        let (model, warnings) = document.resolve(&settings)?;
+        let (model, warnings) = document.resolve(&settings).map_err(|diagnostics| {
+            let mut causes = settings.iter();
+            let cause = causes.find_map(|setting| mistake(setting, &settings, &document));
+            cause.unwrap_or_else(|| diagnostics.into())
+        })?;
         if !quiet && !warnings.is_empty() {
             text::print_diagnostics(&warnings);
         }
@@ -386,42 +399,37 @@ impl RuleArguments {
     }
 }
 
-/// Checks a setting: an error in it is an error on the command line, not in the file.
-fn check_setting(
-    setting: &Setting,
-    settings: &[Setting],
-    document: &Document,
-    rule: &str,
-) -> Result<(), Failure> {
+/// Checks the name of a setting.
+fn check_name(setting: &Setting, document: &Document, rule: &str) -> Result<(), Failure> {
     let params = &document.metadata().params;
-    if !params.iter().any(|param| param.name.value == setting.name) {
-        let hint = document.metadata().instead_of(&setting.name);
-        let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
-        return Err(Failure::Usage(message));
+    if params.iter().any(|param| param.name.value == setting.name) {
+        return Ok(());
     }
+    let hint = document.metadata().instead_of(&setting.name);
+    let message = format!("{rule} has no parameter '{}' ({hint})", setting.name);
+    Err(Failure::Usage(message))
+}
+
+/// Returns the mistake that a setting causes: it is one on the command line, not in the file.
+fn mistake(setting: &Setting, settings: &[Setting], document: &Document) -> Option<Failure> {
     let others: Vec<_> = settings
         .iter()
         .filter(|other| other.name == setting.name)
         .cloned()
         .collect();
-    let unset = document.resolve(&[]);
-    match document.resolve(&others) {
-        // The file is correct with its own values, so that this setting causes the error.
-        Err(diagnostics) if unset.is_ok() => {
-            let errors = diagnostics
-                .iter()
-                .filter(|diagnostic| diagnostic.severity() == Severity::Error);
-            let messages: Vec<_> = errors.map(Diagnostic::message).collect();
-            let message = format!(
-                "--set {}={}: {}",
-                setting.name,
-                setting.value,
-                messages.join("; ")
-            );
-            Err(Failure::Usage(message))
-        }
-        _ => Ok(()),
-    }
+    let diagnostics = document.resolve(&others).err()?;
+    // The file is correct with its own values, so that this setting causes the error.
+    document.resolve(&[]).ok()?;
+    let errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.severity() == Severity::Error);
+    let messages: Vec<_> = errors.map(Diagnostic::message).collect();
+    Some(Failure::Usage(format!(
+        "--set {}={}: {}",
+        setting.name,
+        setting.value,
+        messages.join("; ")
+    )))
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ const ROUNDING: f64 = 1e-14;
 
 /// Number of rounds that are taken regardless of the number of corners that are mapped.
 const MIN_ROUNDS: usize = 4;
+/// Factor by which the error of polygons exceeds the one for which they are thinned.
+const FAR: f64 = 64.0;
 /// Number of rounds after which corners are followed to their limits.
 const FEW_ROUNDS: usize = 4;
 
@@ -133,7 +135,7 @@ impl Graph {
             corners.extend((!is_empty).then_some(self.middle));
         }
         let (mut work, mut asked) = (0, 0);
-        let (mut tolerance, mut coarse) = (0.0, 0.25);
+        let (mut tolerance, mut coarse, mut is_fine) = (0.0, 0.25, false);
         for round in 0.. {
             let polygons = &hulls.corners[..images.len()];
             let next = points.iter().zip(&images).map(|(points, images)| {
@@ -160,7 +162,7 @@ impl Graph {
                     .map(|(a, b)| apart(a, b))
                     .collect();
                 // The remaining change is that of thinning.
-                let settled = changes.iter().all(|change| *change <= 2.0 * tolerance);
+                let settled = is_fine && changes.iter().all(|it| *it <= 2.0 * tolerance);
                 let change = changes.iter().zip(&behaviours);
                 let change = change.map(|(change, weight)| (change + tolerance) / weight);
                 let change = sum * change.fold(0.0, f64::max);
@@ -177,7 +179,10 @@ impl Graph {
                     let is_known = within.iter().all(|it| it.is_finite());
                     return is_known.then(|| hulls.sorted());
                 }
-                tolerance = coarse * wanted / sum;
+                // Polygons far from the hulls need few corners.
+                let error = within.iter().copied().fold(0.0, f64::max) / FAR;
+                is_fine = error <= wanted;
+                tolerance = coarse * error.max(wanted) / sum;
             }
             let next = if round < FEW_ROUNDS {
                 next

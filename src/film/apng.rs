@@ -13,6 +13,8 @@ pub(crate) struct Apng<W: Write> {
     is_opaque: bool,
     /// Preceding frame; empty before the first.
     before: Vec<u8>,
+    /// Scratch memory for the part of a frame that is written.
+    part: Vec<u8>,
 }
 
 impl<W: Write> Apng<W> {
@@ -51,6 +53,7 @@ impl<W: Write> Apng<W> {
             width,
             is_opaque: options.is_opaque,
             before: Vec::new(),
+            part: Vec::new(),
         })
     }
 }
@@ -63,13 +66,13 @@ impl<W: Write> FilmEncoder for Apng<W> {
             false => changed(&self.before, pixels, self.width),
         };
         let [left, top, across, down] = area;
-        let part: Vec<u8> = match self.is_opaque {
-            true => rows(pixels, self.width, area)
-                .flat_map(|row| row.as_chunks::<4>().0)
-                .flat_map(|&[red, green, blue, _]| [red, green, blue])
-                .collect(),
-            false => rows(pixels, self.width, area).collect::<Vec<_>>().concat(),
-        };
+        self.part.clear();
+        for row in rows(pixels, self.width, area) {
+            match self.is_opaque {
+                true => push_opaque(row, &mut self.part),
+                false => self.part.extend_from_slice(row),
+            }
+        }
         if !self.before.is_empty() {
             // The position goes first: a part must lie in the picture at any time.
             (self.writer.reset_frame_position())
@@ -77,7 +80,7 @@ impl<W: Write> FilmEncoder for Apng<W> {
                 .and_then(|()| self.writer.set_frame_position(left, top))
                 .map_err(failed)?;
         }
-        self.writer.write_image_data(&part).map_err(failed)?;
+        (self.writer.write_image_data(&self.part)).map_err(failed)?;
         self.before.clear();
         self.before.extend_from_slice(pixels);
         Ok(())
@@ -85,5 +88,16 @@ impl<W: Write> FilmEncoder for Apng<W> {
 
     fn finish(self: Box<Self>) -> io::Result<()> {
         self.writer.finish().map_err(failed)
+    }
+}
+
+/// Adds the colours of opaque pixels.
+fn push_opaque(row: &[u8], part: &mut Vec<u8>) {
+    let pixels = row.as_chunks::<4>().0;
+    let start = part.len();
+    part.resize(start + 3 * pixels.len(), 0);
+    let colours = part[start..].as_chunks_mut::<3>().0;
+    for (colour, &[red, green, blue, _]) in colours.iter_mut().zip(pixels) {
+        *colour = [red, green, blue];
     }
 }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 use std::io::{self, Read, Write};
+use std::ops::Range;
 
 use color_quant::NeuQuant;
 use flate2::Compression;
@@ -10,11 +11,12 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use gif::{AnyExtension, DisposalMethod, Encoder, Frame, Repeat};
 
-use super::{FilmEncoder, FilmOptions, changed, failed, on_white, rows};
+use super::{FilmEncoder, FilmOptions, changed, failed, on_white, rows, runs};
 use crate::fast_hash::FastMap;
+use crate::output_file::OutputFile;
 
-/// Largest size of all frames together while they wait for the palette, compressed.
-const MAX_BYTES: usize = 1 << 30;
+/// Largest size of all frames together that wait for the palette in memory, compressed.
+const MAX_HELD: usize = 1 << 26;
 
 /// Number of pixels from which a palette is chosen.
 const SAMPLES: usize = 1 << 20;
@@ -39,38 +41,65 @@ pub(crate) struct Gif<W> {
     few: Option<BTreeSet<Rgba>>,
 }
 
-/// Compressed frames that wait for the palette.
-#[derive(Default)]
+/// Compressed frames that wait for the palette: in memory, or if they are many in a temporary file.
 struct Spool {
-    frames: Vec<Vec<u8>>,
-    bytes: usize,
+    /// Number of bytes above which they lie in the file.
+    most: usize,
+    held: Vec<u8>,
+    file: Option<OutputFile>,
+    /// Places of the frames in memory or in the file.
+    places: Vec<Range<usize>>,
 }
 
 impl Spool {
+    fn new(most: usize) -> Self {
+        Self {
+            most,
+            held: Vec::new(),
+            file: None,
+            places: Vec::new(),
+        }
+    }
+
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(pixels)?;
         let frame = encoder.finish()?;
-        self.bytes += frame.len();
-        if self.bytes > MAX_BYTES {
-            return Err(failed(
-                "the frames take more than 1 GiB before their colours are known; .png, .y4m and .mp4 need no palette",
-            ));
+        let start = self.places.last().map_or(0, |place| place.end);
+        let end = start + frame.len();
+        if self.file.is_none() && end > self.most {
+            let mut file = OutputFile::temporary()?;
+            file.write_all(&std::mem::take(&mut self.held))?;
+            self.file = Some(file);
         }
-        self.frames.push(frame);
+        match &mut self.file {
+            Some(file) => file.write_all(&frame)?,
+            None => self.held.extend_from_slice(&frame),
+        }
+        self.places.push(start..end);
         Ok(())
     }
 
-    fn pixels(&self, number: usize) -> io::Result<Vec<u8>> {
+    fn pixels(&mut self, number: usize) -> io::Result<Vec<u8>> {
+        let place = self.places[number].clone();
+        let mut read = Vec::new();
+        let frame = match &mut self.file {
+            Some(file) => {
+                read.resize(place.len(), 0);
+                file.read_at(place.start as u64, &mut read)?;
+                &read
+            }
+            None => &self.held[place],
+        };
         let mut pixels = Vec::new();
-        ZlibDecoder::new(self.frames[number].as_slice()).read_to_end(&mut pixels)?;
+        ZlibDecoder::new(frame).read_to_end(&mut pixels)?;
         Ok(pixels)
     }
 
     /// Returns pixels from all over the film.
-    fn samples(&self, size: [u32; 2]) -> io::Result<Vec<u8>> {
-        let step = self.frames.len().div_ceil(SAMPLED_FRAMES).max(1);
-        let numbers = (0..self.frames.len()).step_by(step);
+    fn samples(&mut self, size: [u32; 2]) -> io::Result<Vec<u8>> {
+        let step = self.places.len().div_ceil(SAMPLED_FRAMES).max(1);
+        let numbers = (0..self.places.len()).step_by(step);
         let [width, height] = size.map(|side| side as usize);
         let apart = (width * height * numbers.len()).div_ceil(SAMPLES).max(1);
         let mut samples = Vec::new();
@@ -161,7 +190,7 @@ impl<W: Write> Gif<W> {
         Ok(Self {
             out,
             options: options.clone(),
-            spool: Spool::default(),
+            spool: Spool::new(MAX_HELD),
             few: Some(BTreeSet::new()),
         })
     }
@@ -170,34 +199,29 @@ impl<W: Write> Gif<W> {
 impl<W: Write> FilmEncoder for Gif<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         let is_opaque = self.options.is_opaque;
-        let mut own = Vec::with_capacity(pixels.len());
-        let mut last = None;
-        for &pixel in pixels.as_chunks::<4>().0 {
-            let shown = match is_opaque || pixel[3] >= 128 {
+        let mut own: Vec<Rgba> = Vec::with_capacity(pixels.len() / 4);
+        for run in runs(pixels) {
+            let shown = match is_opaque || run[0][3] >= 128 {
                 true => {
-                    let [red, green, blue] = on_white(pixel);
+                    let [red, green, blue] = on_white(run[0]);
                     [red, green, blue, 255]
                 }
                 false => [0; 4],
             };
-            own.extend(shown);
-            if last == Some(shown) {
-                continue;
-            }
-            last = Some(shown);
+            own.resize(own.len() + run.len(), shown);
             if let Some(few) = &mut self.few {
                 few.insert(shown);
                 self.few.take_if(|few| few.len() > COLOURS);
             }
         }
-        self.spool.add(&own)
+        self.spool.add(own.as_flattened())
     }
 
     fn finish(self: Box<Self>) -> io::Result<()> {
         let Self {
             mut out,
             options,
-            spool,
+            mut spool,
             few,
         } = *self;
         let mut palette = match &few {
@@ -221,15 +245,17 @@ impl<W: Write> FilmEncoder for Gif<W> {
             written.map_err(failed)?;
         }
         let mut before: Option<Vec<u8>> = None;
-        for number in 0..spool.frames.len() {
+        for number in 0..spool.places.len() {
             let pixels = spool.pixels(number)?;
             let area = match &before {
                 // An empty pixel keeps that of the frame before, which is therefore taken away as a whole.
                 Some(before) if empty.is_none() => changed(before, &pixels, width),
                 _ => [0, 0, width, height],
             };
-            let part = rows(&pixels, width, area).flat_map(|row| row.as_chunks::<4>().0);
-            let indices: Vec<u8> = part.map(|colour| palette.index(*colour)).collect();
+            let mut indices = Vec::new();
+            for run in rows(&pixels, width, area).flat_map(runs) {
+                indices.resize(indices.len() + run.len(), palette.index(run[0]));
+            }
             let frame = u32::try_from(number).unwrap_or(u32::MAX);
             let [start, end] = [frame, frame + 1].map(|it| options.rate.hundredths(it));
             let [left, top, across, down] = area.map(narrow);
@@ -304,9 +330,15 @@ mod tests {
     }
 
     fn film(frames: &[Vec<u8>], is_opaque: bool) -> Vec<u8> {
+        spooled(frames, is_opaque, MAX_HELD)
+    }
+
+    /// Returns a film of whose frames up to a number of bytes wait in memory.
+    fn spooled(frames: &[Vec<u8>], is_opaque: bool, most: usize) -> Vec<u8> {
         let mut bytes = Vec::new();
         let count = u32::try_from(frames.len()).unwrap();
         let mut gif = Gif::begin(&mut bytes, &options(count, is_opaque)).unwrap();
+        gif.spool = Spool::new(most);
         frames.iter().for_each(|frame| gif.add(frame).unwrap());
         Box::new(gif).finish().unwrap();
         bytes
@@ -350,5 +382,8 @@ mod tests {
         let pairs = frames.concat().into_iter().zip(shown.concat());
         let apart = pairs.map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>();
         assert!(apart / (4.0 * 40.0 * 30.0 * 5.0) < 8.0, "{apart}");
+        for most in [0, 1000] {
+            assert!(spooled(&frames, true, most) == film(&frames, true));
+        }
     }
 }

@@ -84,6 +84,12 @@ fn rows(pixels: &[u8], width: u32, area: Area) -> impl Iterator<Item = &[u8]> {
     rows.map(move |row| &row[4 * left..4 * (left + across)])
 }
 
+/// Iterates over runs of equal pixels.
+fn runs(pixels: &[u8]) -> impl Iterator<Item = &[[u8; 4]]> {
+    let pixels = pixels.as_chunks::<4>().0;
+    pixels.chunk_by(|one, next| u32::from_ne_bytes(*one) == u32::from_ne_bytes(*next))
+}
+
 /// Blends a pixel with white paper.
 fn on_white([red, green, blue, alpha]: [u8; 4]) -> [u8; 3] {
     [red, green, blue].map(|value| {

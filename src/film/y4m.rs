@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{FilmEncoder, FilmOptions, on_white};
+use super::{FilmEncoder, FilmOptions, on_white, runs};
 
 /// Encoder of YUV4MPEG2: three planes of full size a frame, in the limited range of ITU-R BT.601, on white paper.
 pub(crate) struct Y4m<W> {
@@ -30,9 +30,9 @@ impl<W: Write> Y4m<W> {
 impl<W: Write> FilmEncoder for Y4m<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
         self.planes.iter_mut().for_each(Vec::clear);
-        for &pixel in pixels.as_chunks::<4>().0 {
-            for (plane, value) in self.planes.iter_mut().zip(converted(on_white(pixel))) {
-                plane.push(value);
+        for run in runs(pixels) {
+            for (plane, value) in self.planes.iter_mut().zip(converted(on_white(run[0]))) {
+                plane.resize(plane.len() + run.len(), value);
             }
         }
         self.out.write_all(b"FRAME\n")?;
@@ -46,17 +46,21 @@ impl<W: Write> FilmEncoder for Y4m<W> {
 
 /// Returns luma and both differences of a colour, rounded.
 fn converted(colour: [u8; 3]) -> [u8; 3] {
-    const WEIGHTS: [([i32; 3], i32); 3] = [
-        ([16_829, 33_039, 6_416], 16),
-        ([-9_714, -19_070, 28_784], 128),
-        ([28_784, -24_103, -4_681], 128),
-    ];
-    WEIGHTS.map(|(weights, zero)| {
-        let sum: i32 = { weights.iter().zip(colour) }
-            .map(|(weight, it)| weight * i32::from(it))
-            .sum();
-        u8::try_from(((sum + (1 << 15)) >> 16) + zero).unwrap_or(u8::MAX)
-    })
+    let [red, green, blue] = colour.map(i32::from);
+    let luma = 16_829 * red + 33_039 * green + 6_416 * blue;
+    let blueness = -9_714 * red - 19_070 * green + 28_784 * blue;
+    let redness = 28_784 * red - 24_103 * green - 4_681 * blue;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 16 to 240"
+    )]
+    let rounded = |sum: i32, zero: i32| (((sum + (1 << 15)) >> 16) + zero) as u8;
+    [
+        rounded(luma, 16),
+        rounded(blueness, 128),
+        rounded(redness, 128),
+    ]
 }
 
 #[cfg(test)]

@@ -76,6 +76,14 @@ impl<P: Point> Bounds<P> {
         at_most(self.min, other.max) && at_most(other.min, self.max)
     }
 
+    /// Returns `true` if the box holds all of another box.
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        let mut all = *self;
+        all.add_all(other);
+        all == *self
+    }
+
     /// Extends the box to hold a point.
     #[inline]
     pub fn add(&mut self, point: P) {

@@ -72,12 +72,15 @@ pub struct Density {
     pub shades: Shades,
     /// Colour of the background; `None` for transparency.
     pub background: Option<Colour>,
+    /// Encoding of the PNG.
+    pub png: PngEncoding,
 }
 
 setters!(Density {
     tone: Tone,
     shades: Shades,
     background: Option<Colour>,
+    png: PngEncoding,
 });
 
 impl Default for Density {
@@ -86,6 +89,7 @@ impl Default for Density {
             tone: Tone::default(),
             shades: Shades::Ink(Colour::BLACK),
             background: None,
+            png: PngEncoding::default(),
         }
     }
 }
@@ -116,10 +120,7 @@ pub fn write_density(
             hits.sum()
         }),
     }
-    // The encoder does not pass on why writing to `out` fails, so it writes to memory.
-    let mut bytes = Vec::new();
-    write_pixels(&pixmap, labels, PngEncoding::default(), &mut bytes)?;
-    Ok(out.write_all(&bytes)?)
+    Ok(write_pixels(&pixmap, labels, density.png, out)?)
 }
 
 /// Paints every pixel. `hits` returns the number of hits of a pixel, over all classes.

@@ -178,6 +178,9 @@ impl<'a> Surveyor<'a> {
         let prepass = Prepass::new(graph, style, growth.steps)
             .of_what_is_in(culling.clone())
             .with_ranks_of(&growth);
+        if let Some(whole) = self.within(&canvas, &bounds, &culling) {
+            return Ok(whole.of_what_comes_into(met));
+        }
         // Elements within a pixel of the picture contribute to the coverage at its edge.
         let shown = canvas.shown(stroke + 1.0);
         let culling = culling.within(&shown, graph, &growth, style, prepass.counts_ranks());
@@ -191,6 +194,23 @@ impl<'a> Surveyor<'a> {
         };
         self.check(&prepass)?;
         Ok(prepass)
+    }
+
+    /// Returns the prepass of the whole set, of which nothing is culled, if the graph determines it and the set lies in a
+    /// window. `start` is the box of the initiator.
+    fn within(&self, canvas: &Canvas, start: &Bounds, culling: &Culling) -> Option<Prepass<'a>> {
+        let Self { graph, growth, .. } = *self;
+        let Options {
+            style, short_cuts, ..
+        } = self.options;
+        // Most windows that show a part only do not show all of the initiator.
+        let shown = canvas.shown(0.0);
+        if culling.cuts() || !short_cuts.has(ShortCut::Prepass) || !shown.contains(start) {
+            return None;
+        }
+        let mut whole = Prepass::known(graph, &growth, style, growth.steps)?;
+        whole.steps = growth.steps;
+        Some(whole).filter(|whole| shown.contains(&whole.bounds))
     }
 
     /// Sets the number of steps that corresponds to a cutoff length, if all elements of a step are equally

@@ -70,6 +70,8 @@ pub(crate) use pixels::draw_paths;
 pub(crate) use pixels::survey;
 pub use pixels::{Pixels, pixels};
 pub use plot::{Pens, Plotted};
+#[cfg(feature = "cli")]
+pub(crate) use png::Spares;
 pub use png::TooManyPixels;
 pub(crate) use prepass::Prepass;
 pub(crate) use scene::Scene;

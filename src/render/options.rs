@@ -8,6 +8,7 @@ use crate::style::{Named, Style, View};
 
 use super::canvas::Size;
 use super::plot::Pens;
+use super::png::Spares;
 use super::short_cuts::ShortCuts;
 use super::unit::Unit;
 
@@ -112,6 +113,8 @@ pub struct Options {
     pub detail: Option<Detail>,
     /// Short cuts that drawing may take; all by default.
     pub short_cuts: ShortCuts,
+    /// Memory of finished pictures, for those that follow; none by default.
+    pub(crate) spares: Spares,
     /// Metadata of the file.
     pub labels: Labels,
     /// Number of threads; by default that of the machine's cores. The bytes do not depend on it.
@@ -153,6 +156,7 @@ impl Default for Options {
             png: PngEncoding::default(),
             detail: None,
             short_cuts: ShortCuts::default(),
+            spares: Spares::default(),
             labels: Labels::default(),
             threads: all_cores(),
         }

@@ -15,7 +15,7 @@ use super::error::RenderError;
 use super::options::{Labels, Options, PngEncoding};
 use super::picture::Picture;
 use super::plot::Plot;
-use super::png::{Png, TooManyPixels, write_pixels};
+use super::png::{Png, Spare, TooManyPixels, write_pixels};
 
 /// Pixels of a picture, in rows from the top, each from the left: red, green, blue and alpha of 8 bits (sRGB).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,7 +73,9 @@ impl Pixels {
     ///
     /// If there is no memory for the encoder.
     pub fn into_png(self, encoding: PngEncoding) -> Result<Vec<u8>, RenderError> {
-        self.encode(&Labels::default(), encoding)
+        let mut png = Vec::new();
+        self.encode(&Labels::default(), encoding, &mut png)?;
+        Ok(png)
     }
 }
 
@@ -94,21 +96,22 @@ impl Pixels {
 
     /// Writes the picture as PNG.
     pub(crate) fn write(self, options: &Options, out: &mut impl Write) -> Result<(), RenderError> {
-        // The encoder does not pass on why writing to `out` fails, so it writes to memory.
-        let png = self.encode(&options.labels, options.png)?;
-        Ok(out.write_all(&png)?)
+        self.encode(&options.labels, options.png, out)
     }
 
-    fn encode(self, labels: &Labels, encoding: PngEncoding) -> Result<Vec<u8>, RenderError> {
+    fn encode(
+        self,
+        labels: &Labels,
+        encoding: PngEncoding,
+        out: &mut impl Write,
+    ) -> Result<(), RenderError> {
         let Self {
             size: size @ [width, height],
             bytes,
         } = self;
         let pixmap = IntSize::from_wh(width, height).and_then(|size| Pixmap::from_vec(bytes, size));
         let pixmap = pixmap.ok_or(TooManyPixels { size })?;
-        let mut png = Vec::new();
-        write_pixels(&pixmap, labels, encoding, &mut png)?;
-        Ok(png)
+        Ok(write_pixels(&pixmap, labels, encoding, out)?)
     }
 }
 
@@ -162,7 +165,7 @@ fn draw(
 pub(crate) fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pixels, RenderError> {
     let size = drawing.size();
     with_team(options.threads, |team| {
-        let mut png = Png::begin(size, drawing.background(), team)?;
+        let mut png = Png::begin(size, drawing.background(), Spare::default(), team)?;
         drawing.draw(&mut png, team)?;
         let (pixmap, _) = png.into_pixels();
         Ok(Pixels::of(pixmap))

@@ -18,6 +18,7 @@ mod raster;
 mod region;
 mod ring;
 mod skia;
+mod spare;
 mod split;
 mod sprites;
 mod stroker;
@@ -30,6 +31,8 @@ pub(super) use level_of_detail::LevelOfDetail;
 pub(super) use means::Means;
 pub(super) use raster::PlacedSprite;
 pub(crate) use raster::Raster;
+pub(super) use spare::Spare;
+pub(crate) use spare::Spares;
 pub(super) use split::ROWS as BAND_ROWS;
 pub(super) use sprites::Put;
 
@@ -44,7 +47,7 @@ use crate::style::Colour;
 
 use self::chunk::{Chunk, Command};
 use self::coverage::{SpritePaint, bounding, flattened, has_room};
-use self::part::{Layers, PicturePart};
+use self::part::PicturePart;
 use self::region::Region;
 use self::skia::Outline;
 use self::stroker::{Stroker, Strokers, Trail};
@@ -82,10 +85,6 @@ fn bytes(size: &[u32; 2]) -> f64 {
     f64::from(size[0]) * f64::from(size[1]) * 4e-9
 }
 
-/// Coverage buffers for other bands. Threads that repeatedly free and allocate memory would each retain it.
-#[derive(Default)]
-pub(super) struct Spare(Layers);
-
 /// Picture in memory.
 pub(super) struct Png<'t, 'w> {
     /// Part of the picture that is drawn on.
@@ -119,11 +118,12 @@ impl<'t, 'w> Png<'t, 'w> {
     pub(super) fn begin(
         size: [u32; 2],
         background: Option<Colour>,
+        spare: Spare,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
         let height = size[1];
         TooManyPixels::check(size)?;
-        Self::begin_on(size, 0..height, Outline::default(), background, team)
+        Self::begin_on(size, 0..height, Outline::default(), background, spare, team)
     }
 
     /// Begins a band of a picture: some of its rows, the first of which is a multiple of [`BAND_ROWS`]. Their
@@ -136,9 +136,7 @@ impl<'t, 'w> Png<'t, 'w> {
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
         let outline = Outline::of_rows(rows.clone());
-        let mut png = Self::begin_on(size, rows, outline, background, team)?;
-        png.part = png.part.on(spare.0);
-        Ok(png)
+        Self::begin_on(size, rows, outline, background, spare, team)
     }
 
     fn begin_on(
@@ -146,9 +144,11 @@ impl<'t, 'w> Png<'t, 'w> {
         rows: Range<u32>,
         outline: Outline,
         background: Option<Colour>,
+        spare: Spare,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
-        let mut part = PicturePart::of_rows([0, 0], size, rows).ok_or(TooManyPixels { size })?;
+        let part = PicturePart::of_rows([0, 0], size, rows, spare.pixmap);
+        let mut part = part.ok_or(TooManyPixels { size })?.on(spare.layers);
         if let Some(background) = background {
             let [red, green, blue, opacity] = background.rgba();
             part.pixmap
@@ -157,10 +157,10 @@ impl<'t, 'w> Png<'t, 'w> {
         Ok(Self {
             part,
             outer: Vec::new(),
-            chunk: Chunk::default(),
+            chunk: spare.chunk,
             line: team.line(Chunk::cover),
             threads: team.threads().get(),
-            strokers: Strokers::default(),
+            strokers: spare.strokers,
             stroker: None,
             trail: Trail::default(),
             covers: false,
@@ -171,20 +171,26 @@ impl<'t, 'w> Png<'t, 'w> {
         })
     }
 
-    /// Returns the pixels of the rows, and coverage buffers for another band.
+    /// Returns the pixels of the rows, and memory for another band.
     pub(super) fn into_pixels(mut self) -> (Pixmap, Spare) {
         self.settle();
-        let spare = Spare(self.part.planes());
+        let spare = Spare {
+            pixmap: None,
+            layers: self.part.planes(),
+            chunk: self.chunk,
+            strokers: self.strokers,
+        };
         (self.part.pixmap, spare)
     }
 
-    /// Encodes the picture.
-    pub(super) fn write(mut self, options: &Options, out: &mut impl Write) -> io::Result<()> {
-        self.settle();
-        // The encoder would not return the error of `out`, hence the copy in memory.
-        let mut bytes = Vec::new();
-        encode::encode(&self.part.pixmap, &options.labels, options.png, &mut bytes)?;
-        out.write_all(&bytes)
+    /// Encodes the picture, and returns memory for another one.
+    pub(super) fn write(self, options: &Options, out: &mut impl Write) -> io::Result<Spare> {
+        let (pixmap, spare) = self.into_pixels();
+        encode::encode(&pixmap, &options.labels, options.png, out)?;
+        Ok(Spare {
+            pixmap: Some(pixmap),
+            ..spare
+        })
     }
 
     /// Draws lines of the path as coverage, one after another.

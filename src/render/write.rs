@@ -137,9 +137,11 @@ fn write_paths(
             Ok(svg.finish()?)
         }
         PathFormat::Png => {
-            let mut png = Png::begin(page.size, page.background, team)?;
+            let spare = options.spares.take();
+            let mut png = Png::begin(page.size, page.background, spare, team)?;
             drawing.draw(&mut png, team)?;
-            Ok(png.write(options, out)?)
+            options.spares.put(png.write(options, out)?);
+            Ok(())
         }
         PathFormat::Pdf => {
             let mut pdf = Pdf::begin(out, &page, team)?;

@@ -4,11 +4,9 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::catalogue::Catalogue;
 use crate::cli::held::{Done, Held};
-use crate::diagnostic::Source;
 use crate::parallel::with_team;
-use crate::render::PngEncoding;
+use crate::render::{PngEncoding, Spares};
 
 use super::super::{Failure, grow};
 
@@ -17,13 +15,14 @@ const MAX_BYTES: usize = 1 << 30;
 
 /// Rule of a film, with the arguments of every frame.
 pub(super) struct Frames<'a> {
-    pub(super) catalogue: &'a Catalogue,
-    pub(super) source: Arc<Source>,
+    pub(super) runs: grow::Runs<'a>,
     /// Arguments of `kfrac grow`, by frame.
     pub(super) arguments: Vec<Vec<String>>,
     pub(super) threads: NonZero<usize>,
     /// Number of frames that have been drawn.
     pub(super) drawn: AtomicU32,
+    /// Memory of finished frames, for those that follow.
+    pub(super) spares: Spares,
 }
 
 /// Purpose for which frames are grown.
@@ -37,6 +36,8 @@ pub(super) enum Purpose {
     Lines,
     /// Numbers of the pictures, without pixels in the plane.
     Survey,
+    /// Numbers of PNGs, with their provenance.
+    PngSurvey,
 }
 
 /// Frame that is drawn by any thread.
@@ -45,7 +46,9 @@ struct Job<'f> {
     number: usize,
     purpose: Purpose,
     more: &'f [String],
-    result: Option<Result<Done, Failure>>,
+    /// The frame, once it is drawn; until then, memory for it.
+    done: Done,
+    failure: Option<Failure>,
 }
 
 impl Frames<'_> {
@@ -55,17 +58,14 @@ impl Frames<'_> {
         numbers: impl IntoIterator<Item = usize>,
         purpose: Purpose,
         more: &[String],
-        mut take: impl FnMut(usize, Done) -> Result<(), Failure>,
+        mut take: impl FnMut(usize, &mut Done) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         with_team(self.threads, |team| {
             let mut line = team.line(Job::run);
-            let mut take = |job: &mut Job<'_>| match job.result.take() {
-                Some(result) => {
-                    let done = result?;
-                    self.drawn.fetch_add(1, Ordering::Relaxed);
-                    take(job.number, done)
-                }
-                None => Ok(()),
+            let mut take = |job: &mut Job<'_>| {
+                job.failure.take().map_or(Ok(()), Err)?;
+                self.drawn.fetch_add(1, Ordering::Relaxed);
+                take(job.number, &mut job.done)
             };
             for number in numbers {
                 let job = Job {
@@ -73,36 +73,41 @@ impl Frames<'_> {
                     number,
                     purpose,
                     more,
-                    result: None,
+                    done: line.spare().map_or_else(Done::default, |job| job.done),
+                    failure: None,
                 };
                 line.hand_on(job, &mut take)?;
             }
             line.finish(&mut take)
         })
     }
+}
 
-    fn grow(&self, number: usize, purpose: Purpose, more: &[String]) -> Result<Done, Failure> {
-        let encoding = match purpose {
-            Purpose::Png => PngEncoding::default(),
+impl Job<'_> {
+    fn run(&mut self) {
+        self.failure = self.grow().err();
+    }
+
+    fn grow(&mut self) -> Result<(), Failure> {
+        let frames = self.frames;
+        let encoding = match self.purpose {
+            Purpose::Png | Purpose::PngSurvey => PngEncoding::default(),
             Purpose::Pixels | Purpose::Lines | Purpose::Survey => PngEncoding::raw(),
         };
         let mut held = Held::new(MAX_BYTES, encoding);
-        held.surveys = purpose == Purpose::Survey;
+        held.surveys = matches!(self.purpose, Purpose::Survey | Purpose::PngSurvey);
+        held.spares = frames.spares.clone();
+        let held = held.in_place_of(std::mem::take(&mut self.done.bytes));
         let held = Arc::new(held);
-        let mut arguments = [&self.arguments[number], more].concat();
-        if purpose == Purpose::Lines {
+        let mut arguments = [&frames.arguments[self.number], self.more].concat();
+        if self.purpose == Purpose::Lines {
             arguments.push("--format=svg".into());
         } else {
             arguments.retain(|it| !it.starts_with("--svg="));
             arguments.push("--format=png".into());
         }
-        grow::hold(&arguments, &self.source, self.catalogue, Arc::clone(&held))?;
-        Ok(held.take())
-    }
-}
-
-impl Job<'_> {
-    fn run(&mut self) {
-        self.result = Some(self.frames.grow(self.number, self.purpose, self.more));
+        frames.runs.hold(&arguments, Arc::clone(&held))?;
+        self.done = held.take();
+        Ok(())
     }
 }

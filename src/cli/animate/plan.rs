@@ -5,17 +5,17 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
 
 use crate::catalogue::Catalogue;
-use crate::diagnostic::Source;
 use crate::fractal::Goal;
 use crate::model::Model;
 use crate::parallel::all_cores;
+use crate::render::Spares;
 use crate::style::Named;
 use crate::tween::TweenBy;
 use crate::zoom::Factor;
 
 use super::super::family::Assignment;
 use super::super::rule::Loaded;
-use super::super::{Failure, number, tween};
+use super::super::{Failure, grow, number, tween};
 use super::frames::Frames;
 use super::timeline::{Ease, Keys, Moment, Timeline};
 use super::{Arguments, endless, fit};
@@ -144,7 +144,6 @@ pub(super) fn film<'a>(
     loaded: &Loaded,
     half_way: Option<Model>,
     is_vector: bool,
-    source: Arc<Source>,
     catalogue: &'a Catalogue,
     path: &Path,
 ) -> Result<Film<'a>, Failure> {
@@ -160,11 +159,11 @@ pub(super) fn film<'a>(
         [common.as_slice(), &own].concat()
     };
     let mut frames = Frames {
-        catalogue,
-        source,
+        runs: grow::Runs::new(Arc::clone(&loaded.document), catalogue),
         arguments: (0..timeline.count()).map(frame).collect(),
         threads: arguments.threads.unwrap_or_else(all_cores),
         drawn: AtomicU32::new(0),
+        spares: Spares::kept(),
     };
     let size = fit::fit(arguments, loaded, &mut frames, path)?;
     Ok(Film { frames, size })

@@ -195,7 +195,7 @@ impl Numbered {
     }
 
     /// Writes the frames, and describes what has been written.
-    fn write(&self, arguments: &Arguments, film: &Film<'_>) -> Result<String, Failure> {
+    fn write(&self, arguments: &Arguments, film: &Film) -> Result<String, Failure> {
         let count = film.frames.arguments.len();
         let mut numbers: Vec<usize> = match &arguments.only {
             Some(only) => only.as_slice().iter().map(|it| *it as usize).collect(),
@@ -238,14 +238,14 @@ impl Numbered {
     }
 
     /// Takes away the numbers of frames whose files exist and have been drawn by an equal command.
-    fn omit_finished(&self, film: &Film<'_>, numbers: &mut Vec<usize>) -> Result<(), Failure> {
+    fn omit_finished(&self, film: &Film, numbers: &mut Vec<usize>) -> Result<(), Failure> {
         let existing = numbers.iter().copied();
         let existing: Vec<usize> = existing.filter(|it| self.path(*it).exists()).collect();
         let mut finished = BTreeSet::new();
         film.frames
-            .draw(existing, Purpose::Survey, &[], |number, done| {
-                let expected = done.provenance;
-                if expected.is_some() && provenance(&self.path(number)) == expected {
+            .draw(existing, Purpose::PngSurvey, &[], |number, done| {
+                let expected = &done.provenance;
+                if expected.is_some() && provenance(&self.path(number)) == *expected {
                     finished.insert(number);
                 }
                 Ok(())

@@ -80,7 +80,7 @@ fn documents(
                 );
                 return Err(Failure::Usage(message));
             }
-            documents.push(done.bytes);
+            documents.push(std::mem::take(&mut done.bytes));
             Ok(())
         })
     })?;

@@ -7,7 +7,7 @@ use crate::fractal::Goal;
 use crate::geometry::Homothety;
 use crate::graph::{Graph, Object};
 use crate::grow::Progress;
-use crate::render::{self, Canvas, Format, Picture, RenderError, Size, Unit};
+use crate::render::{self, Canvas, Format, Labels, Picture, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::zoom::check_model;
 
@@ -320,8 +320,13 @@ impl<'a> Drawing<'a> {
             threads: growth.threads(),
             drawn: self.arguments.drawn.unwrap_or(1.0),
             png: growth.png_encoding(),
+            spares: growth.spares(),
             detail: goal.detail_in(unit),
-            labels: labels(&self.loaded, &goal.described(), "grow", options),
+            // Pixels without an encoding have no labels.
+            labels: match growth.png_encoding().raw {
+                true => Labels::default(),
+                false => labels(&self.loaded, &goal.described(), "grow", options),
+            },
             ..render::Options::default()
         }
     }

@@ -57,7 +57,7 @@ impl Arguments {
             return self.growth.write(path, content);
         };
         self.growth.write(path, |mut out, _| {
-            let (written, bytes) = output::write_held(MAX_BYTES, content)?;
+            let (written, bytes) = output::write_held(Vec::new(), MAX_BYTES, content)?;
             let picture = Raster::read(&bytes, None).context("the picture that was drawn")?;
             let set = PixelArguments::default().decide(output::called(path), picture)?;
             morph::write(

@@ -44,14 +44,12 @@ impl CoverageBuffers {
         }
     }
 
-    /// Moves the empty buffers to as many other rows of the picture; `None` if the number of rows differs.
-    pub(super) fn moved_to(self, rows: &Range<u32>) -> Option<Self> {
-        if self.rows.len() != rows.len() {
+    /// Moves the empty buffers to as many other rows of a picture of equal size; `None` if it has another one.
+    pub(super) fn moved_to(self, picture: [u32; 2], rows: &Range<u32>) -> Option<Self> {
+        if self.picture != picture || self.rows.len() != rows.len() {
             return None;
         }
-        let Self {
-            picture, threads, ..
-        } = self;
+        let threads = self.threads;
         let planes = self.planes.into_iter().map(|plane| {
             let mut plane = plane.into_inner().unwrap_or_else(PoisonError::into_inner);
             if let Some(plane) = &mut plane {

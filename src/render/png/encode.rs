@@ -27,9 +27,12 @@ pub(in crate::render) fn encode(
     }
     let colours = Colours::of(pixmap);
     let size = [pixmap.width(), pixmap.height()];
-    encode_pieces(size, &colours, labels, encoding, out, |encode| {
+    // The encoder would not return the error of `out`, hence the copy in memory.
+    let mut bytes = Vec::new();
+    encode_pieces(size, &colours, labels, encoding, &mut bytes, |encode| {
         encode(pixmap)
-    })
+    })?;
+    out.write_all(&bytes)
 }
 
 /// Writes pixels that come in pieces of some rows each, from the top. `colours` are the colours of all

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use tiny_skia::{Pixmap, PixmapPaint, Transform};
+use tiny_skia::{Color, Pixmap, PixmapPaint, Transform};
 
 use crate::render::paint::Paint;
 use crate::style::Colour;
@@ -48,7 +48,7 @@ impl PicturePart {
     pub(super) fn enter(&self, corner: [u32; 2], size: [u32; 2]) -> Option<Self> {
         let within = |row: u32| row.saturating_sub(corner[1]).min(size[1]);
         let [from, to] = [self.rows.start, self.rows.end].map(within);
-        Self::of_rows(corner, size, from - from % ROWS..to)
+        Self::of_rows(corner, size, from - from % ROWS..to, None)
     }
 
     /// Returns whether any of a part of this one lies in its rows.
@@ -61,10 +61,24 @@ impl PicturePart {
         self.rows.clone()
     }
 
-    /// Creates some rows of a part; `None` if it has no valid size.
-    pub(super) fn of_rows(corner: [u32; 2], size: [u32; 2], rows: Range<u32>) -> Option<Self> {
+    /// Creates some rows of a part, on the pixels of another picture if they are as many; `None` if it has no valid size.
+    pub(super) fn of_rows(
+        corner: [u32; 2],
+        size: [u32; 2],
+        rows: Range<u32>,
+        spare: Option<Pixmap>,
+    ) -> Option<Self> {
+        let (width, height) = (size[0], rows.end - rows.start);
+        let spare = spare.filter(|it| [it.width(), it.height()] == [width, height]);
+        let cleared = spare.map(|mut pixmap| {
+            pixmap.fill(Color::TRANSPARENT);
+            pixmap
+        });
         Some(Self {
-            pixmap: Pixmap::new(size[0], rows.end - rows.start)?,
+            pixmap: match cleared {
+                Some(pixmap) => pixmap,
+                None => Pixmap::new(width, height)?,
+            },
             size,
             rows,
             corner,
@@ -72,11 +86,12 @@ impl PicturePart {
         })
     }
 
-    /// Returns the part with coverage buffers that have been used for other rows.
+    /// Returns the part with coverage buffers that have been used for other rows, or for another picture.
     pub(super) fn on(mut self, layers: Layers) -> Self {
         for (layer, planes) in self.layers.iter_mut().zip(layers) {
             let planes = planes.and_then(Arc::into_inner);
-            layer.planes = planes.and_then(|planes| planes.moved_to(&self.rows).map(Arc::new));
+            let moved = planes.and_then(|planes| planes.moved_to(self.size, &self.rows));
+            layer.planes = moved.map(Arc::new);
         }
         self
     }

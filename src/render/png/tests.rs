@@ -21,7 +21,7 @@ use crate::render::surface::Surface;
 use crate::style::{Cap, Colour, Join, Style, Width};
 
 use super::skia::Outline;
-use super::{Pixmap, Png, Raster};
+use super::{Pixmap, Png, Raster, Spare};
 
 mod threads;
 
@@ -86,7 +86,7 @@ fn draw(png: &mut impl Surface, paths: &[(Paint, Vec<Position>)]) {
 /// Returns the pixels of a picture that is drawn on `threads` threads.
 fn drawn(threads: usize, draw: impl FnOnce(&mut Png<'_, '_>)) -> Vec<u8> {
     with_team(NonZero::new(threads).unwrap(), |team| {
-        let mut png = Png::begin(SIZE, None, team).unwrap();
+        let mut png = Png::begin(SIZE, None, Spare::default(), team).unwrap();
         draw(&mut png);
         png.settle();
         png.part.pixmap.data().to_vec()
@@ -388,7 +388,7 @@ fn batched_pictures_are_those_where_every_line_is_drawn() {
         let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         let pixels = |is_batched: bool| {
             with_team(NonZero::<usize>::MIN, |team| {
-                let mut png = Png::begin(scene.size(), None, team).unwrap();
+                let mut png = Png::begin(scene.size(), None, Spare::default(), team).unwrap();
                 if is_batched {
                     scene.draw(&mut png, team).unwrap();
                 } else {
@@ -419,7 +419,7 @@ fn letters_have_holes() {
         let mut hole = square(wall, side - wall);
         hole.reverse();
         let pixels = with_team(NonZero::<usize>::MIN, |team| {
-            let mut png = Png::begin(SIZE, None, team).unwrap();
+            let mut png = Png::begin(SIZE, None, Spare::default(), team).unwrap();
             png.begin(&Paint {
                 has_holes: true,
                 ..fill

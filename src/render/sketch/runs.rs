@@ -36,11 +36,20 @@ impl Sketcher<'_> {
         let map = self.scene.canvas.map(run.map());
         let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
         let whole = self.octave(run.map().matrix2.x_axis.length());
+        let class =
+            |stick: &LineElement| whole.map_or(0, |whole| width_class(whole + stick.octave));
+        let mut sticks: Vec<_> = sticks
+            .map(|(stick, joined)| (class(stick), stick, joined))
+            .collect();
+        // Pixels do not depend on the order of lines of which none joins another: those of one width share a path.
+        if self.means.batches.is_some() && !self.scene.graph.joins() {
+            sticks.sort_by_key(|(class, ..)| *class);
+        }
         let kind = self.kind();
-        for (stick, joined) in sticks {
+        for (width, stick, joined) in sticks {
             let key = PaintKey {
                 kind,
-                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+                width,
                 colour: None,
             };
             let goes_on = match self.open.map(|open| &self.sketch.commands[open]) {

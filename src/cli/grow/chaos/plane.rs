@@ -135,6 +135,7 @@ impl<'a> PlaneGame<'a> {
             tone: chaos.tone.unwrap_or_default(),
             shades: self.shades(&style, picture.ink(self.source.metadata())),
             background: style.background,
+            png: arguments.growth.png_encoding(),
         };
         let described = self.iteration.described();
         let mut options = self.iteration.options();

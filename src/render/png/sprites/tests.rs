@@ -10,14 +10,14 @@ use crate::render::canvas::Size;
 use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
 use crate::render::options::{Detail, Options};
-use crate::render::png::Png;
+use crate::render::png::{Png, Spare};
 use crate::render::scene::Scene;
 use crate::render::short_cuts::{ShortCut, ShortCuts};
 use crate::style::{ColorBy, Colour, Style, Width};
 
 fn drawn(scene: &Scene<'_>, threads: usize) -> Vec<u8> {
     with_team(NonZero::new(threads).unwrap(), |team| {
-        let mut png = Png::begin(scene.size(), scene.background(), team).unwrap();
+        let mut png = Png::begin(scene.size(), scene.background(), Spare::default(), team).unwrap();
         scene.draw(&mut png, team).unwrap();
         png.into_pixels().0.take()
     })

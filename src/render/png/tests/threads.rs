@@ -18,7 +18,7 @@ use crate::render::canvas::Size;
 use crate::render::drawing::Drawing;
 use crate::render::layout::Layout;
 use crate::render::options::{Detail, Options};
-use crate::render::png::Png;
+use crate::render::png::{Png, Spare};
 use crate::render::scene::Scene;
 use crate::style::{ColorBy, Colour, Style, Width};
 
@@ -34,7 +34,8 @@ fn drawn(
         let layout = Layout::find(graph, growth, options).ok()?;
         let scene = Scene::new(&layout.prepass, &layout.growth, layout.canvas);
         with_team(NonZero::new(threads).unwrap(), |team| {
-            let mut png = Png::begin(scene.size(), scene.background(), team).unwrap();
+            let mut png =
+                Png::begin(scene.size(), scene.background(), Spare::default(), team).unwrap();
             scene.draw(&mut png, team).ok()?;
             Some(png.into_pixels().0.take())
         })
