@@ -38,6 +38,7 @@
 //! | the format of files, and their keys | [`document`] |
 //! | names in the library | [`catalogue`] |
 //! | a system whose attractor is a picture | [`fit`](fit()) |
+//! | maps of the parameters of a system | [`family`] |
 //! | rules made by a program | [`build`] |
 //! | a change of a file that keeps its comments and layout | [`edit`] |
 //!
@@ -95,9 +96,9 @@
 //! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s, [`Metadata`] and pictures of [`Bits`]. No
 //! room imports one above it.
 //!
-//! The model of an iterated function system is [`ifs`]; its measure, its contraction and fractal
-//! interpolation are worked out on it without a graph. A set that is another fractal is grown when its
-//! file is resolved: the model holds what it draws.
+//! The model of an iterated function system is [`ifs`]; its measure, its contraction, its connectedness and fractal
+//! interpolation are worked out on it without a graph, and [`family`] makes maps of its parameters. A set that is
+//! another fractal is grown when its file is resolved: the model holds what it draws.
 //!
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, or to the
 //! nearest points in space, which `render` turns into pictures.
@@ -137,6 +138,7 @@ pub mod estimate;
 pub mod export;
 pub mod expression;
 pub mod extent;
+pub mod family;
 mod fast_hash;
 pub mod figure;
 #[cfg(feature = "cli")]

@@ -4,6 +4,7 @@
 //! Consequences of a reported mistake are not reported: expressions that could not be read, and names
 //! that a missing file may define, are unknown, as are all values computed from them.
 
+mod family;
 mod fractal;
 mod ifs;
 mod instancing;
@@ -18,6 +19,8 @@ mod rule;
 mod set;
 mod space;
 mod unused;
+
+pub(crate) use family::VaryingMaps;
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -159,6 +162,8 @@ struct Resolver<K> {
     used: HashSet<String>,
     /// Whether a parent or a component is missing. Unknown names may be defined there.
     incomplete: bool,
+    /// Whether parameters are variables, so that numbers need not be constants.
+    varies: bool,
     /// Number of lines, curves and sides in all sets that are fractals.
     pieces: usize,
     kind: K,

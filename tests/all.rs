@@ -30,6 +30,7 @@ mod laws;
 mod library;
 mod lsystem;
 mod manual;
+mod maps;
 mod meshes;
 mod new_files;
 mod pictures;

@@ -23,6 +23,7 @@ kfrac grow icosahedron-flake --shade both --size 420 -o icosahedron-flake.png
 kfrac grow pound-sign-in-space --from 30,30 --size 420 -o pound-sign-in-space.png
 kfrac grow icosahedron-flake --slice 0,1,1.618=0.6,w=0.02 --size 420 -o icosahedron-slice.png
 kfrac grow menger --steps 3 --cut 1,1,1=1.5 --from 40,40 --plot --size 420 -o menger-cut.svg
+kfrac map complex-pair --over 's=[-1,-1]..[1,1]' --size 480 -o pairs-map.png
 kfrac grow random-tree-with-leaves --size 420 -o random-tree-with-leaves.png
 kfrac grow sphere-flake --size 420 -o sphere-flake.png
 kfrac grow bush-in-space --size 420 -o bush-in-space.png

@@ -2,6 +2,7 @@
 
 use crate::document::Setting;
 use crate::expression::{Expression, PARTS, Scope};
+use crate::family::Axis;
 
 use super::Failure;
 use super::animate::Moment;
@@ -175,6 +176,37 @@ impl Assignment {
             Failure::Usage(message)
         })
     }
+}
+
+/// Ranges of a real parameter, or of both parts of a complex one.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Ranges {
+    /// The ranges as written.
+    pub(super) written: String,
+    /// Name of the parameter.
+    pub(super) name: String,
+    pub(super) axes: Vec<Axis>,
+}
+
+/// Parses `NAME=FROM..TO` or `NAME=[RE,IM]..[RE,IM]`.
+pub(super) fn ranges(text: &str) -> Result<Ranges, String> {
+    let Assignment { name, parts } = assignment(text)?;
+    let axis = |part: ParameterPart| match part.values {
+        Values::Range([from, to]) if from != to => Ok(Axis {
+            name: part.name,
+            from,
+            to,
+        }),
+        Values::Range(_) => Err(format!("the range of '{}' is empty", part.name)),
+        _ => Err("write NAME=FROM..TO, or NAME=[RE,IM]..[RE,IM] for a complex parameter".into()),
+    };
+    let axes = parts.into_iter().map(axis).collect::<Result<_, _>>()?;
+    let written = text.to_owned();
+    Ok(Ranges {
+        written,
+        name,
+        axes,
+    })
 }
 
 /// Parameter that changes in the course of a film, or one that does not.

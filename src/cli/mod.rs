@@ -27,6 +27,7 @@ mod length;
 mod light;
 pub(crate) mod list;
 mod man;
+mod map;
 mod morph;
 mod new;
 mod number;
@@ -83,6 +84,7 @@ enum Command {
     Grow(Box<grow::Arguments>),
     Sheet(Box<sheet::Arguments>),
     Animate(Box<animate::Arguments>),
+    Map(map::Arguments),
     Show(show::Arguments),
     Info(info::Arguments),
     Count(count::Arguments),
@@ -238,6 +240,7 @@ pub fn run() -> ExitCode {
         Command::Show(arguments) => show::run(arguments, &catalogue),
         Command::Sheet(arguments) => sheet::run(arguments, &catalogue),
         Command::Animate(arguments) => animate::run(arguments, &catalogue),
+        Command::Map(arguments) => map::run(arguments, &catalogue),
         Command::Info(arguments) => info::run(arguments, &catalogue),
         Command::Count(arguments) => count::run(arguments, &catalogue),
         Command::Dim(arguments) => dim::run(arguments, &catalogue),

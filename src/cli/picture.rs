@@ -267,6 +267,6 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))
 }
 
-fn palette() -> impl TypedValueParser<Value = Palette> {
+pub(super) fn palette() -> impl TypedValueParser<Value = Palette> {
     PossibleValuesParser::new(Palette::names()).try_map(|name| Palette::named(&name))
 }

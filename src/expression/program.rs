@@ -185,6 +185,12 @@ impl Program {
         Self::of(Op::Constant(value))
     }
 
+    /// Creates the program whose value is that of a slot.
+    #[must_use]
+    pub(crate) fn slot(slot: usize) -> Self {
+        Self::of(Op::Slot(slot))
+    }
+
     /// Creates the placeholder for an invalid program, whose value is unknown.
     #[must_use]
     pub fn unknown() -> Self {

@@ -29,7 +29,9 @@
 //! Maps, edges and condensation sets are numbered from 0 in this module, and from 1 in messages.
 
 mod affine_map;
+mod connectedness;
 mod contraction;
+mod covered;
 mod error;
 mod interpolation;
 mod linear;
@@ -44,7 +46,9 @@ mod system;
 mod walk;
 
 pub use affine_map::{AffineMap, OutlineOf, PointOf};
+pub use connectedness::{Connectedness, ConnectednessSearch};
 pub use contraction::{Contraction, Verdict};
+pub use covered::covered_area;
 pub use error::{IfsError, WeightOwner};
 pub(crate) use interpolation::pieces;
 pub use interpolation::{

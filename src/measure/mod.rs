@@ -57,7 +57,7 @@ pub use points::{NoExtent, Points, counts};
 pub use raster::raster_scales;
 pub use regression::Estimate;
 pub use sample::Sample;
-pub use similarity::{Similarity, similarity_dimension};
+pub use similarity::{Similarity, moran_dimension, similarity_dimension};
 pub use space::Space;
 pub use spectrum::Generalised;
 pub use trend::Trend;

@@ -8,6 +8,7 @@ use crate::digraph::{self, parts};
 use crate::extent::{Bounded, NoLimit};
 use crate::geometry::Frame;
 use crate::graph::{Graph, Object};
+use crate::saturating::real;
 
 use super::perron::{beside_one, crossing, perron};
 
@@ -64,6 +65,37 @@ pub fn similarity_dimension<F: Bounded>(graph: &Graph<F>) -> Similarity {
         value: Some(value),
         note,
     }
+}
+
+/// Returns the D with Σ ratioᴰ = 1 (Moran 1946), to about 12 digits: the similarity dimension of maps with these ratios,
+/// which are at least 0 and below 1. It is 0 for a single ratio, and 0 where all but one are 0.
+#[must_use]
+pub fn moran_dimension(ratios: &[f64]) -> f64 {
+    let ratios = ratios.iter().copied().filter(|ratio| *ratio > 0.0);
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_by(f64::total_cmp);
+    match (ratios.first(), ratios.last()) {
+        // Equal ratios have a closed form.
+        (Some(least), Some(largest)) if least == largest => {
+            -libm::log(real(ratios.len())) / libm::log(*largest)
+        }
+        (Some(_), Some(_)) => dimension_between(|dimension| sum_of_powers(&ratios, dimension)),
+        _ => 0.0,
+    }
+}
+
+fn sum_of_powers(ratios: &[f64], dimension: f64) -> f64 {
+    let powers = ratios.iter().map(|&ratio| libm::pow(ratio, dimension));
+    powers.sum()
+}
+
+/// Returns the dimension at which a falling function crosses 1.
+fn dimension_between(radius: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    while radius(high) > 1.0 {
+        (low, high) = (high, 2.0 * high);
+    }
+    crossing(high, low, radius)
 }
 
 /// Returns the similarity dimension of a strongly connected part, given the ratios between its objects, and
@@ -154,21 +186,14 @@ impl Component {
     fn dimension(&self) -> f64 {
         let moran = self.moran_ratios();
         let radius = |dimension: f64| match &moran {
-            Some(ratios) => ratios
-                .iter()
-                .map(|&ratio| libm::pow(ratio, dimension))
-                .sum(),
+            Some(ratios) => sum_of_powers(ratios, dimension),
             None => self.spectral_radius(dimension),
         };
         // The limit set of a cycle without branches is a point.
         if self.edges.len() == self.size {
             return 0.0;
         }
-        let (mut low, mut high) = (0.0, 1.0);
-        while radius(high) > 1.0 {
-            (low, high) = (high, 2.0 * high);
-        }
-        crossing(high, low, radius)
+        dimension_between(radius)
     }
 
     /// Returns the ratios of Moran's equation, if all objects have the same ones.

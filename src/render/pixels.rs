@@ -32,6 +32,11 @@ impl Pixels {
         }
     }
 
+    /// Creates a picture from four bytes a pixel, all of which are opaque.
+    pub(crate) fn opaque(size: [u32; 2], bytes: Vec<u8>) -> Self {
+        Self { size, bytes }
+    }
+
     /// Returns width and height.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {

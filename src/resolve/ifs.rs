@@ -3,7 +3,9 @@
 mod scatter;
 
 use crate::diagnostic::did_you_mean;
-use crate::document::{EdgeDocument, IfsDocument, MapDocument, MapsDocument, Written};
+use crate::document::{
+    EdgeDocument, IfsDocument, MapDocument, MapsDocument, VerticesDocument, Written, WrittenNumber,
+};
 use crate::expression::{Affine, Program, Symbols};
 use crate::geometry::DAffine2;
 use crate::ifs::{
@@ -32,6 +34,9 @@ pub(super) struct Maps<M: AffineMap = DAffine2> {
     pub(super) initial: Option<M::Set>,
     pub(super) chained: bool,
 }
+
+/// Vertices, and the contractions towards them.
+type Toward<const N: usize> = (Vec<[Program; N]>, Vec<Affine<Program, N>>);
 
 /// Parts of a system; `None` for what has mistakes.
 struct Parts<M: AffineMap> {
@@ -159,13 +164,7 @@ impl Resolver<OfIfs> {
                 })
             }
             MapsDocument::Vertices { points, shrink } => {
-                let factor = self.constant_program(shrink);
-                let points = self.vertices::<M, N>(points)?;
-                let toward = |point: &[Program; N]| {
-                    let factors = std::array::from_fn(|_| factor.clone());
-                    Affine::scaling(&mut Symbols, factors).about(&mut Symbols, point)
-                };
-                let written: Vec<_> = points.iter().map(toward).collect();
+                let (points, written) = self.toward::<M, N>(points, shrink)?;
                 let maps = written.iter().map(|map| M::as_constant(map).map(Map::new));
                 let maps = maps.collect::<Option<_>>()?;
                 let points: Option<Vec<_>> = points.iter().map(M::value).collect();
@@ -178,6 +177,22 @@ impl Resolver<OfIfs> {
             }
             MapsDocument::Interpolated(document) => M::interpolation(self, document),
         }
+    }
+
+    /// Resolves vertices and the contractions towards them. Reports mistakes and returns `None`.
+    pub(super) fn toward<M: WrittenMap<N>, const N: usize>(
+        &mut self,
+        points: &VerticesDocument,
+        shrink: &WrittenNumber,
+    ) -> Option<Toward<N>> {
+        let factor = self.constant_program(shrink);
+        let points = self.vertices::<M, N>(points)?;
+        let toward = |point: &[Program; N]| {
+            let factors = std::array::from_fn(|_| factor.clone());
+            Affine::scaling(&mut Symbols, factors).about(&mut Symbols, point)
+        };
+        let maps = points.iter().map(toward).collect();
+        Some((points, maps))
     }
 
     fn map<M: WrittenMap<N>, const N: usize>(

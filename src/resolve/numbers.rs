@@ -120,7 +120,7 @@ impl<K> Resolver<K> {
     /// Compiles two numbers in the scope of parameters. Returns `None` if one is unknown.
     pub(super) fn numbers(&mut self, numbers: [&WrittenNumber; 2]) -> Option<[Program; 2]> {
         let programs = numbers.map(|number| self.constant_program(number));
-        let are_known = programs.iter().all(|it| it.as_constant().is_some());
+        let are_known = self.varies || programs.iter().all(|it| it.as_constant().is_some());
         are_known.then_some(programs)
     }
 }

@@ -117,7 +117,7 @@ impl<K> Resolver<K> {
 
 /// Returns the indices of the parameters in an order in which each follows those that its value and
 /// limits depend on, and the indices of those that depend on themselves.
-fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
+pub(super) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let names = params.iter().enumerate();
     let numbers: BTreeMap<&str, usize> = names
         .map(|(index, param)| (param.name.value.as_str(), index))
