@@ -387,7 +387,7 @@ fn strangers_are_refused() {
         }
     }
     // The page itself has no key yet, but no other host either, and no answer is for other origins.
-    for path in ["/", "/studio.css", "/studio.js", "/design.js"] {
+    for path in ["/", "/studio.css", "/studio.js", "/design.js", "/film.js"] {
         assert_eq!(
             page.send("GET", path, &[("host", "evil.example")], b"")
                 .status,

@@ -14,14 +14,22 @@ mod video;
 
 use std::num::NonZero;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
+use crate::diagnostic::Source;
+use crate::document::Document;
 use crate::film::Rate;
 
 use super::family::Assignment;
+#[cfg(feature = "studio")]
+use super::held;
+use super::held::Held;
+#[cfg(feature = "studio")]
+use super::input;
 use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
@@ -31,8 +39,9 @@ use fit::Fit;
 use passed::{FrameOptions, Given};
 use plan::{Seeds, Zooms};
 use target::Format;
-use timeline::{Ease, Keys};
+use timeline::Keys;
 
+pub(crate) use timeline::Ease;
 pub(super) use timeline::Moment;
 
 /// Draws a film: a family of fractals, growth, a zoom, or a turn in space
@@ -136,6 +145,9 @@ pub(super) struct Arguments {
     quiet: bool,
     #[command(flatten)]
     others: FrameOptions,
+    /// Flag that ends a film that is drawn within the program.
+    #[arg(skip)]
+    held: Option<Arc<Held>>,
 }
 
 const MORE: &str = "\
@@ -164,38 +176,93 @@ Examples:
       Draws eleven frames, each into a file
 ";
 
+/// Draws a film of a text as `kfrac animate` with the arguments does; returns a summary.
+#[cfg(feature = "studio")]
+pub(crate) fn hold(
+    arguments: &[String],
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+    held: Arc<Held>,
+) -> Result<String, Failure> {
+    let mut arguments: Arguments = held::parsed("animate", arguments)?;
+    (arguments.held, arguments.quiet) = (Some(held), true);
+    arguments.write(source, catalogue)
+}
+
+/// Returns the names and values of the parameters that `kfrac animate` with the arguments sets in every frame.
+#[cfg(feature = "studio")]
+pub(crate) fn values(
+    arguments: &[String],
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+) -> Result<Vec<Vec<(String, String)>>, Failure> {
+    let given: Arguments = held::parsed("animate", arguments)?;
+    let arguments = given.completed(&input::document(source, catalogue)?)?;
+    let arguments = arguments.unwrap_or(given);
+    let timeline = plan::timeline(&arguments);
+    timeline.check()?;
+    let tracks = || arguments.set.iter().flat_map(Assignment::tracks);
+    let values = |number: u32| {
+        let moment = timeline.moment(number);
+        let written = tracks().map(|track| track.at(&moment));
+        let pairs = written.map(|it| {
+            it.split_once('=')
+                .map(|(a, b)| (a.to_owned(), b.to_owned()))
+        });
+        pairs.flatten().collect()
+    };
+    Ok((0..timeline.count()).map(values).collect())
+}
+
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
     let source = rule::open(&arguments.rule, catalogue)?;
-    let named = RuleArguments {
-        rule: arguments.rule.clone(),
-        set: Vec::new(),
-        omit: Vec::new(),
-    };
-    let mut loaded: Loaded = named.load_from(&source, catalogue, arguments.quiet)?;
-    let completed = file::complete(arguments, &loaded.document)?;
-    let arguments = completed.as_ref().unwrap_or(arguments);
-    let other = { arguments.to.as_ref() }.map(|to| tween::load(to, catalogue, arguments.quiet));
-    let other = other.transpose()?;
-    let half_way = { other.as_ref() }.map(|other| plan::half_way(arguments, &loaded, other));
-    let half_way = half_way.transpose()?;
-    loaded.beside = other.into_iter().map(|it| (it.name, it.document)).collect();
-    let default = named.file("", "gif");
-    let path = arguments.output.as_ref().unwrap_or(&default);
-    let format = Format::of(arguments, path)?;
-    let is_vector = format == Some(Format::Svg);
-    if arguments.others.gives("svg") && !is_vector {
-        let message = "--svg applies to SVG only: write a .svg";
-        return Err(Failure::Usage(message.into()));
-    }
-    let film = plan::film(arguments, &loaded, half_way, is_vector, catalogue, path)?;
-    if !arguments.quiet && !is_vector {
-        let note = forecast::note(&film, format)?;
-        note.iter().for_each(|note| text::print_message(note));
-    }
-    let report = target::write(arguments, film, &loaded, format, path)?;
+    let report = arguments.write(&source, catalogue)?;
     if !arguments.quiet {
         text::print_message(&format!("{report}, {:.2} s", start.elapsed().as_secs_f64()));
     }
     Ok(())
+}
+
+impl Arguments {
+    /// Returns the arguments with the options of the file.
+    fn completed(&self, document: &Document) -> Result<Option<Self>, Failure> {
+        let completed = file::complete(self, document)?;
+        Ok(completed.map(|completed| Self {
+            held: self.held.clone(),
+            quiet: self.quiet,
+            ..completed
+        }))
+    }
+
+    /// Writes the film of a text, and describes what has been written.
+    fn write(&self, source: &Arc<Source>, catalogue: &Catalogue) -> Result<String, Failure> {
+        let named = RuleArguments {
+            rule: self.rule.clone(),
+            set: Vec::new(),
+            omit: Vec::new(),
+        };
+        let mut loaded: Loaded = named.load_from(source, catalogue, self.quiet)?;
+        let completed = self.completed(&loaded.document)?;
+        let arguments = completed.as_ref().unwrap_or(self);
+        let other = { arguments.to.as_ref() }.map(|to| tween::load(to, catalogue, arguments.quiet));
+        let other = other.transpose()?;
+        let half_way = { other.as_ref() }.map(|other| plan::half_way(arguments, &loaded, other));
+        let half_way = half_way.transpose()?;
+        loaded.beside = other.into_iter().map(|it| (it.name, it.document)).collect();
+        let default = named.file("", "gif");
+        let path = arguments.output.as_ref().unwrap_or(&default);
+        let format = Format::of(arguments, path)?;
+        let is_vector = format == Some(Format::Svg);
+        if arguments.others.gives("svg") && !is_vector {
+            let message = "--svg applies to SVG only: write a .svg";
+            return Err(Failure::Usage(message.into()));
+        }
+        let film = plan::film(arguments, &loaded, half_way, is_vector, catalogue, path)?;
+        if !arguments.quiet && !is_vector {
+            let note = forecast::note(&film, format)?;
+            note.iter().for_each(|note| text::print_message(note));
+        }
+        target::write(arguments, film, &loaded, format, path)
+    }
 }

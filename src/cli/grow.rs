@@ -17,7 +17,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::ValueHint;
-use clap::{Args, FromArgMatches};
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
@@ -30,7 +29,7 @@ use crate::style::Named;
 
 use super::camera::{self, SpaceArguments};
 use super::growth::GrowthArguments;
-use super::held::Held;
+use super::held::{self, Held};
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
@@ -216,7 +215,8 @@ pub(crate) fn hold(
     catalogue: &Catalogue,
     held: Arc<Held>,
 ) -> Result<String, Failure> {
-    let arguments = Parser::new().parse(arguments, held)?;
+    let mut arguments: Arguments = held::parsed("grow", arguments)?;
+    arguments.growth.held = Some(held);
     let plan = Plan::of(&arguments)?;
     let loaded = arguments.rule.load_from(source, catalogue, true)?;
     let loaded = arguments.tween.apply(loaded, catalogue, true)?;
@@ -224,29 +224,11 @@ pub(crate) fn hold(
     Ok(summary)
 }
 
-/// Parser of arguments of the command.
-struct Parser(clap::Command);
-
-impl Parser {
-    fn new() -> Self {
-        let command = clap::Command::new("grow").no_binary_name(true);
-        Self(Arguments::augment_args(command))
-    }
-
-    fn parse(&mut self, arguments: &[String], held: Arc<Held>) -> Result<Arguments, Failure> {
-        let usage = |error: clap::Error| Failure::usage(&error);
-        let matches = self.0.try_get_matches_from_mut(arguments).map_err(usage)?;
-        let mut arguments = Arguments::from_arg_matches(&matches).map_err(usage)?;
-        arguments.growth.held = Some(held);
-        Ok(arguments)
-    }
-}
-
 /// Runs of the command with many arguments for one rule, which is read once.
 pub(super) struct Runs<'a> {
     document: Arc<Document>,
     catalogue: &'a Catalogue,
-    parser: Mutex<Parser>,
+    parser: Mutex<held::Parser<Arguments>>,
 }
 
 impl<'a> Runs<'a> {
@@ -254,16 +236,17 @@ impl<'a> Runs<'a> {
         Self {
             document,
             catalogue,
-            parser: Mutex::new(Parser::new()),
+            parser: Mutex::new(held::Parser::new("grow")),
         }
     }
 
     /// Runs the command as [`hold`] does.
     pub(super) fn hold(&self, arguments: &[String], held: Arc<Held>) -> Result<(), Failure> {
-        let arguments = {
+        let mut arguments = {
             let mut parser = self.parser.lock().unwrap_or_else(PoisonError::into_inner);
-            parser.parse(arguments, held)?
+            parser.parse(arguments)?
         };
+        arguments.growth.held = Some(held);
         let plan = Plan::of(&arguments)?;
         let settings = arguments.rule.settings()?;
         let document = Arc::clone(&self.document);

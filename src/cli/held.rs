@@ -1,6 +1,7 @@
 //! Commands that run within the program: their output is held in memory, and they can be cancelled.
 
 use std::io::{self, Write};
+use std::marker::PhantomData;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -8,6 +9,8 @@ use crate::estimate::SizeEstimate;
 use crate::geometry::Homothety;
 use crate::render::space::Sight;
 use crate::render::{Canvas, Picture, PngEncoding, Spares};
+
+use super::Failure;
 
 /// Destination of a command that runs within the program, in place of standard output and standard error.
 #[derive(Debug, Default)]
@@ -94,6 +97,35 @@ impl Held {
         done.size = picture.size;
         done.window = { picture.window.zip(place) }.map(|(window, place)| place.window(window));
     }
+}
+
+/// Parser of the arguments of a command that runs within the program.
+pub(super) struct Parser<A> {
+    command: clap::Command,
+    arguments: PhantomData<fn() -> A>,
+}
+
+impl<A: clap::Args> Parser<A> {
+    pub(super) fn new(command: &'static str) -> Self {
+        Self {
+            command: A::augment_args(clap::Command::new(command).no_binary_name(true)),
+            arguments: PhantomData,
+        }
+    }
+
+    pub(super) fn parse(&mut self, arguments: &[String]) -> Result<A, Failure> {
+        let matches = self.command.try_get_matches_from_mut(arguments);
+        { matches.and_then(|matches| A::from_arg_matches(&matches)) }
+            .map_err(|error| Failure::usage(&error))
+    }
+}
+
+/// Parses the arguments of a command that runs within the program.
+pub(super) fn parsed<A: clap::Args>(
+    command: &'static str,
+    arguments: &[String],
+) -> Result<A, Failure> {
+    Parser::new(command).parse(arguments)
 }
 
 /// Standard output of a command that runs within the program, of limited size.

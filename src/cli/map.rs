@@ -4,12 +4,16 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::num::NonZero;
 use std::path::PathBuf;
+#[cfg(feature = "studio")]
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
+#[cfg(feature = "studio")]
+use crate::diagnostic::Source;
 use crate::family::{
     Axis, Family, FamilyError, MapOptions, ParameterMap, ParameterPlane, PlaneError, PlaneValue,
     Property,
@@ -20,6 +24,8 @@ use crate::render::{self, Size};
 use crate::style::{Named, Palette};
 
 use super::family::Ranges;
+#[cfg(feature = "studio")]
+use super::held::{self, Held};
 use super::labels::labels;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, format, growth, help, length, number, output, picture, readable, text};
@@ -113,18 +119,15 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (map, bytes) = output::write(path, arguments.quiet, |out, progress| {
         let options = MapOptions {
-            depth: arguments.depth(),
-            threads: arguments.threads.unwrap_or_else(all_cores),
             progress,
-            ..MapOptions::new(arguments.of)
+            ..arguments.map_options()
         };
         let map = ParameterMap::compute(&family, &plane, &options).map_err(usage)?;
         match format {
             Format::Csv => write_table(&map, out).map_err(|error| output::failed(error, path))?,
             Format::Png => {
                 let options = arguments.options(&loaded);
-                let pixels = map.pixels(&arguments.palette);
-                let written = pixels.write(&options, out);
+                let written = map.pixels(&arguments.palette).write(&options, out);
                 written.map_err(|error| output::explain(error, path))?;
             }
         }
@@ -144,6 +147,28 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             text::print_message(&line);
         }
     }
+    Ok(())
+}
+
+/// Draws a map of a text as `kfrac map` with the arguments does, as a PNG in memory.
+#[cfg(feature = "studio")]
+pub(crate) fn hold(
+    arguments: &[String],
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+    held: &Held,
+) -> Result<(), Failure> {
+    let arguments: Arguments = held::parsed("map", arguments)?;
+    let loaded = arguments.rule.load_from(source, catalogue, true)?;
+    let plane = arguments.plane(&loaded)?;
+    let family = arguments.family(&loaded, &plane)?;
+    let options = MapOptions {
+        cancel: Some(&held.cancel),
+        ..arguments.map_options()
+    };
+    let map = ParameterMap::compute(&family, &plane, &options).map_err(usage)?;
+    let pixels = map.pixels(&arguments.palette);
+    held.done().bytes = pixels.into_png(held.png).map_err(anyhow::Error::new)?;
     Ok(())
 }
 
@@ -182,6 +207,14 @@ impl Arguments {
     fn size(&self) -> Size {
         let default = if self.of == Property::Area { 128 } else { 512 };
         self.size.unwrap_or(Size::Long(default))
+    }
+
+    fn map_options(&self) -> MapOptions<'static> {
+        MapOptions {
+            depth: self.depth(),
+            threads: self.threads.unwrap_or_else(all_cores),
+            ..MapOptions::new(self.of)
+        }
     }
 
     /// Returns the names of the parameters.

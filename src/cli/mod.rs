@@ -1,6 +1,6 @@
 //! Command line: one module per subcommand, and helpers that they share.
 
-mod animate;
+pub(crate) mod animate;
 mod camera;
 mod cat;
 pub(crate) mod check;
@@ -27,7 +27,7 @@ mod length;
 mod light;
 pub(crate) mod list;
 mod man;
-mod map;
+pub(crate) mod map;
 mod morph;
 mod new;
 mod number;

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::Serialize;
 
 use crate::catalogue::Catalogue;
-use crate::cli::grow;
 use crate::cli::held::{Done, Held};
+use crate::cli::{grow, map};
 use crate::diagnostic::Source;
 use crate::render::space::Sight;
 
@@ -105,6 +105,17 @@ impl Shot {
         Ok((summary, held.take()))
     }
 
+    /// Draws a map of parameters behind which the other ones have the values of the picture; returns the bytes of a PNG.
+    pub(super) fn map(&self, over: &[String], held: &Held) -> Result<Vec<u8>, Refusal> {
+        let [width, height] = self.size;
+        let mut arguments = vec![self.rule.clone(), format!("--size={width}x{height}")];
+        arguments.extend(over.iter().map(|it| format!("--over={it}")));
+        let settings = self.look.iter().filter(|it| it.starts_with("--set="));
+        arguments.extend(settings.cloned());
+        map::hold(&arguments, &self.source, &self.catalogue, held)?;
+        Ok(held.take().bytes)
+    }
+
     fn arguments(&self, view: &[String]) -> Vec<String> {
         let [width, height] = self.size;
         let mut arguments = self.look.clone();
@@ -130,7 +141,7 @@ impl Shot {
 
     /// Returns the arguments of the view. A window that doubles do not hold is a zoom, relative to the picture of the
     /// whole set, whose width is found first.
-    fn view_arguments(&self, held: &Arc<Held>) -> Result<Vec<String>, Refusal> {
+    pub(super) fn view_arguments(&self, held: &Arc<Held>) -> Result<Vec<String>, Refusal> {
         let Some(view) = &self.view else {
             return Ok(Vec::new());
         };

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::answer::Refusal;
+use super::film::Film;
 use super::view::View;
 
 /// Everything that a picture depends on besides the text of its rule and its size.
@@ -26,6 +27,8 @@ pub(super) struct Look {
     pub(super) view: Option<View>,
     /// Whether the steps grow with the magnification.
     pub(super) follows: bool,
+    /// Key frames of the parameters.
+    pub(super) film: Film,
 }
 
 impl Default for Look {
@@ -38,6 +41,7 @@ impl Default for Look {
             options: BTreeMap::new(),
             view: None,
             follows: true,
+            film: Film::default(),
         }
     }
 }
@@ -145,6 +149,7 @@ impl Look {
         if self.set.len() > LONG || all.clone().any(is_long) {
             return Err(Refusal::wrong("a value is too long"));
         }
+        self.film.check()?;
         match &self.view {
             Some(view) => view.check(),
             None => Ok(()),

@@ -14,6 +14,7 @@
 //! | `look` | steps, seed, parameters, style and view, as arguments of `grow` |
 //! | `view`, `sight` | pan and zoom: in long decimals in the plane, and in space |
 //! | `shots`, `drawing`, `jobs` | pictures, one at a time; a newer one cancels the older of its tab |
+//! | `film` | key frames of the parameters, and films of them |
 //! | `numbers` | forecast and dimension |
 //! | `problems`, `complete` | mistakes at their places; completion from the schema |
 //! | `vary`, `write` | members near the present one; values that are written into the text |
@@ -35,6 +36,7 @@ mod complete;
 mod design;
 mod drawing;
 mod files;
+mod film;
 mod good;
 mod guard;
 mod history;

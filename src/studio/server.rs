@@ -170,6 +170,13 @@ fn router(app: Arc<App>) -> Router {
             ),
         )
         .route(
+            "/film.js",
+            text(
+                "text/javascript; charset=utf-8",
+                include_str!("page/film.js"),
+            ),
+        )
+        .route(
             "/design.js",
             text(
                 "text/javascript; charset=utf-8",
@@ -190,6 +197,8 @@ fn router(app: Arc<App>) -> Router {
         .route("/settle", post(changes::settle))
         .route("/picture", post(pictures::picture))
         .route("/preview", post(pictures::preview))
+        .route("/map", post(pictures::map))
+        .route("/film", post(pictures::film))
         .route("/numbers", get(reports::numbers))
         .route("/vary", post(changes::vary_all))
         .route("/take", post(changes::take))

@@ -142,6 +142,7 @@ impl Session {
                     .any(|it| it.name == name || it.whole.as_deref() == Some(name))
             };
             self.look.set.retain(|name, _| known(name));
+            self.look.film.retain(known);
             self.good = Some(Good {
                 revision: self.revision,
                 ..good

@@ -227,13 +227,88 @@ try {
   await shoot("vary");
   await changes(() => browser.click(".grid button:nth-child(2)"), "a click takes a member");
 
-  // A complex parameter.
+  // A complex parameter: its pad shows the map of the parameter.
   const pad = await serve("complex-pair");
   studios.push(pad);
   await open(pad.url);
+  /** Returns the number of colours of the map behind a pad. */
+  const colours = () => browser.value(`(async () => {
+    const image = new Image();
+    image.src = document.querySelector(".pad").style.backgroundImage.slice(5, -2);
+    await image.decode();
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
+  })()`);
+  const hasMap = "document.querySelector('.pad').style.backgroundImage.startsWith('url(')";
+  await browser.until(hasMap);
+  check((await colours()) > 8, "the pad shows the map of the complex parameter");
   const area = await browser.value("(() => { const { x, y, width, height } = document.querySelector('.pad').getBoundingClientRect(); return [x, y, width, height]; })()");
+  check(Math.abs(area[2] / area[3] - 1) < 0.02, "the map of a square is a square");
   await changes(() => browser.drag([area[0] + area[2] * 0.6, area[1] + area[3] * 0.4], [area[0] + area[2] * 0.66, area[1] + area[3] * 0.3]), "a pad changes the picture");
   await shoot("pad");
+
+  // Two parameters of a system have a pad beside their sliders.
+  writeFileSync(join(folder, "two.yaml"), "kind: ifs\nparams:\n  a: {value: 0.45, min: 0.1, max: 0.8}\n  b: {value: 60, min: 0, max: 180}\nmaps:\n  - {scale: a, rotate: b}\n  - {scale: a, shift: [1, 0]}\n");
+  const two = await serve("two.yaml");
+  studios.push(two);
+  await open(two.url);
+  await browser.until(hasMap);
+  check((await colours()) > 4, "the pad shows the map of two parameters");
+  await browser.value("document.querySelector('.pad').focus()");
+  await changes(() => browser.key("ArrowRight"), "an arrow key moves the point");
+  check((await value("#value-a")) === "0.457", "the slider follows the point");
+  await shoot("two-parameters");
+
+  // The time line: key frames of the sliders, played, moved, written.
+  const film = await serve("tree.yaml");
+  studios.push(film);
+  await open(film.url);
+  const press = (id) => browser.value(`(() => { const it = document.querySelector(${JSON.stringify(id)}); it.scrollIntoView(); it.click(); })()`);
+  const keys = () => browser.value("[...document.querySelectorAll('.key')].map((it) => /angle = ([^,]*)/.exec(it.title)[1]).join()");
+  const bend = (angle) => browser.value(`(() => { const typed = document.querySelector('#value-angle'); typed.value = '${angle}'; typed.dispatchEvent(new Event('change')); })()`);
+  check(await browser.value("document.querySelector('#film-play').disabled"), "a film has two key frames at least");
+  for (const angle of [20, 70, 40]) {
+    await changes(() => bend(angle), `the angle ${angle} is drawn`);
+    await press("#film-add");
+  }
+  check((await keys()) === "20,70,40", "key frames have the present values");
+  await press("#film-play");
+  const frames = new Set();
+  for (let look = 0; look < 20; look += 1) {
+    frames.add((await pixels())[0]);
+    await new Promise((resolve) => setTimeout(resolve, 60));
+  }
+  check(frames.size > 4, `a film moves: ${frames.size} pictures`);
+  const angle = +(await value("#value-angle"));
+  check(angle >= 20 && angle <= 70, "the sliders follow the film");
+  await press("#film-play");
+  await settled();
+  const ends = await browser.value("[...document.querySelectorAll('.key')].map((it) => { const box = it.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })");
+  await browser.drag(ends[0], ends[2]);
+  check((await keys()) === "70,40,20", "a key frame is dragged to another place");
+  await changes(() => browser.click(".key"), "a click shows a key frame");
+  check((await value("#value-angle")) === "70", "with its values");
+  await browser.value("document.querySelectorAll('.key')[1].focus()");
+  await browser.key("ArrowLeft");
+  check((await keys()) === "40,70,20", "an arrow key moves a key frame");
+  await browser.key("Delete");
+  check((await keys()) === "70,20", "Delete removes a key frame");
+  await browser.value("(() => { const set = (name, value) => { const it = document.querySelector(`[data-film=${name}]`); it.type === 'checkbox' ? (it.checked = value) : (it.value = value); it.dispatchEvent(new Event('change')); }; set('frames', 12); set('bounce', true); })()");
+  await settled();
+  await open(film.url);
+  check((await keys()) === "70,20", "a reload keeps the key frames");
+  await shoot("time-line");
+  await press("#film-export");
+  await browser.until("document.querySelector('#ask').open");
+  const made = await text("#ask code");
+  check(made.startsWith("kfrac animate tree.yaml") && made.includes("--set=angle=70,20") && made.includes("--frames=12") && made.includes("--bounce"), `the command of the film is shown: ${made}`);
+  await browser.value("(() => { for (const [at, value] of [[0, 160], [1, 120]]) document.querySelectorAll('#ask input[type=number]')[at].value = value; })()");
+  await browser.click("#ask-go");
+  await browser.until("document.querySelector('#ask [role=status]').textContent.includes('frames')");
+  check(readFileSync(join(folder, "tree.gif")).subarray(0, 4).toString() === "GIF8", "the film is written");
+  await shoot("film");
 
   // A large tree, and space.
   const large = await serve("pythagoras");

@@ -238,7 +238,7 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     }
 }
 
-fn timeline(arguments: &Arguments) -> Timeline {
+pub(super) fn timeline(arguments: &Arguments) -> Timeline {
     let seeds = arguments.seed.count();
     let is_endless = matches!(arguments.zoom, Some(Zooms::Loop));
     let is_even = arguments.is_loop || arguments.draw || arguments.zoom.is_some() || seeds > 1;

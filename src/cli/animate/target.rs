@@ -114,6 +114,11 @@ pub(super) fn write(
                             done.bytes.as_chunks::<4>().0.iter().all(|it| it[3] == 255);
                         encoder = Some(format.begin(out, &options).map_err(explain)?);
                     }
+                    if let Some(held) = &arguments.held
+                        && held.cancel.load(Ordering::Relaxed)
+                    {
+                        return Err(Failure::Usage("the film has been cancelled".into()));
+                    }
                     match &mut encoder {
                         Some(encoder) => encoder.add(&done.bytes).map_err(explain),
                         None => Ok(()),

@@ -5,7 +5,7 @@ use crate::style::Named;
 
 /// Course of time between two key frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::cli) enum Ease {
+pub(crate) enum Ease {
     /// At an even speed.
     Linear,
     /// From rest.

@@ -1,6 +1,7 @@
 // The page of the studio: a screen and a hand. Whatever is decided is decided by the server.
 
 import * as design from "./design.js";
+import * as film from "./film.js";
 
 const $ = (id) => document.getElementById(id);
 const key = location.hash.slice(1) || sessionStorage.getItem("key") || "";
@@ -28,6 +29,8 @@ async function call(method, path, body, kind = "application/json") {
   throw Object.assign(new Error(error), { status: answer.status });
 }
 const json = async (...all) => (await call(...all)).json();
+/** Returns the step of an arrow key, to the right and up. */
+const arrow = (event) => ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] })[event.key];
 
 /** Makes an element with properties and children. */
 function make(name, properties = {}, ...children) {
@@ -40,6 +43,10 @@ function make(name, properties = {}, ...children) {
   element.append(...children.filter((it) => it !== null && it !== undefined));
   return element;
 }
+
+const tick = (more) => make("input", { type: "checkbox", ...more });
+const words = (more) => make("input", { type: "text", autocomplete: "off", ...more });
+const reset = (label, act) => make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${label} as in the file`, onclick: act }, "↺");
 
 // Pictures: one request at a time; what changes in between goes with the next one.
 
@@ -236,7 +243,7 @@ canvas.addEventListener("pointermove", (event) => {
 });
 for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
 canvas.addEventListener("keydown", (event) => {
-  const step = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+  const step = arrow(event)?.map((it) => -it);
   if (!step || event.altKey) return;
   event.preventDefault();
   const isPan = event.ctrlKey || event.metaKey;
@@ -260,6 +267,7 @@ $("whole").onclick = whole;
 /** Draws the look that has changed. */
 function changed(draft = false) {
   isStale = true;
+  placed.forEach((place) => place());
   offerWriting();
   draw(draft);
 }
@@ -397,23 +405,53 @@ $("vary").onclick = async () => {
   }
 };
 
-// Family: a slider for a parameter, a pad for a complex one.
+// Family: a slider for a parameter, a pad for a complex one, and for two of a system.
 
-const valueOf = (it) => (look.set[it.name] !== undefined ? look.set[it.name] : String(it.value));
+let placed = []; // functions that place sliders and knobs
+let pads = [];
+let map = {}; // the picture of a map, and what it depends on
+const valueOf = (it) => look.set[it.name] ?? String(it.value);
+const read = (name, parts) => (parts[0].whole ? (look.set[name] ?? `[${parts.map((it) => it.value)}]`).replace(/[[\]\s]/g, "").split(",") : parts.map(valueOf)).map(Number);
 const limits = (it) => {
   const wide = Math.max(1, Math.abs(it.value));
   return [it.min ?? (it.max != null ? it.max - 2 * wide : it.value - wide), it.max ?? (it.min != null ? it.min + 2 * wide : it.value + wide)];
 };
+const isMapped = () => state.isSystem && !state.isInSpace;
+function groups() {
+  const parts = new Map();
+  for (const it of state.parameters ?? []) parts.set(it.whole ?? it.name, [...(parts.get(it.whole ?? it.name) ?? []), it]);
+  return [...parts];
+}
+/** Returns the present values of all parameters. */
+const values = () => Object.fromEntries(groups().map(([name, parts]) => [name, parts[0].whole ? `[${read(name, parts)}]` : valueOf(parts[0])]));
 function family() {
-  const all = state.parameters ?? [];
-  const box = $("parameters");
+  [placed, pads] = [[], []];
+  const all = groups();
   $("no-parameters").hidden = all.length > 0;
   $("about").textContent = state.about?.about ?? "";
   $("about").hidden = !state.about?.about;
   $("source").textContent = state.about?.source ? `From: ${state.about.source}` : "";
-  const parts = Map.groupBy ? Map.groupBy(all, (it) => it.whole ?? it.name) : all.reduce((map, it) => map.set(it.whole ?? it.name, [...(map.get(it.whole ?? it.name) ?? []), it]), new Map());
-  box.replaceChildren(...[...parts].map(([name, list]) => (list.length === 2 ? pad(name, list) : slider(list[0]))));
+  const controls = all.map(([name, parts]) => (parts[0].whole ? pad(name, parts) : slider(parts[0])));
+  if (isMapped() && all.length === 2 && state.parameters.length === 2) controls.push(pad("", state.parameters));
+  $("parameters").replaceChildren(...controls);
   offerWriting();
+  pads.forEach(lay);
+  film.show();
+}
+/** Shows the map of two parameters behind the point that is dragged. */
+async function lay({ area, name, parts, span }) {
+  const over = name ? [`${name}=[${span.map((it) => it[0])}]..[${span.map((it) => it[1])}]`] : parts.map((it, at) => `${it.name}=${span[at].join("..")}`);
+  const others = Object.entries(look.set).filter(([key]) => key !== name && !parts.some((it) => it.name === key));
+  const about = JSON.stringify([state.revision, over, others]);
+  if (!isMapped() || area.dataset.map === about) return;
+  if (map.about !== about) map = { about, url: call("POST", "/map", { tab, over, width: 240, height: name ? 240 : 150 }).then((it) => it.blob()).then(URL.createObjectURL) };
+  try {
+    area.style.backgroundImage = `url(${await map.url})`;
+    area.dataset.map = about;
+    if (name) area.style.aspectRatio = 1;
+  } catch {
+    area.style.backgroundImage = "";
+  }
 }
 /** Shows for which parameters a value is set that the file does not have. */
 function offerWriting() {
@@ -427,25 +465,27 @@ async function write(name) {
   }
 }
 function heading(name, about, input) {
-  const reset = make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${name} as in the file`, onclick: () => { delete look.set[name]; family(); changed(); recount(); } }, "↺");
+  const back = reset(name, () => { delete look.set[name]; changed(); recount(); });
   const writes = make("button", { className: "small", type: "button", title: "Write this value into the file", "aria-label": `Write ${name} into the file`, "data-write": name, hidden: true, onclick: () => write(name) }, "Write");
-  return [make("div", { className: "row" }, make("label", { htmlFor: `value-${name}` }, name), make("span", { className: "row" }, writes, reset, input)), about ? make("p", { className: "quiet" }, about) : null];
+  return [make("div", { className: "row" }, make("label", { htmlFor: `value-${name}` }, name), make("span", { className: "row" }, writes, back, input)), about ? make("p", { className: "quiet" }, about) : null];
 }
 function slider(it) {
   const [min, max] = limits(it);
-  const typed = make("input", { type: "text", id: `value-${it.name}`, value: valueOf(it), autocomplete: "off" });
-  const range = make("input", { type: "range", min, max, step: "any", value: valueOf(it), "aria-label": `${it.name}, from ${min} to ${max}` });
+  const typed = words({ id: `value-${it.name}` });
+  const range = make("input", { type: "range", min, max, step: "any", "aria-label": `${it.name}, from ${min} to ${max}` });
+  const place = () => {
+    const value = typed.value = valueOf(it);
+    if (Number.isFinite(+value)) range.value = value;
+  };
   range.oninput = () => {
     const digits = Math.max(0, 3 - Math.floor(Math.log10((max - min) || 1)));
-    const value = String(+(+range.value).toFixed(Math.min(12, digits)));
-    look.set[it.name] = typed.value = value;
+    look.set[it.name] = String(+(+range.value).toFixed(Math.min(12, digits)));
     changed(true);
   };
   range.onchange = recount;
   typed.onchange = () => {
     look.set[it.name] = typed.value.trim();
     if (!typed.value.trim()) delete look.set[it.name];
-    if (Number.isFinite(+typed.value)) range.value = typed.value;
     changed();
     recount();
   };
@@ -457,52 +497,58 @@ function slider(it) {
     range.dispatchEvent(new Event("input"));
     range.dispatchEvent(new Event("change"));
   };
+  placed.push(place);
+  place();
   return make("div", { className: "parameter" }, ...heading(it.name, it.about, typed), range);
 }
+/** Makes a pad for the parts of a complex parameter, or for two parameters without a name of their own. */
 function pad(name, parts) {
-  const read = () => (look.set[name] ?? `[${parts.map((it) => it.value)}]`).replace(/[[\]\s]/g, "").split(",").map(Number);
   const span = parts.map(limits);
-  const typed = make("input", { type: "text", id: `value-${name}`, value: `[${read()}]`, autocomplete: "off" });
+  const typed = name ? words({ id: `value-${name}` }) : null;
   const knob = make("i");
-  const area = make("div", { className: "pad", tabIndex: 0, role: "application", "aria-label": `${name}: arrow keys move it in the complex plane` }, knob);
-  const share = (at, value) => (value - span[at][0]) / (span[at][1] - span[at][0]);
-  area.style.setProperty("--zero-x", `${share(0, 0) * 100}%`);
-  area.style.setProperty("--zero-y", `${100 - share(1, 0) * 100}%`);
+  const called = name || parts.map((it) => it.name).join(" and ");
+  const area = make("div", { className: "pad", tabIndex: 0, role: "application", "aria-label": `${called}: arrow keys move the point` }, knob);
+  const share = (at, value) => `${100 * Math.abs(at - (value - span[at][0]) / (span[at][1] - span[at][0]))}%`;
+  area.style.setProperty("--zero-x", share(0, 0));
+  area.style.setProperty("--zero-y", share(1, 0));
   const put = (value) => {
     const inside = value.map((it, at) => +Math.max(span[at][0], Math.min(span[at][1], it)).toFixed(4));
-    look.set[name] = typed.value = `[${inside}]`;
-    mark();
+    if (name) look.set[name] = `[${inside}]`;
+    else parts.forEach((it, at) => (look.set[it.name] = String(inside[at])));
     changed(true);
   };
-  const mark = () => {
-    const [x, y] = read();
-    knob.style.setProperty("--x", `${share(0, x) * 100}%`);
-    knob.style.setProperty("--y", `${100 - share(1, y) * 100}%`);
+  const place = () => {
+    const now = read(name, parts);
+    if (typed) typed.value = look.set[name] ?? `[${now}]`;
+    knob.style.setProperty("--x", share(0, now[0]));
+    knob.style.setProperty("--y", share(1, now[1]));
   };
-  const drag = (event) => {
+  area.onpointerdown = area.onpointermove = (event) => {
     if (!event.buttons) return;
     area.setPointerCapture(event.pointerId);
     const box = area.getBoundingClientRect();
     const at = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
     put(at.map((it, i) => span[i][0] + it * (span[i][1] - span[i][0])));
   };
-  area.onpointerdown = area.onpointermove = drag;
   area.onpointerup = recount;
   area.onkeydown = (event) => {
-    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const step = arrow(event);
     if (!step) return;
     event.preventDefault();
-    put(read().map((it, i) => it + step[i] * (span[i][1] - span[i][0]) / (event.shiftKey ? 1000 : 100)));
+    put(read(name, parts).map((it, i) => it + step[i] * (span[i][1] - span[i][0]) / (event.shiftKey ? 1000 : 100)));
     recount();
   };
-  typed.onchange = () => {
-    look.set[name] = typed.value.trim();
-    mark();
-    changed();
-    recount();
-  };
-  mark();
-  return make("div", { className: "parameter" }, ...heading(name, parts[0].about, typed), area);
+  if (typed) {
+    typed.onchange = () => {
+      look.set[name] = typed.value.trim();
+      changed();
+      recount();
+    };
+  }
+  placed.push(place);
+  pads.push({ area, name, parts, span });
+  place();
+  return make("div", { className: "parameter" }, ...(name ? heading(name, parts[0].about, typed) : []), area);
 }
 
 // Style: each control is an option of `kfrac grow`.
@@ -515,16 +561,15 @@ function style() {
   const row = (option, label, ...controls) => {
     const id = `style-${option}`;
     controls.find((it) => !it.id && it.matches("input:not([type=color]), select"))?.setAttribute("id", id);
-    const reset = make("button", { className: "reset", type: "button", title: "As in the file", "aria-label": `${label} as in the file`, onclick: () => { set(option, null); style(); } }, "↺");
-    rows.push(make("label", { htmlFor: id }, label), make("div", { className: "row" }, ...controls), reset);
+    rows.push(make("label", { htmlFor: id }, label), make("div", { className: "row" }, ...controls), reset(label, () => { set(option, null); style(); }));
   };
   const now = (option) => look.options[option] ?? own[option] ?? "";
   const text = (option, label, hint = "") => {
-    const input = make("input", { type: "text", value: now(option), placeholder: hint, autocomplete: "off", onchange: () => set(option, input.value.trim()) });
+    const input = words({ value: now(option), placeholder: hint, onchange: () => set(option, input.value.trim()) });
     row(option, label, input);
   };
   const colour = (option, label) => {
-    const input = make("input", { type: "text", value: now(option) || "none", autocomplete: "off" });
+    const input = words({ value: now(option) || "none" });
     const well = make("input", { type: "color", value: hex(now(option)), "aria-label": `${label}, chosen from a palette` });
     well.oninput = () => { input.value = well.value; set(option, well.value, true); };
     input.onchange = () => { set(option, input.value.trim()); well.value = hex(input.value.trim()); };
@@ -541,7 +586,7 @@ function style() {
     row(option, label, input);
   };
   const check = (option, label) => {
-    const input = make("input", { type: "checkbox", checked: String(now(option)) === "true", onchange: () => set(option, String(input.checked)) });
+    const input = tick({ checked: String(now(option)) === "true", onchange: () => set(option, String(input.checked)) });
     row(option, label, input);
   };
   const two = (option, labels) => {
@@ -586,7 +631,7 @@ function style() {
     select("join", "Corners", choices.join);
     head("View");
     if (look.options.method !== "chaos") range("turn", "Turn", -180, 180, 0);
-    const window = make("input", { type: "text", value: "", placeholder: "x, y, width, height", autocomplete: "off" });
+    const window = words({ value: "", placeholder: "x, y, width, height" });
     window.onchange = () => show(window.value);
     row("window", "Window", window);
     rows.pop();
@@ -594,7 +639,7 @@ function style() {
   }
   if (state.isSystem) {
     head("Random iteration");
-    const input = make("input", { type: "checkbox", checked: look.options.method === "chaos", onchange: () => { set("method", input.checked ? "chaos" : null); style(); } });
+    const input = tick({ checked: look.options.method === "chaos", onchange: () => { set("method", input.checked ? "chaos" : null); style(); } });
     row("method", "Draw points", input);
     if (input.checked) {
       text("points", "Points", "10M");
@@ -821,8 +866,8 @@ function ask(heading, body, { go = "", act = null } = {}) {
 const stem = () => state.name.split(/[\\/]/).at(-1).replace(/\.(ya?ml|json)$/, "");
 function saveAs() {
   const name = make("input", { type: "text", value: `${stem()}.yaml`, required: true });
-  const inLibrary = make("input", { type: "checkbox" });
-  const replace = make("input", { type: "checkbox" });
+  const inLibrary = tick();
+  const replace = tick();
   ask("Save as", [
     make("label", {}, `File, below ${state.start}`, name),
     state.library ? make("label", {}, inLibrary, ` In my library, ${state.library}`) : null,
@@ -848,26 +893,27 @@ async function save() {
 $("save").onclick = save;
 $("save-as").onclick = saveAs;
 $("mine-as").onclick = saveAs;
-$("export").onclick = () => {
-  const formats = state.isInSpace ? ["png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json"] : ["svg", "png", "pdf", "dxf", "csv", "json"];
+/** Asks for a file, and writes it. */
+function exports(heading, formats, more, note = "") {
   const format = make("select", {}, ...formats.map((it) => make("option", { value: it }, it)));
   const name = make("input", { type: "text", value: `${stem()}.${formats[0]}`, required: true });
   const [width, height] = [canvas.width, canvas.height].map((value) => make("input", { type: "number", min: 1, max: 100000, value }));
-  const plot = make("input", { type: "checkbox" });
-  const replace = make("input", { type: "checkbox" });
+  const replace = tick();
   format.onchange = () => (name.value = name.value.replace(/\.[^.]*$/, "") + `.${format.value}`);
   const done = make("p", { className: "quiet", role: "status" });
-  ask("Export", [
+  ask(heading, [
     make("label", {}, "Format", format),
     make("label", {}, `File, below ${state.start}`, name),
     make("div", { className: "row" }, make("label", {}, "Width in pixels", width), make("label", {}, "Height in pixels", height)),
-    make("label", {}, plot, " Single strokes, for a plotter"),
+    ...more.map(([option, label]) => make("label", {}, option, label)),
     make("label", {}, replace, " Replace a file of this name"),
+    note ? make("code", {}, note) : "",
     done,
   ], { go: "Export", act: async () => {
     done.textContent = "Writing…";
     try {
-      const { path, summary, notes } = await json("POST", "/export", { tab, path: name.value.trim(), width: +width.value, height: +height.value, plot: plot.checked, replace: replace.checked });
+      const options = Object.fromEntries(more.map(([option]) => [option.name, option.checked]));
+      const { path, summary, notes } = await json("POST", "/export", { tab, path: name.value.trim(), width: +width.value, height: +height.value, replace: replace.checked, film: Boolean(note), ...options });
       done.textContent = [`${path}: ${summary}`, ...notes].join("\n");
     } catch (error) {
       done.textContent = "";
@@ -875,7 +921,9 @@ $("export").onclick = () => {
     }
     return false;
   } });
-};
+}
+$("export").onclick = () => exports("Export", state.isInSpace ? ["png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json"] : ["svg", "png", "pdf", "dxf", "csv", "json"], [[tick({ name: "plot" }), " Single strokes, for a plotter"]]);
+$("film-export").onclick = () => film.frames().then(({ command }) => exports("Export the film", ["gif", "apng", "y4m", "mp4", "webm"], [], command), (error) => say(error.message));
 $("help").onclick = () => {
   const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction; fertile, visible, connected, use, base element; split; remove"], ["P, G, Esc", "in a figure: draw; grid; cancel"], ["?", "these keys"]];
   ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
@@ -974,6 +1022,7 @@ const refresh = async () => take(await json("GET", "/state"));
 let counting = 0;
 /** Asks for forecast and dimension. */
 function recount() {
+  pads.forEach(lay);
   clearTimeout(counting);
   counting = setTimeout(async () => {
     if (!state.hasGood) return;
@@ -1011,9 +1060,11 @@ async function follow() {
 }
 
 design.start({ tab, json, make, take, ask, stepNow, state: () => state });
+film.start({ tab, json, make, say, values, changed, state: () => state, look: () => look });
 $("design-table").ontoggle = design.show;
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
+  $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;
   state = {};
   resize();

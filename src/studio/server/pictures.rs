@@ -138,6 +138,58 @@ pub(super) async fn preview(
     answered(drawn, "image/png", &Value::Null)
 }
 
+/// Request for a map of parameters.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Map {
+    tab: String,
+    /// Ranges, as `kfrac map --over` takes them.
+    over: Vec<String>,
+    width: u32,
+    height: u32,
+}
+
+pub(super) async fn map(State(app): Shared, Json(asked): Json<Map>) -> Result<Response, Refusal> {
+    const MOST: u32 = 1024;
+    let size = [asked.width, asked.height];
+    let are_short = asked.over.len() <= 2 && asked.over.iter().all(|it| it.len() <= 500);
+    if !are_short || !size.iter().all(|side| (1..=MOST).contains(side)) {
+        let message = format!("a map has two parameters, and a side 1 to {MOST} pixels");
+        return Err(Refusal::wrong(message));
+    }
+    let shot = {
+        let session = app.session();
+        session.shot(&session.look, size, Quality::Full)?
+    };
+    let held = Arc::new(Held::new(MOST_BYTES, PngEncoding::default().fast(true)));
+    let own = Arc::clone(&held);
+    let name = format!("map {}", asked.tab);
+    let bytes = {
+        app.thumbs
+            .run(&name, held, move || shot.map(&asked.over, &own))
+    }
+    .await?;
+    Ok(([(header::CONTENT_TYPE, "image/png")], bytes).into_response())
+}
+
+/// Request for the frames of a film.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FrameRequest {
+    tab: String,
+    look: Look,
+}
+
+pub(super) async fn film(State(app): Shared, Json(asked): Json<FrameRequest>) -> Answer {
+    let FrameRequest { tab, look } = asked;
+    let shot = app.session().shot(&look, [1024, 768], Quality::Full)?;
+    let held = Arc::new(Held::new(MOST_BYTES, PngEncoding::default()));
+    let own = Arc::clone(&held);
+    let name = format!("film {tab}");
+    let found = { app.thumbs.run(&name, held, move || shot.film(&look, &own)) }.await?;
+    Ok(Json(found))
+}
+
 async fn draw(jobs: &Jobs, tab: &str, shot: Shot, encoding: PngEncoding) -> Result<Drawn, Refusal> {
     let held = Arc::new(Held::new(MOST_BYTES, encoding));
     let own = Arc::clone(&held);
@@ -208,6 +260,9 @@ pub(super) struct Export {
     replace: bool,
     #[serde(default)]
     plot: bool,
+    /// Whether the film of the key frames is written.
+    #[serde(default)]
+    film: bool,
 }
 
 pub(super) async fn export(State(app): Shared, Json(asked): Json<Export>) -> Answer {
@@ -216,10 +271,11 @@ pub(super) async fn export(State(app): Shared, Json(asked): Json<Export>) -> Ans
     if !size.iter().all(|side| (1..=MOST).contains(side)) {
         return Err(Refusal::wrong(format!("a side has 1 to {MOST} pixels")));
     }
-    let (shot, path) = {
+    let (shot, look, path) = {
         let session = app.session();
         let path = session.roots.allowed(Path::new(&asked.path))?;
-        (session.shot(&session.look, size, Quality::Full)?, path)
+        let look = session.look.clone();
+        (session.shot(&look, size, Quality::Full)?, look, path)
     };
     if path.exists() && !asked.replace {
         return Err(Refusal::conflict(format!("'{}' exists", path.display())));
@@ -229,8 +285,10 @@ pub(super) async fn export(State(app): Shared, Json(asked): Json<Export>) -> Ans
     let (own, to) = (Arc::clone(&held), path.clone());
     let name = format!("export {}", asked.tab);
     let (summary, done) = {
-        app.pictures
-            .run(&name, held, move || shot.export(&to, &options, &own))
+        app.pictures.run(&name, held, move || match asked.film {
+            true => shot.export_film(&look, &to, &own),
+            false => shot.export(&to, &options, &own),
+        })
     }
     .await?;
     Ok(Json(

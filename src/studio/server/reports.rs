@@ -11,6 +11,7 @@ use futures_util::stream::{self, Stream};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use crate::cli::animate::Ease;
 use crate::cli::held::Held;
 use crate::render::Tone;
 use crate::render::space::Shade;
@@ -50,6 +51,7 @@ pub(super) async fn choices() -> Json<Value> {
         "join": names::<Join>(),
         "shade": names::<Shade>(),
         "tone": names::<Tone>(),
+        "ease": names::<Ease>(),
     }))
 }
 
