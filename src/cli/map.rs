@@ -90,7 +90,7 @@ Examples:
       Draws the Mandelbrot set for pairs of maps, into complex-pair-map.png
   kfrac map complex-pair --over 's=[0.55,0.1]..[0.65,0.2]' --depth 60 --size 300 -o part.png
       Magnifies a part of its boundary
-  kfrac map complex-pair --over 's=[-0.7,-0.7]..[0.7,0.7]' --of dimension --palette viridis -o dimension.png
+  kfrac map complex-pair --over 's=[-0.7,-0.7]..[0.7,0.7]' --of dimension -o dimension.png
       Draws the similarity dimension
   kfrac map complex-pair --over 's=[0.4,0]..[0.7,0.3]' --of area --depth 5 --size 32 -o area.png
       Draws an upper bound of the area

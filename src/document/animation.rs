@@ -67,9 +67,11 @@ pub(super) fn read_animation(reader: &mut Reader, node: &Node) -> Vec<FilmOption
             }
             continue;
         }
-        let value = match fields.is_flag(name) {
-            true => reader.flag(node).filter(|it| *it).map(|_| String::new()),
-            false => reader.text(node),
+        let value = match fields.form(name) {
+            Some(Form::Flag(_)) => reader.flag(node).filter(|it| *it).map(|_| String::new()),
+            Some(Form::Words(words)) => reader.word(node, words, name).map(Into::into),
+            Some(Form::Whole(least, Some(most))) => whole(reader, node, [*least, *most]),
+            _ => reader.text(node),
         };
         let value = value.map(|value| Written {
             value,
@@ -78,4 +80,19 @@ pub(super) fn read_animation(reader: &mut Reader, node: &Node) -> Vec<FilmOption
         options.extend(value.map(|value| FilmOption { name, value }));
     }
     options
+}
+
+/// Reads a whole number between bounds.
+fn whole(reader: &mut Reader, node: &Node, [least, most]: [u32; 2]) -> Option<String> {
+    let text = reader.text(node)?;
+    if text
+        .parse()
+        .is_ok_and(|it: u32| (least..=most).contains(&it))
+    {
+        return Some(text);
+    }
+    let message = format!("'{text}' is no number of frames");
+    let hint = format!("write a whole number from {least} to {most}");
+    reader.error_with_hint(&node.place, message, hint);
+    None
 }

@@ -59,9 +59,9 @@ impl<'n> Fields<'n> {
         self.field(key).map_or(self.place, |field| field.key)
     }
 
-    /// Returns whether a key is a flag.
-    pub(super) fn is_flag(&self, key: &'static str) -> bool {
-        { self.member(key) }.is_some_and(|member| matches!(member.holds, Form::Flag(_)))
+    /// Returns the type of the value of a key.
+    pub(super) fn form(&self, key: &'static str) -> Option<&'static Form> {
+        self.member(key).map(|member| &member.holds)
     }
 
     /// Returns whether a key may hold the name of a file.
@@ -400,11 +400,39 @@ impl Reader {
         let found = T::from_name(name);
         if found.is_none() {
             let names = T::NAMES.iter().map(|(name, _)| *name);
-            let hint = did_you_mean(name, names.clone())
-                .unwrap_or_else(|| format!("one of: {}", names.collect::<Vec<_>>().join(", ")));
-            self.error_with_hint(&node.place, format!("'{name}' is no {what}"), hint);
+            self.no_name(node, name, names, what);
         }
         found
+    }
+
+    /// Reads one of several words.
+    pub(super) fn word(
+        &mut self,
+        node: &Node,
+        words: &[&'static str],
+        what: &str,
+    ) -> Option<&'static str> {
+        let name = match &node.value {
+            Value::Text(name) => name.as_str(),
+            _ => node.place.text(),
+        };
+        let found = words.iter().find(|word| **word == name);
+        if found.is_none() {
+            self.no_name(node, name, words.iter().copied(), what);
+        }
+        found.copied()
+    }
+
+    fn no_name<'n>(
+        &mut self,
+        node: &Node,
+        name: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+        what: &str,
+    ) {
+        let hint = did_you_mean(name, names.clone())
+            .unwrap_or_else(|| format!("one of: {}", names.collect::<Vec<_>>().join(", ")));
+        self.error_with_hint(&node.place, format!("'{name}' is no {what}"), hint);
     }
 }
 

@@ -58,10 +58,10 @@ pub(super) fn note(film: &Film<'_>, format: Option<Format>) -> Result<Option<Str
         return Ok(None);
     }
     let size = size.map_or_else(String::new, |size| {
-        format!(" and {}", readable::rough_bytes(size))
+        format!(", {}", readable::rough_bytes(size))
     });
     Ok(Some(format!(
-        "note: {} of up to {}, about {}{size}",
+        "note: {} of up to {}: {}{size}",
         readable::counted(&(count as u64).into(), "frame"),
         readable::counted(&elements.into(), "element"),
         readable::duration(seconds)
