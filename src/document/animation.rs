@@ -18,7 +18,7 @@ pub(super) const ANIMATION: Shape = Shape {
     what: "an animation",
     keys: &[
         &keys![
-            set: Form::Names(&Form::Text, 1),
+            set: Form::Names(&Form::Text, 0),
                 "Values of parameters in the course of the film: angle: 10..80, or a list such as 10,80,40.";
             steps: Form::Text, "Numbers of steps, between which it grows: 0..6.";
             seed: Form::Text, "Seeds of random draws: 1..24.";

@@ -137,19 +137,14 @@ impl Shot {
         let others = self.look.iter().filter(|it| !it.starts_with("--set="));
         arguments.extend(others.cloned());
         arguments.extend(look.film.options()?);
-        let [width, height] = self.size;
-        arguments.push(format!("--size={width}x{height}"));
         arguments.extend(self.view_arguments(held)?);
         Ok(arguments)
     }
 
-    /// Returns the values of all frames, and the command that writes the film.
+    /// Returns the values of all frames, and the command that writes the film, without its size and file.
     pub(super) fn film(&self, look: &Look, held: &Arc<Held>) -> Result<Value, Refusal> {
         let sets = look.film.frames(self)?;
-        let mut arguments = self.film_arguments(look, held)?;
-        let stem = Path::new(&self.rule).file_stem();
-        let stem = stem.map_or("fractal".into(), |stem| stem.to_string_lossy());
-        arguments.push(format!("--output={stem}.gif"));
+        let arguments = self.film_arguments(look, held)?;
         let words = ["kfrac".to_owned(), "animate".to_owned()].into_iter();
         let words: Vec<_> = words.chain(arguments).map(|word| quoted(&word)).collect();
         Ok(json!({ "sets": sets, "command": words.join(" ") }))
@@ -166,9 +161,16 @@ impl Shot {
         let Some(path) = path.to_str() else {
             return Err(Refusal::wrong("the name of the file is not Unicode"));
         };
-        arguments.push(format!("--output={path}"));
+        let [width, height] = self.size;
+        let file = [
+            format!("--size={width}x{height}"),
+            format!("--output={path}"),
+        ];
+        arguments.extend(file);
         let own = Arc::clone(held);
         let summary = animate::hold(&arguments, &self.source, &self.catalogue, own)?;
-        Ok((summary, held.take()))
+        let named = summary.strip_prefix(path);
+        let unnamed = named.and_then(|rest| rest.strip_prefix(": "));
+        Ok((unnamed.unwrap_or(&summary).into(), held.take()))
     }
 }

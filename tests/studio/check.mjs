@@ -304,9 +304,12 @@ try {
   await browser.until("document.querySelector('#ask').open");
   const made = await text("#ask code");
   check(made.startsWith("kfrac animate tree.yaml") && made.includes("--set=angle=70,20") && made.includes("--frames=12") && made.includes("--bounce"), `the command of the film is shown: ${made}`);
-  await browser.value("(() => { for (const [at, value] of [[0, 160], [1, 120]]) document.querySelectorAll('#ask input[type=number]')[at].value = value; })()");
+  await browser.value("(() => { for (const [at, value] of [[0, 160], [1, 120]]) { const it = document.querySelectorAll('#ask input[type=number]')[at]; it.value = value; it.dispatchEvent(new Event('input')); } })()");
+  check((await text("#ask code")).endsWith(" --size=160x120 --output=tree.gif"), "the command follows the size");
   await browser.click("#ask-go");
   await browser.until("document.querySelector('#ask [role=status]').textContent.includes('frames')");
+  const report = await text("#ask [role=status]");
+  check(report.split("tree.gif").length === 2, `the report names the film once: ${report}`);
   check(readFileSync(join(folder, "tree.gif")).subarray(0, 4).toString() === "GIF8", "the film is written");
   await shoot("film");
 

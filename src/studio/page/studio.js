@@ -899,7 +899,14 @@ function exports(heading, formats, more, note = "") {
   const name = make("input", { type: "text", value: `${stem()}.${formats[0]}`, required: true });
   const [width, height] = [canvas.width, canvas.height].map((value) => make("input", { type: "number", min: 1, max: 100000, value }));
   const replace = tick();
-  format.onchange = () => (name.value = name.value.replace(/\.[^.]*$/, "") + `.${format.value}`);
+  const command = make("code", {});
+  const write = () => (command.textContent = note && `${note} --size=${width.value}x${height.value} --output=${/^[\w./-]*$/.test(name.value) ? name.value : `'${name.value}'`}`);
+  for (const field of [name, width, height]) field.oninput = write;
+  format.onchange = () => {
+    name.value = name.value.replace(/\.[^.]*$/, "") + `.${format.value}`;
+    write();
+  };
+  write();
   const done = make("p", { className: "quiet", role: "status" });
   ask(heading, [
     make("label", {}, "Format", format),
@@ -907,7 +914,7 @@ function exports(heading, formats, more, note = "") {
     make("div", { className: "row" }, make("label", {}, "Width in pixels", width), make("label", {}, "Height in pixels", height)),
     ...more.map(([option, label]) => make("label", {}, option, label)),
     make("label", {}, replace, " Replace a file of this name"),
-    note ? make("code", {}, note) : "",
+    command,
     done,
   ], { go: "Export", act: async () => {
     done.textContent = "Writing…";
