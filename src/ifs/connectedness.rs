@@ -135,7 +135,7 @@ impl Ifs {
     ///     ifs.unwrap().connectedness(&mut ConnectednessSearch::new(32))
     /// };
     /// assert_eq!(pair(0.3, 0.3), Some(Connectedness::Disconnected(1)));
-    /// assert_eq!(pair(0.5, 0.5), Some(Connectedness::Connected));
+    /// assert_eq!(pair(0.6, 0.6), Some(Connectedness::Connected));
     /// ```
     pub fn connectedness(&self, search: &mut ConnectednessSearch) -> Option<Connectedness> {
         let is_plain = !self.is_recurrent() && self.condensation().is_empty();
