@@ -59,10 +59,11 @@ pub(super) struct Arguments {
     rule: PathBuf,
     /// Output file, or - for standard output [default: NAME.gif]
     ///
-    /// .gif, .png or .apng for an animated PNG, .y4m for other encoders, .mp4 and .webm by the program ffmpeg if it is
-    /// installed. In an .svg the lines of one drawing move, up to 20,000 elements in all frames together; with --svg instanced
-    /// there is no such limit. Chromium and Firefox show it. A name with a number, as film-%04d.png, is a PNG for each frame; those of the plane that exist already, drawn
-    /// by an equal command, are kept.
+    /// .gif, .png or .apng for an animated PNG, .y4m for other encoders, .mp4 and .webm by the program ffmpeg if it
+    /// is installed. In an .svg the lines of one drawing move, up to 20,000 elements in all frames together; with
+    /// --svg instanced there is no such limit. Browsers that animate paths by CSS show it, as Chromium does. A name
+    /// with a number, as film-%04d.png, is a PNG for each frame; those of the plane that exist already, drawn by an
+    /// equal command, are kept.
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// Output format [default: from the extension of the file]

@@ -226,8 +226,8 @@ impl Arguments {
     /// Returns the plane of parameters: with square pixels for a complex parameter.
     fn plane(&self, loaded: &Loaded) -> Result<ParameterPlane, Failure> {
         const STRIP: u32 = 8;
-        if self.depth.is_some_and(|depth| depth > MOST_DIVISIONS) && self.of == Property::Area {
-            let message = format!("--depth of an area is at most {MOST_DIVISIONS}");
+        if self.depth.is_some_and(|depth| depth > MAX_DIVISIONS) && self.of == Property::Area {
+            let message = format!("--depth of an area is at most {MAX_DIVISIONS}");
             return Err(Failure::Usage(message));
         }
         let axes = self.over.iter().flat_map(|it| it.axes.clone());
@@ -289,6 +289,9 @@ impl Arguments {
                 Property::Connected => {
                     format!("disconnected, certified by compositions of {least} to {most} maps")
                 }
+                Property::Dimension if most > 2.0 => {
+                    format!("similarity dimension from {from} to {to}, coloured up to 2")
+                }
                 Property::Dimension => format!("similarity dimension from {from} to {to}"),
                 Property::Area => format!("area at most from {from} to {to}"),
             };
@@ -323,7 +326,7 @@ impl Arguments {
 }
 
 /// Largest number of divisions of a square.
-const MOST_DIVISIONS: u32 = 10;
+const MAX_DIVISIONS: u32 = 10;
 
 /// Returns a share of a side, at least a pixel.
 #[expect(

@@ -23,7 +23,8 @@ const COLOURS: [(PlaneValue, Colour); 6] = [
 /// Legend of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Legend {
-    /// Least and largest number, the ends of the palette; `None` if there are no numbers.
+    /// Least and largest number; `None` if there are no numbers. [`ParameterMap::pixels`] states which numbers the ends of
+    /// the palette are.
     pub range: Option<[f64; 2]>,
     /// Number of pixels that are numbers.
     pub numbers: u64,
