@@ -140,6 +140,7 @@ pub mod expression;
 pub mod extent;
 pub mod family;
 mod fast_hash;
+#[cfg(feature = "figures")]
 pub mod figure;
 #[cfg(feature = "cli")]
 mod film;

@@ -130,13 +130,11 @@ fn draws_hang_on_the_path() {
 #[test]
 fn lengths_are_told_before_anything_is_written() {
     let koch = system("axiom: F\nproductions: {F: F+F--F+F}\n");
-    let start = std::time::Instant::now();
     let error = koch.word(900, 0, 1024).unwrap_err();
     let (step, most, what) = (6, 1024, "elements");
     assert_eq!(error, RewriteError::TooLong { step, most, what });
     let said = "the word of step 6 has more than 1,024 elements; step 5 is the deepest";
     assert_eq!(error.to_string(), said);
-    assert!(start.elapsed().as_secs() < 5);
     assert_eq!(koch.deepest(12, 1024), 5);
     // Nothing is drawn, but the word grows exponentially.
     let silent = system("axiom: A\nproductions: {A: AA}\n");

@@ -269,11 +269,9 @@ fn drafts_have_the_same_pixels() {
     }
     // A draft of a step of 16 million elements has those that are seen.
     let look = json!({ "steps": 12 });
-    let start = Instant::now();
     let size = |reply: Value| reply["elements"].as_u64().unwrap();
     let reply = page.draw(json!({ "look": look, "draft": true }));
     assert!(size(reply.picture()) < 100_000, "{}", reply.picture());
-    assert!(start.elapsed() < Duration::from_secs(5));
     assert_eq!(page.state()["look"]["steps"], 12, "the look stays");
 }
 

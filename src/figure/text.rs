@@ -3,7 +3,10 @@
 
 use std::io;
 
-use ttf_parser::{Face, GlyphId, OutlineBuilder};
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 use crate::geometry::DVec2;
 use crate::render::{FINE, Paint, Position, Surface, Tracer, position};
@@ -11,7 +14,9 @@ use crate::style::Colour;
 
 /// Font of all labels.
 pub(super) struct Font {
-    face: Face<'static>,
+    face: FontRef<'static>,
+    advances: GlyphMetrics<'static>,
+    units_per_em: f64,
 }
 
 /// Position of a label relative to its point.
@@ -25,23 +30,32 @@ pub(super) enum Anchor {
 
 impl Font {
     pub(super) fn new() -> Self {
-        match Face::parse(notosans::REGULAR_TTF, 0) {
-            Ok(face) => Self { face },
+        let face = match FontRef::new(notosans::REGULAR_TTF) {
+            Ok(face) => face,
             Err(error) => unreachable!("the font is whole: {error}"),
+        };
+        let location = LocationRef::default();
+        Self {
+            advances: face.glyph_metrics(Size::unscaled(), location),
+            units_per_em: face.metrics(Size::unscaled(), location).units_per_em.into(),
+            face,
         }
     }
 
     /// Returns the pixels in a unit of the font, where an em has `size` pixels.
     fn scale(&self, size: f64) -> f64 {
-        size / f64::from(self.face.units_per_em())
+        size / self.units_per_em
     }
 
     fn glyph(&self, character: char) -> GlyphId {
-        self.face.glyph_index(character).unwrap_or_default()
+        self.face.charmap().map(character).unwrap_or_default()
     }
 
     fn advance(&self, glyph: GlyphId) -> f64 {
-        f64::from(self.face.glyph_hor_advance(glyph).unwrap_or_default())
+        self.advances
+            .advance_width(glyph)
+            .unwrap_or_default()
+            .into()
     }
 
     /// Returns the width of a text in pixels.
@@ -100,10 +114,15 @@ impl Font {
             stroke: None,
             has_holes: true,
         })?;
+        let outlines = self.face.outline_glyphs();
+        let settings = || DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
         for character in text.chars() {
             let glyph = self.glyph(character);
-            // A space has no outline.
-            let _ = self.face.outline_glyph(glyph, &mut outline);
+            if let Some(glyph) = outlines.get(glyph)
+                && let Err(error) = glyph.draw(settings(), &mut outline)
+            {
+                unreachable!("the font is whole: {error}");
+            }
             outline.origin.x += self.advance(glyph) * outline.scale;
         }
         outline.tracer.end()
@@ -126,7 +145,7 @@ impl<S: Surface> Outline<'_, S> {
     }
 }
 
-impl<S: Surface> OutlineBuilder for Outline<'_, S> {
+impl<S: Surface> OutlinePen for Outline<'_, S> {
     fn move_to(&mut self, x: f32, y: f32) {
         self.pen = point(x, y);
         self.tracer.move_to(self.position(self.pen));
