@@ -216,17 +216,21 @@ impl Model {
     }
 
     /// Compiles the model to a graph that is resolved for at least `steps` steps, with the seed 0 and the
-    /// limit [`MAX_ELEMENTS`](Self::MAX_ELEMENTS) where these matter.
+    /// limit [`MAX_LISTED`](Self::MAX_LISTED) where these matter.
     ///
     /// # Errors
     ///
     /// As for [`Model::compile_for`].
     pub fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
-        self.compile_for(steps, 0, Self::MAX_ELEMENTS)
+        self.compile_for(steps, 0, Self::MAX_LISTED)
     }
 
     /// Default limit of the number of elements that are drawn.
     pub const MAX_ELEMENTS: u64 = 50_000_000;
+
+    /// Default limit of the number of elements of a graph that lists them: of an L-system that is not compiled. They
+    /// take about 80 bytes each.
+    pub const MAX_LISTED: u64 = 20_000_000;
 
     /// Compiles the model to a graph that is resolved for at least `steps` steps. For an L-system that is
     /// not compiled, its word is derived for exactly `steps` steps, with the draws of `seed`, if it draws
@@ -277,13 +281,13 @@ impl Model {
     }
 
     /// Compiles a model in space as [`graph_in_space_for`](Self::graph_in_space_for) does, with the seed 0 and the limit
-    /// [`MAX_ELEMENTS`](Self::MAX_ELEMENTS) where these matter.
+    /// [`MAX_LISTED`](Self::MAX_LISTED) where these matter.
     ///
     /// # Errors
     ///
     /// As for [`graph_in_space_for`](Self::graph_in_space_for).
     pub fn graph_in_space(&self, steps: u32) -> Option<Result<Graph<Frame3>, CompileError>> {
-        self.graph_in_space_for(steps, 0, Self::MAX_ELEMENTS)
+        self.graph_in_space_for(steps, 0, Self::MAX_LISTED)
     }
 
     /// Compiles a model in space to the graph of its elements, which is resolved for at least `steps` steps; `None` for

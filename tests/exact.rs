@@ -1,5 +1,6 @@
 //! Exact dimensions by neighbour maps, against published values and against counts.
 
+mod extremes;
 mod laws;
 mod library;
 mod spectrum;

@@ -277,7 +277,9 @@ impl Arguments {
     fn compile(&self, [a, b]: [Loaded; 2]) -> Result<[One; 2], Failure> {
         let graph = |loaded: &Loaded| match self.steps {
             Some(steps) => loaded.compile(steps),
-            None => loaded.compile_limit(STEPS),
+            None => loaded
+                .compile_limit(STEPS)
+                .map_err(|error| loaded.failure(&error)),
         };
         let one = |loaded: Loaded, place: Homothety| {
             let loaded = loaded.within(place);

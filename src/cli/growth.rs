@@ -117,13 +117,13 @@ impl GrowthArguments {
         held.map_or_else(Spares::default, |held| held.spares.clone())
     }
 
-    /// Returns whether the limit of the number of elements is given.
-    pub(super) fn gives_max_elements(&self) -> bool {
-        self.max_elements.is_some()
-    }
-
     pub(super) fn max_elements(&self) -> u64 {
         self.max_elements.unwrap_or(Model::MAX_ELEMENTS)
+    }
+
+    /// Returns the limit of the number of elements, if it is given.
+    pub(super) fn given_max_elements(&self) -> Option<u64> {
+        self.max_elements
     }
 
     /// Returns the limit of the number of elements of a picture.

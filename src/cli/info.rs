@@ -68,6 +68,9 @@ Examples:
 /// Largest number of steps: beyond, the numbers alone would fill a disk.
 const MAX_STEPS: u32 = 10_000;
 
+/// Limit of the number of elements of a word.
+const MAX_LISTED: u64 = 1_000_000;
+
 #[derive(Serialize)]
 struct Info<'a> {
     name: &'a str,
@@ -173,6 +176,7 @@ fn number(value: f64) -> serde_json::Value {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
+    let loaded = loaded.listing(MAX_LISTED);
     let (info, unit) = if let Some(graph) = loaded.in_space(arguments.steps)? {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;

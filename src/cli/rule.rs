@@ -75,7 +75,9 @@ pub(super) struct Loaded {
     /// Options, with their values, by which the model is made of all rules.
     pub(super) made_by: Vec<(&'static str, String)>,
     /// Seed and limit of the number of elements, for graphs that depend on them.
-    growth: (u64, u64),
+    growth: (u64, Option<u64>),
+    /// Limit of the number of elements of graphs that list them, which no option changes.
+    most_listed: Option<u64>,
     /// Map from the coordinates of compiled graphs to those of the file; [`Model::place`] if `None`.
     place: Option<Homothety>,
     /// Degrees by which graphs are turned about the origin of the file.
@@ -94,8 +96,21 @@ impl Loaded {
 
     /// Sets the seed and the limit of the number of elements.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
-        self.growth = (growth.seed, growth.max_elements());
+        self.growth = (growth.seed, growth.given_max_elements());
         self
+    }
+
+    /// Limits the number of elements of graphs that list them.
+    pub(super) fn listing(mut self, max_elements: u64) -> Self {
+        self.most_listed = Some(max_elements);
+        self
+    }
+
+    /// Returns the seed of graphs that list elements, and the limit of their number.
+    fn listed(&self) -> (u64, u64) {
+        let (seed, max_elements) = self.growth;
+        let most = self.most_listed.or(max_elements);
+        (seed, most.unwrap_or(Model::MAX_LISTED))
     }
 
     /// Sets the coordinates in which graphs are compiled: `place` maps them to those of the file.
@@ -132,7 +147,7 @@ impl Loaded {
     }
 
     fn graph_as_written(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
-        let (seed, max_elements) = self.growth;
+        let (seed, max_elements) = self.listed();
         match &self.place {
             Some(place) => model.compile_within(place, steps, seed, max_elements),
             None => model.compile_normalised(steps, seed, max_elements),
@@ -145,8 +160,8 @@ impl Loaded {
     }
 
     /// Compiles the graph of [the model that has the limit set](Model::of_limit).
-    pub(super) fn compile_limit(&self, steps: u32) -> Result<Graph, Failure> {
-        self.compiled(&self.model.of_limit(), steps)
+    pub(super) fn compile_limit(&self, steps: u32) -> Result<Graph, CompileError> {
+        self.graph_of(&self.model.of_limit(), steps)
     }
 
     /// Compiles the graph of the model that has the limit set; `None` if it is the model itself.
@@ -165,7 +180,7 @@ impl Loaded {
     /// Returns the graph of the elements of a set in space, resolved for the number of steps that is given or proposed;
     /// `None` for a set of the plane.
     pub(super) fn in_space(&self, steps: Option<u32>) -> Result<Option<Graph<Frame3>>, Failure> {
-        let (seed, max_elements) = self.growth;
+        let (seed, max_elements) = self.listed();
         let steps = self.model.resolved_steps_in_space(steps);
         let graph = self.model.graph_in_space_for(steps, seed, max_elements);
         graph.transpose().map_err(|error| self.failure(&error))
@@ -180,7 +195,7 @@ impl Loaded {
         let (seed, max_elements) = self.growth;
         let growth = Growth {
             seed,
-            max_elements,
+            max_elements: max_elements.unwrap_or(Model::MAX_ELEMENTS),
             ..Growth::steps(self.model.resolved_steps_in_space(steps))
         };
         let Some(drawn) = self.model.drawn_in_space(steps, &growth, color_by) else {
@@ -203,9 +218,9 @@ impl Loaded {
     pub(super) fn failure(&self, error: &CompileError) -> Failure {
         let diagnostic = self.model.diagnostic(error);
         match error {
-            CompileError::Word(RewriteError::TooLong {
-                what: "elements", ..
-            }) => diagnostic.hint("--max-elements allows more").into(),
+            CompileError::Word(RewriteError::TooLong { .. }) if self.most_listed.is_none() => {
+                diagnostic.hint("--max-elements allows more").into()
+            }
             _ => diagnostic.into(),
         }
     }
@@ -355,7 +370,8 @@ impl RuleArguments {
             omitted: self.omit.clone(),
             beside: Vec::new(),
             made_by: Vec::new(),
-            growth: (0, Model::MAX_ELEMENTS),
+            growth: (0, None),
+            most_listed: None,
             place: None,
             turn: 0.0,
         })

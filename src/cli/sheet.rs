@@ -197,7 +197,7 @@ impl Arguments {
         } = self;
         let default = self.rule.file("-sheet", format.name());
         let path = self.output.as_ref().unwrap_or(&default);
-        let gives_depth = self.steps.is_some() || growth.gives_max_elements();
+        let gives_depth = self.steps.is_some() || growth.given_max_elements().is_some();
         let stays_light = format == render::Format::Svg && !gives_depth;
         let ((written, cells, step), bytes) =
             output::write(path, growth.quiet, |out, progress| {

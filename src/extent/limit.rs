@@ -24,6 +24,9 @@ pub enum NoLimit {
     /// Elements do not shrink.
     #[error("there is no limit set: what is replaced does not shrink")]
     DoesNotShrink,
+    /// Products of very many maps are needed until all of them shrink.
+    #[error("its maps enlarge before they shrink, in products of too many to be followed")]
+    ShrinksLate,
     /// No element is replaced infinitely often.
     #[error("nothing stays fertile")]
     NothingFertile,

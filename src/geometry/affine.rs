@@ -106,7 +106,7 @@ impl Affine for DAffine2 {
 
     fn in_space(&self) -> DAffine3 {
         let DMat2 { x_axis, y_axis } = self.matrix2;
-        let across = self.matrix2.determinant().abs().sqrt();
+        let across = self.matrix2.mean_ratio();
         DAffine3 {
             matrix3: DMat3::from_cols(x_axis.extend(0.0), y_axis.extend(0.0), DVec3::Z * across),
             translation: self.translation.extend(0.0),

@@ -22,6 +22,11 @@ pub trait Linear:
     #[must_use]
     fn determinant(&self) -> f64;
 
+    /// Returns the root of the absolute determinant, of degree two in the plane and three in space: the ratio, if the map is
+    /// a similarity. Determinants below the range of doubles do no harm.
+    #[must_use]
+    fn mean_ratio(&self) -> f64;
+
     /// Returns the product of the transposed map with a vector: its products with other vectors are those of `vector`
     /// with their images.
     #[must_use]
@@ -49,6 +54,17 @@ impl Linear for DMat2 {
         self.determinant()
     }
 
+    fn mean_ratio(&self) -> f64 {
+        let largest = f64::max(
+            self.x_axis.abs().max_element(),
+            self.y_axis.abs().max_element(),
+        );
+        match largest.is_normal() {
+            true => largest * (*self / largest).determinant().abs().sqrt(),
+            false => largest,
+        }
+    }
+
     #[inline]
     fn transposed(&self, vector: DVec2) -> DVec2 {
         self.transpose() * vector
@@ -60,7 +76,8 @@ impl Linear for DMat2 {
 
     fn singular_values(&self) -> [f64; 3] {
         let larger = stretch(self);
-        [larger, self.determinant().abs() / larger, 0.0]
+        let ratio = self.mean_ratio();
+        [larger, ratio / larger * ratio, 0.0]
     }
 
     fn spectral_radius(&self) -> f64 {
@@ -88,6 +105,16 @@ impl Linear for DMat3 {
 
     fn determinant(&self) -> f64 {
         self.determinant()
+    }
+
+    fn mean_ratio(&self) -> f64 {
+        let columns = [self.x_axis, self.y_axis, self.z_axis];
+        let largest = columns.map(|column| column.abs().max_element());
+        let largest = largest.into_iter().fold(0.0, f64::max);
+        match largest.is_normal() {
+            true => largest * libm::cbrt((*self / largest).determinant().abs()),
+            false => largest,
+        }
     }
 
     #[inline]

@@ -18,9 +18,6 @@ pub struct TooLarge {
 /// Limit of digits beyond which the number of elements of a refused approximant is not computed.
 const MAX_DIGITS: usize = 5_000;
 
-/// Limit of additions beyond which a forecast is abandoned.
-const MAX_WORK: usize = 2_000_000;
-
 impl<F: Frame> Graph<F> {
     /// Returns the number of elements of approximant `steps`, provided that no approximant up to it
     /// exceeds `max_elements`; `None` if the graph has no forecast, or none within a reasonable time.
@@ -45,19 +42,20 @@ impl<F: Frame> Graph<F> {
                     elements: Some(elements),
                     deepest,
                 });
-            } else if elements.digits() > MAX_DIGITS || forecast.work > MAX_WORK {
-                return Err(TooLarge {
-                    elements: None,
-                    deepest,
-                });
             }
             if step == steps {
                 return Ok(elements.to_u64());
             }
-            if !refused && forecast.work > MAX_WORK || !forecast.advance() {
+            if elements.digits() > MAX_DIGITS || !forecast.advance() {
                 break;
             }
         }
-        Ok(None)
+        match refused {
+            true => Err(TooLarge {
+                elements: None,
+                deepest,
+            }),
+            false => Ok(None),
+        }
     }
 }

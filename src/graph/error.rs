@@ -40,6 +40,17 @@ pub enum CompileError {
 }
 
 impl CompileError {
+    /// Returns the deepest step whose word is short enough, where that of a later step is too long or takes too much
+    /// work.
+    pub(crate) fn deepest(&self) -> Option<u32> {
+        match self {
+            Self::Word(RewriteError::TooLong { step, .. } | RewriteError::TooMuchWork { step }) => {
+                step.checked_sub(1)
+            }
+            _ => None,
+        }
+    }
+
     pub(crate) fn not_finite(generator: &str, moment: &ElementContext) -> Self {
         Self::NotFinite {
             generator: generator.into(),

@@ -52,8 +52,8 @@ pub struct Forecast<'g, F: Frame = Frame2> {
     /// Approximate number of elements that were created in the last step next to one of another length,
     /// and the sum of the longer lengths.
     new_lengths: [f64; 2],
-    /// Number of tallies that have been added.
-    pub(super) work: usize,
+    /// Work of the additions so far.
+    work: u64,
     /// Totals of objects, if the graph is time-indexed.
     totals: Totals,
     outlines: Outlines,
@@ -137,6 +137,17 @@ impl AddAssign for Sums {
         self.root_cube += other.root_cube;
         self.volume += other.volume;
     }
+}
+
+/// Limit of the work of a forecast: about a second.
+const MAX_WORK: u64 = 500_000_000;
+
+/// Work of adding two tallies of small numbers, relative to that of adding 18 digits.
+const TALLY: u64 = 200;
+
+/// Returns the work of adding a number to a tally.
+fn work(count: &Count) -> u64 {
+    TALLY + count.digits() as u64 / 18
 }
 
 /// Largest difference of lengths that count as equal, in powers of two.
@@ -278,7 +289,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
             true => sums.cube * self.volumes[own.base_element],
             false => 0.0,
         };
-        self.work += 1;
+        self.work += work(count);
         let population = self.population.entry(object).or_default();
         population.count += count;
         population.sums += Sums {
@@ -396,8 +407,11 @@ impl<'g, F: Frame> Forecast<'g, F> {
     }
 
     /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved
-    /// further.
+    /// further, or if the forecast so far took about a second: numbers of a million digits, or of as many objects.
     pub fn advance(&mut self) -> bool {
+        if self.work > MAX_WORK {
+            return false;
+        }
         if self.graph.is_time_indexed() {
             return self.advance_level();
         }

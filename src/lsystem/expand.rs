@@ -3,7 +3,7 @@
 
 use crate::draws::Path;
 
-use super::rewrite::{MAX_WORK, RewriteError, Rewriter, check_length};
+use super::rewrite::{MAX_WORK, RewriteError, Rewriter, check_length, most_modules};
 use super::word::number;
 use super::{LSystem, Word};
 
@@ -31,7 +31,8 @@ impl LSystem {
             }
             return Ok(());
         }
-        if let Some(error) = self.too_long(steps, MAX_MODULES, max_elements) {
+        let most = most_modules(MAX_MODULES, max_elements);
+        if let Some(error) = self.too_long(steps, most, max_elements) {
             return Err(error);
         }
         let axiom = Word::axiom(self, seed);
@@ -128,7 +129,8 @@ impl<'s> Expander<'s> {
             read(symbol, arguments);
         }
         let step = steps;
-        let modules = (self.modules, MAX_MODULES, "modules");
+        let most = most_modules(MAX_MODULES, self.max_elements);
+        let modules = (self.modules, most, "modules");
         check_length(
             step,
             &[modules, (self.elements, self.max_elements, "elements")],

@@ -11,6 +11,14 @@ use super::{LSystem, Word};
 /// Limit of the number of modules, and of arguments, in a word that is stored.
 const MAX_MODULES: u64 = 25_000_000;
 
+/// Limit of the modules of a word for each element that it may draw.
+const MODULES_PER_ELEMENT: u64 = 100;
+
+/// Returns the limit of the modules of a word: `most`, or less where few elements are allowed.
+pub(super) fn most_modules(most: u64, max_elements: u64) -> u64 {
+    most.min(max_elements.saturating_mul(MODULES_PER_ELEMENT))
+}
+
 /// Limit of the modules, productions and contexts examined in all steps together.
 pub(super) const MAX_WORK: u64 = 1_000_000_000;
 
@@ -71,11 +79,13 @@ impl LSystem {
     ///
     /// # Errors
     ///
-    /// Returns an error if a word has more than 25 million modules or arguments or draws more than
-    /// `max_elements` lines and polygons, if rewriting takes too much work, or if an argument is not finite.
+    /// Returns an error if a word has more than 25 million modules or arguments, or more than 100 for each element
+    /// allowed, if it draws more than `max_elements` lines and polygons, if rewriting takes too much work, or if an
+    /// argument is not finite.
     /// Where lengths of words can be predicted, too long a word is reported before any rewriting.
     pub fn word(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Word, RewriteError> {
-        if let Some(error) = self.too_long(steps, MAX_MODULES, max_elements) {
+        let most = most_modules(MAX_MODULES, max_elements);
+        if let Some(error) = self.too_long(steps, most, max_elements) {
             return Err(error);
         }
         self.rewritten(steps, seed, max_elements, MAX_WORK)
@@ -294,6 +304,7 @@ impl<'s> Rewriter<'s> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
         let mut elements = 0;
+        let most = most_modules(MAX_MODULES, max_elements);
         for (at, module) in (0u32..).zip(word.modules(system)) {
             let path = word.paths.get(at as usize).copied();
             let around = surroundings.as_ref().map(|around| (around, at));
@@ -321,8 +332,8 @@ impl<'s> Rewriter<'s> {
                 .iter()
                 .map(|symbol| system.symbols[*symbol as usize].draws());
             elements += draws.sum::<u64>();
-            let modules = (next.symbols.len() as u64, MAX_MODULES, "modules");
-            let arguments = (next.arguments.len() as u64, MAX_MODULES, "arguments");
+            let modules = (next.symbols.len() as u64, most, "modules");
+            let arguments = (next.arguments.len() as u64, most, "arguments");
             let elements = (elements, max_elements, "elements");
             check_length(step, &[modules, arguments, elements])?;
         }

@@ -93,6 +93,9 @@ impl BoxCounting {
     /// weighted by their likelihood. Where a sample does not reach 1/16384 of the extent (1/512 in space; the base is not an
     /// integer, or too many copies overlap), the sizes are those up to half the extent for which the smallest
     /// cover has at least 9 boxes, down to where it has about 130,000.
+    ///
+    /// There is no estimate where the sizes span less than one generation of [the smallest
+    /// copies](LimitSet::smallest_scale).
     #[must_use]
     pub fn of_limit<M: Space>(
         set: &LimitSet<M>,
@@ -116,9 +119,13 @@ impl BoxCounting {
         let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
         let comes_far =
             |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < fine * extent);
-        match scales.filter(comes_far) {
+        let counting = match scales.filter(comes_far) {
             Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, most)),
             None => Self::of(&set.scales(base, MAX_BOXES, grids, threads), &window),
+        };
+        Self {
+            estimate: counting.estimate.and_then(|it| set.believed(it)),
+            ..counting
         }
     }
 

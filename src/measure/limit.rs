@@ -3,6 +3,7 @@
 mod cascade;
 mod cover;
 mod descent;
+mod groups;
 mod moments;
 mod slice;
 mod states;
@@ -12,8 +13,11 @@ use crate::geometry::{Affine, Bounds, DAffine2, Linear, Point};
 use crate::graph::{Graph, Instance};
 
 use super::cover::{Counts, Grid};
+use super::regression::Estimate;
 use super::space::Space;
 use crate::saturating::real;
+
+use groups::{Shared, grouped, products, unzipped};
 
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
@@ -42,6 +46,13 @@ struct ObjectLimit<M: Affine> {
     middle: M::Point,
     reach: f64,
     children: Vec<LimitCopy<M>>,
+}
+
+/// A limit set, with the shares of its copies in the mass of their sets, and of those that the whole is made of.
+struct Shares<M: Affine> {
+    set: LimitSet<M>,
+    shares: Vec<Vec<f64>>,
+    masses: Vec<f64>,
 }
 
 /// A copy of an object's set: its map, and the largest factor by which the map lengthens a vector.
@@ -131,7 +142,7 @@ impl<M: Space> LimitSet<M> {
         });
         let kept = |instance: &&Instance<F>| lasting[instance.object];
         let placed =
-            |instance: &Instance<F>| LimitCopy::new(*instance.frame.map(), instance.object);
+            |instance: &Instance<F>| (LimitCopy::new(*instance.frame.map(), instance.object), 1.0);
         let children = |object| fertile(object).filter(kept).map(placed).collect();
         let children = (0..graph.objects().len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();
@@ -139,13 +150,31 @@ impl<M: Space> LimitSet<M> {
         if start.is_empty() {
             return Err(NoLimit::NothingFertile);
         }
-        Ok(Self::of_copies(children, start))
+        let Shares { set, .. } = Self::of_copies(children, start).ok_or(NoLimit::ShrinksLate)?;
+        Ok(set)
     }
 
-    /// Creates the limit set from the copies in every object's set, and those that the whole is made of.
+    /// Creates the limit set from the copies in every object's set, and those that the whole is made of, each with its
+    /// share. `None` if copies enlarge before they shrink, in products of too many.
     ///
     /// Precondition: objects that are copied contain copies in turn, and cycles contract.
-    fn of_copies(children: Vec<Vec<LimitCopy<M>>>, start: Vec<LimitCopy<M>>) -> Self {
+    fn of_copies(mut children: Vec<Vec<Shared<M>>>, start: Vec<Shared<M>>) -> Option<Shares<M>> {
+        loop {
+            let (objects, whole) = grouped(children.clone(), start.clone());
+            let (objects, shares) = objects.into_iter().map(unzipped).unzip();
+            let (whole, masses) = unzipped(whole);
+            if let Some(set) = Self::of_groups(objects, whole) {
+                return Some(Shares {
+                    set,
+                    shares,
+                    masses,
+                });
+            }
+            children = products(&children)?;
+        }
+    }
+
+    fn of_groups(children: Vec<Vec<LimitCopy<M>>>, start: Vec<LimitCopy<M>>) -> Option<Self> {
         let part = |children| ObjectLimit {
             point: M::Point::ZERO,
             radius: 0.0,
@@ -160,7 +189,7 @@ impl<M: Space> LimitSet<M> {
             is_layer: false,
         };
         set.find_points();
-        set.find_radii();
+        set.find_radii()?;
         set.bounds = Self::extent(&set.objects, &set.start);
         // A single point has no extent except by rounding.
         const ROUNDING: f64 = 1e-12;
@@ -168,7 +197,7 @@ impl<M: Space> LimitSet<M> {
         if set.bounds.size().max_element() <= ROUNDING * scale {
             set.bounds = Bounds::new(set.bounds.min(), set.bounds.min());
         }
-        set
+        Some(set)
     }
 
     /// Returns the bounding box of the set, to about 12 digits.
@@ -216,6 +245,23 @@ impl<M: Space> LimitSet<M> {
             }
         }
         (common > LEAST).then(|| libm::exp(common))
+    }
+
+    /// Returns the smallest factor by which a copy in an object's set is smaller, except for copies that are points.
+    ///
+    /// Sizes whose quotients are all larger show less than one generation of the set.
+    #[must_use]
+    pub fn smallest_scale(&self) -> f64 {
+        let copies = self.objects.iter().flat_map(|part| &part.children);
+        let scales = copies.map(|copy| copy.scale).filter(|scale| *scale > 0.0);
+        scales.fold(1.0, f64::min)
+    }
+
+    /// Returns an estimate if its sizes span at least one generation of the smallest copies.
+    pub(super) fn believed(&self, estimate: Estimate) -> Option<Estimate> {
+        let [finest, coarsest] = estimate.range;
+        let spans = estimate.sizes == 0 || finest <= coarsest * self.smallest_scale();
+        spans.then_some(estimate)
     }
 
     /// Returns the dimension of the space, or of the plane of a slice.
@@ -271,10 +317,10 @@ impl<M: Space> LimitSet<M> {
         }
     }
 
-    /// Computes the discs about all points and all centres.
-    fn find_radii(&mut self) {
+    /// Computes the discs about all points and all centres; `None` if they are not bounded.
+    fn find_radii(&mut self) -> Option<()> {
         let points: Vec<M::Point> = self.objects.iter().map(|part| part.point).collect();
-        let radii = self.radii_about(&points);
+        let radii = self.radii_about(&points)?;
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
@@ -283,34 +329,51 @@ impl<M: Space> LimitSet<M> {
         let middles = (0..self.objects.len())
             .map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
         let middles: Vec<M::Point> = middles.collect();
-        let reaches = self.radii_about(&middles);
+        let reaches = self.radii_about(&middles)?;
         let discs = middles.into_iter().zip(reaches);
         for (part, (middle, reach)) in self.objects.iter_mut().zip(discs) {
             (part.middle, part.reach) = (middle, reach);
         }
+        Some(())
     }
 
     /// Returns the smallest radii that solve r(o) = max |p(o) − f(p(c))| + ‖f‖ r(c) over the instances f of
-    /// c, approached from below, for points p.
-    fn radii_about(&self, points: &[M::Point]) -> Vec<f64> {
+    /// c, approached from below, for points p; larger ones where they are approached slowly. `None` if none are found.
+    fn radii_about(&self, points: &[M::Point]) -> Option<Vec<f64>> {
         const TOLERANCE: f64 = 1e-9;
+        const ROUNDING: f64 = 1e-6;
+        let away = |object: usize, copy: &LimitCopy<M>| {
+            (copy.map.apply(points[copy.object]) - points[object]).length()
+        };
         let mut radii = vec![0.0; points.len()];
         for _ in 0..MAX_SWEEPS {
             let mut change: f64 = 0.0;
             for object in (0..self.objects.len()).rev() {
-                let reach = self.objects[object].children.iter().map(|copy| {
-                    let away = copy.map.apply(points[copy.object]) - points[object];
-                    away.length() + copy.scale * radii[copy.object]
-                });
+                let children = self.objects[object].children.iter();
+                let reach =
+                    children.map(|copy| away(object, copy) + copy.scale * radii[copy.object]);
                 let radius = reach.fold(0.0, f64::max);
                 change = change.max(radius - radii[object]);
                 radii[object] = radius;
             }
             if change <= TOLERANCE {
-                break;
+                let larger = radii.iter().map(|radius| radius * (1.0 + ROUNDING));
+                return Some(larger.collect());
+            }
+            if !change.is_finite() {
+                return None;
             }
         }
-        radii.iter().map(|radius| radius * (1.0 + 1e-6)).collect()
+        // The sum of a geometric series bounds all radii.
+        let (mut farthest, mut largest) = (0.0, 0.0);
+        for (object, part) in self.objects.iter().enumerate() {
+            for copy in &part.children {
+                farthest = f64::max(farthest, away(object, copy));
+                largest = f64::max(largest, copy.scale);
+            }
+        }
+        let radius = farthest / (1.0 - largest);
+        (largest < 1.0).then(|| vec![radius * (1.0 + ROUNDING); points.len()])
     }
 
     /// Returns the bounding box of copies, to about 12 digits.

@@ -101,7 +101,8 @@ impl Generalised {
         let of = |(number, &order): (usize, &f64)| {
             let readings = moments.readings(number);
             let estimate = averaged(&readings, most(M::Point::DIMENSION, order))
-                .or_else(|| estimate(&readings));
+                .or_else(|| estimate(&readings))
+                .and_then(|it| measure.set().believed(it));
             Self {
                 order,
                 estimate: estimate.map(|estimate| {

@@ -19,9 +19,6 @@ const SPECK: f64 = 1e-6;
 /// Maximum number of steps for which the ages of seeded fractals are computed.
 const MAX_AGES: u32 = 256;
 
-/// Maximum number of steps of a forecast; beyond it the set is measured by a walk.
-const MAX_STEPS: u32 = 10_000;
-
 impl<'g> Prepass<'g> {
     /// Makes the prepass of an approximant: from the graph if it determines everything, otherwise by a walk.
     /// Colours that depend on steps span `steps` of them.
@@ -118,7 +115,7 @@ struct Numbers {
 }
 
 fn level(graph: &Graph, growth: &Growth<'_>) -> Option<Numbers> {
-    if graph.counts_index() || growth.steps > MAX_STEPS {
+    if graph.counts_index() {
         return None;
     }
     let mut forecast = graph.forecast()?;

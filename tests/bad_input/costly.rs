@@ -280,3 +280,58 @@ fn brackets_may_be_nested_deeply() {
     refused(text(arguments).as_bytes(), "not closed");
     refused(text("F".repeat(300_000)).as_bytes(), "250000 modules");
 }
+
+/// Returns a rule whose generator has a number of points on a sine curve.
+fn many_points(count: usize) -> String {
+    let points = (0..=count).map(|i| {
+        let at = i as f64 / count as f64;
+        let y = match i % count {
+            0 => 0.0,
+            _ => 0.3 * (3.0 * at).sin() + 1e-3 * (i * i % 7) as f64,
+        };
+        format!("  - [{at}, {y}]\n")
+    });
+    format!(
+        "initiator: segment\ngenerator:\n{}",
+        points.collect::<String>()
+    )
+}
+
+#[test]
+fn memory_does_not_grow_with_pairs_of_elements() {
+    let text = many_points(6_000);
+    accepted(&text, &CHECK);
+    accepted(&text, &INFO);
+    accepted(&text, &["dim", "many.yaml"]);
+    let initiator: String = (0..60_000)
+        .map(|i| format!("    - [{i}, {}]\n", i % 7))
+        .collect();
+    let text = format!("initiator:\n  elements:\n{initiator}generator: koch\n");
+    accepted(&text, &["dim", "many.yaml", "--grids", "1"]);
+}
+
+#[test]
+fn words_that_are_drawn_at_random_are_derived_as_far_as_needed() {
+    let text = "kind: lsystem\nangle: 25\naxiom: F\nproductions:\n  F:\n    - {to: 'F[+F]F[-F]F', weight: 1/2}\n    \
+                - {to: 'F[+F]F', weight: 1/2}\nsteps: 20\n";
+    accepted(text, &CHECK);
+    accepted(text, &["dim", "many.yaml"]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("deep.yaml"), text).unwrap();
+    let outcome = kfrac(folder.path(), &["info", "deep.yaml"]);
+    assert_eq!(outcome.status, Some(1));
+    let message = "has more than 1,000,000 elements";
+    assert!(outcome.said.contains(message), "{}", outcome.said);
+    assert!(!outcome.said.contains("--max-elements"), "{}", outcome.said);
+}
+
+#[test]
+fn numbers_of_a_million_digits_are_not_computed() {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = kfrac(folder.path(), &["grow", "koch", "--steps", "1000000"]);
+    assert_eq!(outcome.status, Some(1));
+    let message = "step 1000000 of koch has more elements than can be counted";
+    assert!(outcome.said.contains(message), "{}", outcome.said);
+    let outcome = kfrac(folder.path(), &["info", "archipelago", "--steps", "10000"]);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.said);
+}

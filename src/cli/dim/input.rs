@@ -10,7 +10,7 @@ use crate::catalogue::{Catalogue, open_file};
 use crate::diagnostic::Source;
 use crate::extent::{Bounded, NoLimit};
 use crate::geometry::{DAffine2, DAffine3, HalfSpace};
-use crate::graph::Graph;
+use crate::graph::{CompileError, Graph};
 use crate::grow::Growth;
 use crate::ifs::{AffineMap, Ifs};
 use crate::import::{PlyError, Raster, Table, TableError, read_ply, read_points};
@@ -26,16 +26,22 @@ use super::super::pixels::MAX_BYTES;
 use super::super::rule::Loaded;
 use super::{Arguments, Measured};
 
+/// Limit of the number of points that are measured of a rule that is grown.
+const MAX_POINTS: usize = 1 << 20;
+
 /// Largest number of steps for which graphs without a fixed number of objects are compiled; fewer where the
 /// graph would be too large.
 const STEPS: [u32; 4] = [64, 20, 12, 6];
 
-/// Returns the graph of a rule and the number of steps for which it is compiled.
+/// Returns the graph of a rule and the number of steps for which it is compiled. A word is derived as far as it draws no
+/// more elements than are measured.
 fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
     let at = |steps: u32| Ok((loaded.compile_limit(steps)?, steps));
     let [most, fewer @ ..] = STEPS;
+    let tried = at(most).or_else(|error: CompileError| error.deepest().map_or(Err(error), at));
     let fewer = fewer.into_iter();
-    fewer.fold(at(most), |tried, steps| tried.or_else(|_| at(steps)))
+    let tried = fewer.fold(tried, |tried, steps| tried.or_else(|_| at(steps)));
+    tried.map_err(|error| loaded.failure(&error))
 }
 
 /// Returns the exact dimensions of a rule's limit.
@@ -52,7 +58,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     let is_standard = path == Path::new("-");
     if !is_standard && !path.metadata().is_ok_and(|metadata| !metadata.is_dir()) {
         // The argument may be a name in the library, or nothing.
-        return of_rule(arguments, &rules().load(catalogue, arguments.json)?);
+        return of_rule(arguments, rules().load(catalogue, arguments.json)?);
     }
     let name = if is_standard {
         "standard input".into()
@@ -110,7 +116,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
                 Source::read_file(path, bytes)?
             };
             let loaded = rules().load_from(&source, catalogue, arguments.json)?;
-            of_rule(arguments, &loaded)
+            of_rule(arguments, loaded)
         }
     }
 }
@@ -152,7 +158,8 @@ impl InputKind {
     }
 }
 
-fn of_rule(arguments: &Arguments, loaded: &Loaded) -> Result<Measured, Failure> {
+fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
+    let loaded = &loaded.listing(MAX_POINTS as u64);
     let title = loaded.model.metadata().description.title.clone();
     let measured = Measured {
         name: loaded.name.clone(),
@@ -256,6 +263,17 @@ where
         }
         return measured;
     }
+    let scale = set.smallest_scale();
+    let sizes = measured.counting.boxes.iter().map(|row| row.size);
+    if measured.counting.estimate.is_none()
+        && sizes.clone().fold(f64::INFINITY, f64::min) > scale * sizes.fold(0.0, f64::max)
+    {
+        let reason = format!(
+            "no dimension is measured: the sizes span less than one generation of the smallest copies, whose scale is \
+             {scale:.3e}"
+        );
+        measured.warnings.push(reason);
+    }
     measured.report_measure(arguments, weighted, graph);
     let mut masses = M::FINENESS.iter();
     let masses = masses.find_map(|&boxes| Masses::of_limit(set, &Grid::ALONG, boxes));
@@ -270,7 +288,6 @@ fn of_growth(
     steps: u32,
     mut measured: Measured,
 ) -> Result<Measured, Failure> {
-    const MAX_POINTS: usize = 1 << 20;
     let growth = Growth {
         seed: arguments.seed,
         ..Growth::steps(steps)

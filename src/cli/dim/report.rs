@@ -187,7 +187,16 @@ pub(super) fn warn(measured: &mut Measured) {
     let counted_decades = counted.and_then(decades);
     if let Some(decades) = counted_decades.filter(|decades| *decades < FEW_DECADES) {
         measured.warnings.push(few("the range spans", decades));
-    } else if counted.is_none() && !measured.counting.boxes.is_empty() {
+    } else if counted.is_none()
+        && !measured.counting.boxes.is_empty()
+        && measured
+            .counting
+            .boxes
+            .iter()
+            .filter(|row| row.used)
+            .count()
+            < 3
+    {
         let warning = "fewer than three sizes of boxes are usable: nothing is fitted";
         measured.warnings.push(warning.into());
     }

@@ -230,8 +230,9 @@ impl Plan {
             zoom.is_asked() && is_table,
             "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
         )?;
-        let gives_depth =
-            arguments.steps.is_some() || has_detail || arguments.growth.gives_max_elements();
+        let gives_depth = arguments.steps.is_some()
+            || has_detail
+            || arguments.growth.given_max_elements().is_some();
         Ok(match format {
             Format::Table(format) => Self::Table(format),
             Format::Scene(format) => Self::Scene(format),

@@ -6,7 +6,7 @@ use crate::count::Count;
 use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Replacement};
 
-use super::{Forecast, Sums, Tally};
+use super::{Forecast, Sums, Tally, work};
 
 /// Leaves of the subtree of an object of length 1.
 #[derive(Default)]
@@ -24,8 +24,8 @@ struct Total {
 pub(super) struct Totals {
     /// Totals of the last objects of the graph, in reverse order.
     last: Vec<Total>,
-    /// Number of tallies added since the counter was last reset.
-    work: usize,
+    /// Work of the additions since it was last taken.
+    work: u64,
 }
 
 impl<F: Frame> Forecast<'_, F> {
@@ -116,7 +116,7 @@ impl Totals {
     ) -> (usize, bool) {
         let other = &self.last[graph.objects.len() - 1 - object];
         for (&leaf, tally) in &other.tallies {
-            self.work += 1;
+            self.work += work(&tally.count);
             let own = total.tallies.entry(leaf).or_default();
             own.count += &tally.count;
             own.sums += Sums {

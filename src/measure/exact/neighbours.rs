@@ -139,6 +139,7 @@ impl Neighbours {
             register: Register::default(),
             coincide: Vec::new(),
             work: 0,
+            effort,
         };
         let siblings = (0..generations.size())
             .map(|set| {
@@ -157,13 +158,12 @@ impl Neighbours {
             if search.register.too_close {
                 break End::TooClose;
             }
+            if search.is_capped() {
+                break End::Capped;
+            }
             let Some(&pair) = search.register.pairs.get(number) else {
                 break End::Complete;
             };
-            let pairs = search.register.pairs.len();
-            if pairs > effort.of(MAX_PAIRS) || search.work > effort.of(MAX_WORK) {
-                break End::Capped;
-            }
             next.push(if search.coincide[number] {
                 Vec::new()
             } else {
@@ -235,10 +235,17 @@ struct Search<'g> {
     register: Register,
     coincide: Vec<bool>,
     work: usize,
+    effort: Effort,
 }
 
 impl Search<'_> {
-    /// Returns the successors of a pair, by the steps that `keep` accepts.
+    /// Returns whether the search has reached the limit of pairs, or of work.
+    fn is_capped(&self) -> bool {
+        let pairs = self.register.pairs.len();
+        pairs > self.effort.of(MAX_PAIRS) || self.work > self.effort.of(MAX_WORK)
+    }
+
+    /// Returns the successors of a pair, by the steps that `keep` accepts: some of them, once the search is capped.
     fn successors(&mut self, pair: Pair, keep: impl Fn(usize, usize) -> bool) -> Vec<Successor> {
         /// Tolerance within which balls are taken to meet, because of rounding.
         const SLACK: f64 = 1e-9;
@@ -253,9 +260,12 @@ impl Search<'_> {
             .iter()
             .map(|s| (pair.map.transform_point3(centre(s)), size * reach(s)))
             .collect();
-        self.work += own.len() * other.len();
         let mut successors = Vec::new();
         for (i, (a, r)) in own.iter().enumerate() {
+            if self.is_capped() {
+                break;
+            }
+            self.work += other.len();
             for (j, (b, s)) in other.iter().enumerate() {
                 let apart = (*a - *b).length_squared();
                 let reach = (r + s) * (1.0 + SLACK) + SLACK;
@@ -265,9 +275,9 @@ impl Search<'_> {
                 let steps = [i, j].map(|step| u32::try_from(step).unwrap_or(u32::MAX));
                 let pair = self.number(&firsts[i], &pair.map, &seconds[j]);
                 successors.push(Successor { steps, pair });
+                self.work += 16;
             }
         }
-        self.work += 16 * successors.len();
         successors
     }
 

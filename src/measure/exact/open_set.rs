@@ -16,6 +16,10 @@ use crate::geometry::convex_hull;
 const MAX_ROUNDS: usize = 600;
 const MAX_CORNERS: usize = 500;
 
+/// Maximum number of points whose hulls are computed, in all rounds, and of corners that are compared with sides.
+const MAX_POINTS: usize = 50_000_000;
+const MAX_COMPARED: usize = 100_000_000;
+
 /// Distance, in a system of size 1, up to which a point counts as on a side of the hull.
 const STILL: f64 = 1e-13;
 
@@ -23,7 +27,7 @@ const STILL: f64 = 1e-13;
 const SLACK: f64 = 1e-10;
 
 /// Returns `true` if the interior of the convex hulls is a feasible open set: the hulls of the copies in each
-/// set overlap in sides only. Returns `false` otherwise, or if hulls have too many corners.
+/// set overlap in sides only. Returns `false` otherwise, or if there are too many copies or corners.
 pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
     if flat.dimension == 0 || flat.dimension > 2 {
         return false;
@@ -36,9 +40,16 @@ pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
         .iter()
         .map(|copy| (copy.from, moved(&copy.map, &hulls[copy.to])))
         .collect();
+    let most = effort.of(MAX_COMPARED);
+    let mut compared = 0;
     copies.iter().enumerate().all(|(number, (from, a))| {
+        compared += number;
         let others = copies[..number].iter().filter(|(other, _)| other == from);
-        others.into_iter().all(|(_, b)| separated(a, b))
+        others.into_iter().all(|(_, b)| {
+            let corners = a.len() + b.len();
+            compared += corners * corners;
+            compared <= most && separated(a, b)
+        })
     })
 }
 
@@ -50,7 +61,10 @@ fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
 /// Computes the corners of every set's convex hull, counter-clockwise.
 fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     let mut hulls = vec![vec![DVec2::ZERO]; flat.size];
+    let mut left = effort.of(MAX_POINTS);
     for _ in 0..MAX_ROUNDS {
+        let moved_points = flat.copies.iter().map(|copy| hulls[copy.to].len());
+        left = left.checked_sub(moved_points.sum())?;
         let mut points: Vec<Vec<DVec2>> = hulls.clone();
         for copy in &flat.copies {
             points[copy.from].extend(moved(&copy.map, &hulls[copy.to]));
@@ -107,8 +121,9 @@ fn separated(a: &[DVec2], b: &[DVec2]) -> bool {
     sides.into_iter().any(|side| apart(side.perp()))
 }
 
-/// Maximum number of pairs that are examined.
+/// Maximum number of pairs that are divided, and of pairs whose balls are compared.
 const MAX_PAIRS: usize = 30_000;
+const MAX_BALLS: usize = 20_000_000;
 
 /// Size, in a system of size 1, from which pieces that are not separated are taken to touch.
 const TOUCH: f64 = 1e-7;
@@ -131,33 +146,36 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
         let ((a, r), (b, s)) = (ball(a), ball(b));
         a.distance(b) - (r + s) * (1.0 + 1e-9)
     };
+    let mut balls_left = effort.of(MAX_BALLS);
     let mut open = Vec::new();
     for copies in &copies {
+        let pairs = copies.len() * copies.len().saturating_sub(1) / 2;
+        match balls_left.checked_sub(pairs) {
+            Some(left) => balls_left = left,
+            None => return false,
+        }
         for (number, a) in copies.iter().enumerate() {
-            open.extend(copies[..number].iter().map(|b| (*a, *b)));
+            let pairs = copies[..number].iter().map(|b| (*a, *b));
+            open.extend(pairs.filter(|(a, b)| gap(a, b) <= 0.0));
         }
     }
     let mut seen = 0;
     while let Some((a, b)) = open.pop() {
-        if gap(&a, &b) > 0.0 {
-            continue;
-        }
         seen += 1;
-        if seen > effort.of(MAX_PAIRS) {
-            return false;
-        }
         let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {
             (a, b)
         } else {
             (b, a)
         };
-        if ball(&larger).1 < TOUCH {
+        let inner = &copies[larger.0];
+        if seen > effort.of(MAX_PAIRS) || ball(&larger).1 < TOUCH || balls_left < inner.len() {
             return false;
         }
-        let inner = copies[larger.0].iter();
-        let mut pairs: Vec<_> = inner
-            .map(|(to, map)| ((*to, larger.1 * *map), smaller))
-            .collect();
+        balls_left -= inner.len();
+        let pairs = inner
+            .iter()
+            .map(|(to, map)| ((*to, larger.1 * *map), smaller));
+        let mut pairs: Vec<_> = pairs.filter(|(a, b)| gap(a, b) <= 0.0).collect();
         // The nearest pair is examined first.
         pairs.sort_by(|x, y| gap(&y.0, &y.1).total_cmp(&gap(&x.0, &x.1)));
         open.extend(pairs);

@@ -1,10 +1,10 @@
 //! Systems of sets that are made of smaller copies of each other, from which dimensions are computed.
 
 use crate::digraph::{Edge, parts};
-use crate::geometry::{Affine, DAffine2, Frame, Point};
+use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::Graph;
 use crate::measure::copies::fixed_copies;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3};
 
 /// A copy of one set inside another: the set `from` holds the image of the set `to` under the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,9 +102,8 @@ impl GraphDirectedSystem {
         self.copies.iter().all(|copy| {
             let linear = copy.map.matrix3;
             let ratio = ratio(linear);
-            let square = linear.transpose() * linear;
-            let scaled = DMat3::from_diagonal(DVec3::splat(ratio * ratio));
-            ratio > 0.0 && square.abs_diff_eq(scaled, 1e-9 * ratio * ratio)
+            let turn = linear / ratio;
+            ratio > 0.0 && (turn.transpose() * turn).abs_diff_eq(DMat3::IDENTITY, 1e-9)
         })
     }
 
@@ -171,5 +170,5 @@ impl GraphDirectedSystem {
 
 /// Returns the ratio of a similarity.
 pub(super) fn ratio(linear: DMat3) -> f64 {
-    libm::cbrt(linear.determinant().abs())
+    linear.mean_ratio()
 }

@@ -8,7 +8,8 @@ use crate::measure::copies::{Copies, WeightedCopies};
 use crate::measure::exact::distinct;
 use crate::measure::space::Space;
 
-use super::{LimitCopy, LimitSet};
+use super::groups::Shared;
+use super::{LimitCopy, LimitSet, Shares};
 
 /// A measure on a limit set, defined by the share of every copy in the mass of its set: the mass of a nested
 /// copy is the product of the shares along its path (Hutchinson 1981; for graphs: Mauldin & Williams 1988).
@@ -57,24 +58,26 @@ impl<M: Space> Cascade<M> {
     /// Creates the measure of shares; `None` if no copy of the whole has mass.
     pub(in crate::measure) fn of(shared: &WeightedCopies<M>) -> Option<Self> {
         let mut children = vec![Vec::new(); shared.copies.size];
-        let mut shares = vec![Vec::new(); shared.copies.size];
         for (copy, &share) in shared.copies.copies.iter().zip(&shared.shares) {
             if share > 0.0 {
-                children[copy.from].push(LimitCopy::new(copy.map, copy.to));
-                shares[copy.from].push(share);
+                children[copy.from].push((LimitCopy::new(copy.map, copy.to), share));
             }
         }
         let all = shared.copies.start.iter().zip(&shared.masses);
         let all = all.filter(|(_, mass)| **mass > 0.0);
-        let (start, masses): (Vec<LimitCopy<M>>, Vec<f64>) = all
-            .map(|(&(object, map), &mass)| (LimitCopy::new(map, object), mass))
-            .unzip();
+        let start = all.map(|(&(object, map), &mass)| (LimitCopy::new(map, object), mass));
+        let start: Vec<Shared<M>> = start.collect();
         if start.is_empty() {
             return None;
         }
+        let Shares {
+            set,
+            shares,
+            masses,
+        } = LimitSet::of_copies(children, start)?;
         let mut cascade = Self {
-            centres: vec![M::Point::ZERO; children.len()],
-            set: LimitSet::of_copies(children, start),
+            centres: vec![M::Point::ZERO; shares.len()],
+            set,
             shares,
             start: masses,
         };
