@@ -82,7 +82,7 @@
 //!     │  grow       a depth-first walk, shared between threads
 //!     ▼
 //!  elements, in order, streamed
-//!     ├── render    pictures: SVG, PNG, PDF; plots, DXF; scenes and meshes in space; estimate: their sizes
+//!     ├── render    pictures: SVG, PNG, PDF; plots: DXF, HP-GL, G-code; scenes and meshes in space; estimate: their sizes
 //!     ├── figure    figures: the rule itself, approximants side by side, differences
 //!     └── export    tables of elements and points: CSV, JSON, PLY
 //! ```
@@ -140,7 +140,6 @@ pub mod expression;
 pub mod extent;
 pub mod family;
 mod fast_hash;
-#[cfg(feature = "figures")]
 pub mod figure;
 #[cfg(feature = "cli")]
 mod film;

@@ -37,6 +37,7 @@ mod pictures;
 mod png;
 mod random_iteration;
 mod readme;
+mod redrawn;
 mod reference;
 mod schema;
 mod sheets;

@@ -412,9 +412,9 @@ fn mistakes_on_the_command_line_are_told_in_its_own_words() {
             "a number of values is a whole number from 2 to 1000",
         ),
         (
-            &["grow", "koch", "--size", "10cm"],
-            "a side is a whole number of pixels from 1 to 1000000, or of millimetres with one \
-             decimal at most and up to 100000mm: 200mm, 210mmx297mm",
+            &["grow", "koch", "--size", "10ft"],
+            "a side is a whole number of pixels from 1 to 1000000, or a length of whole tenths of a millimetre up to \
+             100000mm: 200mm, 21cmx29.7cm, 8.5inx11in; papers are a0 to a6",
         ),
         (
             &["grow", "koch", "--stroke", "nonee"],

@@ -84,3 +84,69 @@ fn a_long_cycle_of_generators_is_one_object_after_another() {
         value(&text)
     );
 }
+
+/// Runs `kfrac dim` in JSON with arguments.
+fn dim(arguments: &[&str]) -> serde_json::Value {
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let output = command
+        .arg("dim")
+        .args(arguments)
+        .arg("--json")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{arguments:?}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn exact_dimensions_alone_are_those_beside_measurements() {
+    for name in [
+        "koch",
+        "twindragon-ifs",
+        "menger",
+        "barnsley-fern",
+        "random-tree",
+    ] {
+        let alone = dim(&[name, "--exact"]);
+        let all = dim(&[name, "--grids", "1", "--orders", "0,2"]);
+        for key in [
+            "similarity",
+            "affinity",
+            "hausdorff",
+            "boundary",
+            "drawn",
+            "notes",
+        ] {
+            assert_eq!(alone[key], all[key], "{name} {key}");
+        }
+        assert_eq!(
+            alone["box_counting"]["boxes"],
+            serde_json::json!([]),
+            "{name}"
+        );
+        assert!(alone["warnings"].as_array().unwrap().is_empty(), "{name}");
+    }
+    // Copies of equal sizes that do not overlap: every D_q is the similarity dimension.
+    let koch = dim(&["koch", "--exact", "--orders", "-2,1,5"]);
+    for row in koch["spectrum"].as_array().unwrap() {
+        let exact = row["exact"].as_f64().unwrap();
+        assert!((exact - 4f64.ln() / 3f64.ln()).abs() < 1e-12, "{row}");
+        assert!(row["value"].is_null());
+    }
+}
+
+#[test]
+fn exact_dimensions_are_those_of_rules() {
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let points = "x,y\n0,0\n1,1\n2,0\n";
+    let run = command
+        .args(["dim", "-", "--exact"])
+        .write_stdin(points)
+        .assert()
+        .code(2);
+    let messages = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert!(
+        messages.contains("--exact computes the dimensions of rules"),
+        "{messages}"
+    );
+}

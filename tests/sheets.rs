@@ -193,7 +193,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
         ),
         (
             &["koch", "-o", "koch.csv"],
-            "the format '.csv' is not known here: .svg, .png, .pdf and .dxf are",
+            "the format '.csv' is not known here: .svg, .png, .pdf, .dxf, .hpgl and .gcode are",
         ),
     ] {
         let failed = run(folder.path(), arguments).code(2);

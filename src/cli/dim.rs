@@ -59,6 +59,9 @@ pub(super) struct Arguments {
     /// For several values of a parameter, only the exact dimensions are listed and plotted.
     #[arg(long, value_name = "N", default_value_t = 21, value_parser = number::whole("a number of values", 2..=1000_u32))]
     samples: u32,
+    /// Computes the exact dimensions of a rule alone, and measures nothing
+    #[arg(long, conflicts_with_all = ["slice", "plot"])]
+    exact: bool,
     /// Prints the result as JSON, with all counts
     #[arg(long)]
     json: bool,
@@ -106,6 +109,8 @@ const MORE: &str = "\
 Examples:
   kfrac dim koch
       Measures the Koch curve
+  kfrac dim twindragon-ifs --exact
+      Computes the exact dimensions alone, in a moment
   kfrac dim koch --plot koch-dimension.svg
       Also plots the counts, the fit and the local slopes
   kfrac dim cesaro --set angle=60..89 --samples 7
@@ -127,6 +132,8 @@ struct Measured {
     /// Description of the set that was measured.
     set: String,
     unit: Option<&'static str>,
+    /// Whether only exact results are asked for.
+    is_exact: bool,
     /// Exact results for a rule.
     exact: Option<exact::GraphDimensions>,
     counting: BoxCounting,

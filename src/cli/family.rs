@@ -165,6 +165,11 @@ pub(crate) fn value(text: &str) -> Result<f64, String> {
 }
 
 impl Assignment {
+    /// Returns the name of the parameter.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Returns the settings of a parameter that has a single value.
     pub(super) fn settings(&self) -> Result<Vec<Setting>, Failure> {
         let settings: Option<Vec<_>> = self.parts.iter().map(ParameterPart::setting).collect();

@@ -12,6 +12,7 @@ mod visible;
 mod watching;
 mod zoom;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -34,7 +35,7 @@ use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::tween::TweenArguments;
-use super::{Failure, format, help, number, output, readable, steps, text};
+use super::{Failure, format, help, number, output, readable, redrawn, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
 use morphed::MorphArguments;
@@ -94,12 +95,12 @@ pub(super) struct Arguments {
     /// Opens the output in the program that the system has for such files
     #[arg(long)]
     open: bool,
-    /// Long side of the picture in pixels or millimetres, or WIDTHxHEIGHT
+    /// Long side of the picture, WIDTHxHEIGHT, or a paper: 1024, 200mm, 21cmx29.7cm, 8.5inx11in, a4, a3-landscape
     ///
     /// The other side follows from the shape. If both sides are given, the shape is fitted into them. A PNG
-    /// of more than 17 million pixels is drawn in bands, in less than 300 MB of memory. 200mm and 210mmx297mm
-    /// are sizes in millimetres, which PNG does not support. With such a size, and in PDF and DXF always, a
-    /// pixel is 1/96 inch.
+    /// of more than 17 million pixels is drawn in bands, in less than 300 MB of memory. PNG does not support lengths and
+    /// papers (a0 to a6, b4, b5, letter, legal, tabloid; upright, or -landscape). With these, and in PDF and the formats
+    /// of plotters always, a pixel is 1/96 inch.
     #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
     #[arg(help_heading = "Picture")]
     size: Paper,
@@ -162,10 +163,14 @@ Examples:
       Draws single strokes for a pen plotter, 200 mm wide, with no line drawn twice
   kfrac grow koch-snowflake --size 100mm -o flake.dxf
       Writes outlines for a cutter; for paper, write a .pdf
+  kfrac grow hilbert --size a4 --margin 1cm --pen-down M3S90 --pen-up M3S0 -o hilbert.gcode
+      Writes G-code for a drawing machine whose pen is moved by a servo; plotters read .hpgl
   kfrac grow koch --steps 200 --svg instanced -o koch.svg
       Writes 4^200 elements as a small file of nested instances
   kfrac grow mine.yaml --watch --open
       Opens the picture, and draws it again whenever the file is saved
+  kfrac grow koch.png --size 4000 -o large.png
+      Grows again what a picture holds: its rule, with its options unless others are given
   kfrac grow koch --steps 4 --format csv -o - | head
       Lists the first elements as CSV
   kfrac grow barnsley-fern --method chaos --points 1M --color-by hits
@@ -257,6 +262,23 @@ impl<'a> Runs<'a> {
 }
 
 impl Arguments {
+    /// Returns the command line that grows again what a picture holds, with the options of the line that is given;
+    /// `None` unless the rule is a picture.
+    pub(super) fn again(&self, given: &[OsString]) -> Option<Result<Vec<OsString>, Failure>> {
+        let settings = self
+            .rule
+            .set
+            .iter()
+            .map(|setting| setting.name().to_owned());
+        redrawn::command(
+            &self.rule.rule,
+            given,
+            &settings.collect::<Vec<_>>(),
+            self.steps.is_some() || self.detail.is_some(),
+            self.output.is_some() || self.format.is_some(),
+        )
+    }
+
     /// Returns whether a set in space is drawn as polygons or lines. Without a file or a format, it is drawn as pixels.
     fn draws_faces(&self, format: render::Format) -> bool {
         let is_asked = self.format.is_some() || self.names_file();

@@ -129,11 +129,7 @@ impl GrowthArguments {
     /// Returns the limit of the number of elements of a picture.
     fn max_elements_of(&self, picture: &render::Options) -> u64 {
         let default = match picture {
-            render::Options { plot: true, .. }
-            | render::Options {
-                format: render::Format::Dxf,
-                ..
-            } => MAX_PLOTTED,
+            options if options.plot || options.format.is_plot() => MAX_PLOTTED,
             // Their number is bounded by that of pixels.
             render::Options {
                 format: render::Format::Png,

@@ -1,4 +1,4 @@
-//! Lengths on pictures and sizes of pictures, in pixels or millimetres.
+//! Lengths on pictures and sizes of pictures, in pixels, millimetres, centimetres or inches, or by the name of a paper.
 
 use std::fmt;
 
@@ -7,6 +7,18 @@ use crate::style::Width;
 
 /// Length of a CSS pixel in millimetres.
 const PIXEL: f64 = 25.4 / 96.0;
+
+/// Millimetres in an inch.
+const INCH: f64 = 25.4;
+
+/// Returns the number of a length with a physical unit, and the millimetres in the unit.
+fn physical(text: &str) -> Option<(f64, f64)> {
+    let units = [("mm", 1.0), ("cm", 10.0), ("in", INCH)];
+    units.into_iter().find_map(|(unit, millimetres)| {
+        let number = text.strip_suffix(unit)?.trim_end();
+        Some((number.parse().ok()?, millimetres))
+    })
+}
 
 /// Length in pixels or millimetres.
 #[derive(Clone, Copy)]
@@ -18,18 +30,16 @@ pub(super) enum Length {
 impl Length {
     /// Parses a length that is not negative.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let (number, of): (_, fn(f64) -> Self) = match text.strip_suffix("mm") {
-            Some(number) => (number.trim_end(), Self::Millimetres),
-            None => (text, Self::Pixels),
+        let length = match physical(text) {
+            Some((number, unit)) => Some(Self::Millimetres(number * unit)),
+            None => text.parse().ok().map(Self::Pixels),
         };
-        match number.parse::<f64>() {
-            Ok(length) if length.is_finite() && length >= 0.0 => Ok(of(length)),
-            _ => Err(
-                "expected a number of pixels, or of millimetres such as 0.3mm, that is not \
-                      negative"
-                    .into(),
-            ),
-        }
+        let is_right = |length: &Self| match *length {
+            Self::Pixels(length) | Self::Millimetres(length) => length.is_finite() && length >= 0.0,
+        };
+        length.filter(is_right).ok_or_else(|| {
+            "expected a number of pixels, or a length such as 0.3mm, 1cm or 0.5in, that is not negative".into()
+        })
     }
 
     /// Returns the length in units of a picture.
@@ -114,37 +124,75 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     sides(text, side)
 }
 
-/// Parses the size of a picture in pixels or millimetres.
+/// Papers with their sides in millimetres, upright (ISO 216; ANSI Y14.1).
+const PAPERS: [(&str, [f64; 2]); 12] = [
+    ("a0", [841.0, 1189.0]),
+    ("a1", [594.0, 841.0]),
+    ("a2", [420.0, 594.0]),
+    ("a3", [297.0, 420.0]),
+    ("a4", [210.0, 297.0]),
+    ("a5", [148.0, 210.0]),
+    ("a6", [105.0, 148.0]),
+    ("b4", [250.0, 353.0]),
+    ("b5", [176.0, 250.0]),
+    ("letter", [8.5 * INCH, 11.0 * INCH]),
+    ("legal", [8.5 * INCH, 14.0 * INCH]),
+    ("tabloid", [11.0 * INCH, 17.0 * INCH]),
+];
+
+/// Returns the size of a paper by its name, such as `a4` or `letter-landscape`.
+fn named(text: &str) -> Option<Size> {
+    let text = text.to_lowercase();
+    let (name, lies) = match text.strip_suffix("-landscape") {
+        Some(name) => (name, true),
+        None => (text.as_str(), false),
+    };
+    let (_, [short, long]) = PAPERS.into_iter().find(|(paper, _)| *paper == name)?;
+    let [width, height] = if lies { [long, short] } else { [short, long] };
+    Some(Size::Exactly(tenths(width)?, tenths(height)?))
+}
+
+/// Returns a number of millimetres in tenths, rounded; `None` if it is out of range.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "within bounds"
+)]
+fn tenths(millimetres: f64) -> Option<u32> {
+    let whole = (millimetres * 10.0).round();
+    (1.0..=f64::from(MAX_UNITS))
+        .contains(&whole)
+        .then_some(whole as u32)
+}
+
+/// Parses the size of a picture: in pixels, in millimetres, centimetres or inches, or the name of a paper.
 pub(super) fn paper(text: &str) -> Result<Paper, String> {
     if let Ok(size) = size(text) {
         let unit = Unit::Pixel;
         return Ok(Paper { size, unit });
     }
-    let most = f64::from(MAX_UNITS);
+    let unit = Unit::Tenth;
+    if let Some(size) = named(text) {
+        return Ok(Paper { size, unit });
+    }
     let side = |text: &str| {
-        let tenths = text.strip_suffix("mm").and_then(|number| {
-            let tenths = number.parse::<f64>().ok()? * 10.0;
-            let whole = tenths.round();
-            let is_whole = (tenths - whole).abs() < 1e-6 && (1.0..=most).contains(&whole);
-            is_whole.then_some(whole)
+        let side = physical(text).and_then(|(number, unit)| {
+            let millimetres = number * unit;
+            let whole = (millimetres * 10.0).round();
+            // Inches are rounded to tenths of a millimetre.
+            let is_whole = unit == INCH || (millimetres * 10.0 - whole).abs() < 1e-6;
+            tenths(millimetres).filter(|_| is_whole)
         });
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "within bounds"
-        )]
-        tenths.map(|tenths| tenths as u32).ok_or_else(|| {
+        side.ok_or_else(|| {
             format!(
-                "a side is a whole number of pixels from 1 to {MAX_UNITS}, or of millimetres with \
-                 one decimal at most and up to {}mm: 200mm, 210mmx297mm",
+                "a side is a whole number of pixels from 1 to {MAX_UNITS}, or a length of whole tenths of a millimetre up \
+                 to {}mm: 200mm, 21cmx29.7cm, 8.5inx11in; papers are a0 to a6, b4, b5, letter, legal and tabloid, upright \
+                 or as a4-landscape",
                 MAX_UNITS / 10
             )
         })
     };
-    sides(text, side).map(|size| Paper {
-        size,
-        unit: Unit::Tenth,
-    })
+    sides(text, side).map(|size| Paper { size, unit })
 }
 
 fn sides(text: &str, side: impl Fn(&str) -> Result<u32, String>) -> Result<Size, String> {
@@ -208,13 +256,39 @@ mod tests {
             "200mmx150",
             "150x200mm",
             "mm",
-            "2cm",
+            "2.005cm",
+            "a7",
+            "a4-upright",
+            "3ft",
             "-3mm",
+            "-1in",
             "NaNmm",
             "infmm",
         ] {
             assert!(paper(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn other_units_and_papers_are_millimetres() {
+        for (text, expected) in [
+            ("2cm", "20mm"),
+            ("8in", "203.2mm"),
+            ("8.25inx1in", "209.6mmx25.4mm"),
+            ("a4", "210mmx297mm"),
+            ("A3-landscape", "420mmx297mm"),
+            ("letter", "215.9mmx279.4mm"),
+        ] {
+            assert_eq!(paper(text).unwrap().to_string(), expected);
+        }
+        // Each paper of a series is half of the one before.
+        for pair in PAPERS[..7].windows(2) {
+            let [large, small] = [pair[0].1, pair[1].1];
+            assert_eq!(large[0], small[1]);
+            assert_eq!((large[1] / 2.0).floor(), small[0]);
+        }
+        assert_eq!(Length::parse("0.5in").unwrap().to_string(), "12.7mm");
+        assert_eq!(Length::parse("1 cm").unwrap().to_string(), "10mm");
     }
 
     #[test]

@@ -36,6 +36,7 @@ mod picture;
 mod pixels;
 mod progress;
 pub(crate) mod readable;
+mod redrawn;
 mod rule;
 mod schema;
 mod sheet;
@@ -52,11 +53,12 @@ mod text;
 mod tween;
 pub(crate) mod watch;
 
+use std::ffi::OsString;
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand, ValueHint};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
@@ -219,17 +221,21 @@ pub fn run() -> ExitCode {
     stop::listen();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version go to standard output.
-            return match (error.exit_code(), error.print()) {
-                (0, Ok(())) => ExitCode::SUCCESS,
-                (0, Err(error)) => {
-                    let error = anyhow::Error::new(error).context(output::NO_STANDARD_OUTPUT);
-                    report(&error.into())
-                }
-                _ => ExitCode::from(2),
-            };
+        Err(error) => return refused(&error),
+    };
+    let arguments = match &arguments.command {
+        Command::Grow(grow) => {
+            let given: Vec<_> = std::env::args_os().collect();
+            match grow.again(&given) {
+                None => arguments,
+                Some(Err(failure)) => return report(&failure),
+                Some(Ok(all)) => match Arguments::overridden(all) {
+                    Ok(arguments) => arguments,
+                    Err(error) => return refused(&error),
+                },
+            }
         }
+        _ => arguments,
     };
     let catalogue = match rule::catalogue(&arguments.library) {
         Ok(catalogue) => catalogue,
@@ -263,6 +269,28 @@ pub fn run() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => report(&failure),
+    }
+}
+
+impl Arguments {
+    /// Parses a command line in which later options of `grow` override earlier ones.
+    fn overridden(line: Vec<OsString>) -> Result<Self, clap::Error> {
+        let command = Self::command();
+        let command = command.mut_subcommand("grow", |grow| grow.args_override_self(true));
+        Self::from_arg_matches(&command.try_get_matches_from(line)?)
+    }
+}
+
+/// Prints the message about arguments that are not accepted, or help.
+fn refused(error: &clap::Error) -> ExitCode {
+    // Help and version go to standard output.
+    match (error.exit_code(), error.print()) {
+        (0, Ok(())) => ExitCode::SUCCESS,
+        (0, Err(error)) => {
+            let error = anyhow::Error::new(error).context(output::NO_STANDARD_OUTPUT);
+            report(&error.into())
+        }
+        _ => ExitCode::from(2),
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) struct PictureArguments {
     /// they are outlined with it.
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     stroke: Option<Ink>,
-    /// Width of strokes in pixels, in millimetres (0.3mm), or relative to the element's length (10%)
+    /// Width of strokes in pixels, as a length (0.3mm), or relative to the element's length (10%)
     #[arg(long, value_name = "W", value_parser = StrokeWidth::parse)]
     pub(super) stroke_width: Option<StrokeWidth>,
     /// Fill colour of closed shapes
@@ -39,7 +39,7 @@ pub(super) struct PictureArguments {
     /// Shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
-    /// Margin around the picture in pixels, or in millimetres (10mm)
+    /// Margin around the picture in pixels, or as a length (10mm, 0.5in)
     #[arg(long, value_name = "PX", value_parser = Length::parse)]
     margin: Option<Length>,
     /// Background colour

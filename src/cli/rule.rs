@@ -21,7 +21,7 @@ use crate::style::{ColorBy, Named};
 
 use super::family::{self, Assignment};
 use super::growth::GrowthArguments;
-use super::{Failure, input, number, text};
+use super::{Failure, input, number, redrawn, text};
 
 /// Returns the catalogue of the given folders, of `$KFRAC_LIBRARY`, of the data folder of the user and of the
 /// embedded library, in this order. Only the given folders must exist.
@@ -268,14 +268,18 @@ pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>
     if argument == Path::new("-") {
         return standard_input();
     }
+    if let Some(held) = redrawn::source(argument) {
+        return Ok(held?);
+    }
     Ok(catalogue.rule(argument)?)
 }
 
 /// Returns the name of a rule, without folder and extension.
 pub(super) fn name_of(argument: &Path) -> &OsStr {
-    let is_rule_file = argument
-        .extension()
-        .is_some_and(|extension| extension == "yaml" || extension == "yml" || extension == "json");
+    let is_rule_file = redrawn::format(argument).is_some()
+        || argument.extension().is_some_and(|extension| {
+            extension == "yaml" || extension == "yml" || extension == "json"
+        });
     let name = if is_rule_file {
         argument.file_stem()
     } else {

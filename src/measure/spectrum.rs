@@ -36,6 +36,16 @@ pub struct Generalised {
 const COARSER: f64 = 8.0;
 
 impl Generalised {
+    /// Returns the result for an order of which nothing is measured.
+    #[must_use]
+    pub fn unmeasured(order: f64) -> Self {
+        Self {
+            order,
+            estimate: None,
+            entropies: Vec::new(),
+        }
+    }
+
     /// Returns the dimension of order 0, from box counts.
     #[must_use]
     pub fn of_boxes(counting: &BoxCounting) -> Self {

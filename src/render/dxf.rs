@@ -4,21 +4,16 @@ use std::io::{self, Write};
 
 use crate::style::Colour;
 
-use super::drawing::Drawing;
 use super::options::Labels;
-use super::paint::{FINE, Position};
-use super::plot::Plot;
-use super::unit::Unit;
+use super::plot::{Page, Plot};
 
 /// Writes a plot.
 pub(super) fn write(
     plot: &Plot,
-    unit: Unit,
+    page: Page,
     labels: &Labels,
     out: &mut impl Write,
 ) -> io::Result<()> {
-    let scale = unit.millimetres() / FINE;
-    let [width, height] = plot.size().map(|side| f64::from(side) * FINE);
     // Comments are the only place for text; the meaning of other than ASCII characters depends on the reader.
     let is_other = |c: char| !(' '..='~').contains(&c);
     let title = labels.title.replace(is_other, "?");
@@ -28,7 +23,7 @@ pub(super) fn write(
     out.write_all(b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n")?;
     out.write_all(b"9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n")?;
     out.write_all(b"9\n$EXTMIN\n10\n0.0\n20\n0.0\n30\n0.0\n")?;
-    let [right, top] = [width, height].map(|side| side * scale);
+    let [right, top] = page.size();
     write!(out, "9\n$EXTMAX\n10\n{right:.6}\n20\n{top:.6}\n30\n0.0\n")?;
     out.write_all(b"0\nENDSEC\n0\nSECTION\n2\nTABLES\n")?;
     out.write_all(b"0\nTABLE\n2\nLTYPE\n70\n1\n0\nLTYPE\n2\nCONTINUOUS\n70\n0\n3\nSolid\n")?;
@@ -43,11 +38,6 @@ pub(super) fn write(
         )?;
     }
     out.write_all(b"0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n")?;
-    #[expect(
-        clippy::cast_precision_loss,
-        reason = "what lies on a picture is exact"
-    )]
-    let place = |[x, y]: Position| [x as f64 * scale, (height - y as f64) * scale];
     plot.each(|layer, vertices, closed| {
         let (name, flags) = (&names[layer], u8::from(closed));
         write!(
@@ -55,7 +45,7 @@ pub(super) fn write(
             "0\nPOLYLINE\n8\n{name}\n66\n1\n10\n0.0\n20\n0.0\n30\n0.0\n70\n{flags}\n"
         )?;
         for &vertex in vertices {
-            let [x, y] = place(vertex);
+            let [x, y] = page.place(vertex);
             write!(
                 out,
                 "0\nVERTEX\n8\n{name}\n10\n{x:.6}\n20\n{y:.6}\n30\n0.0\n"

@@ -7,6 +7,7 @@ use crate::parallel::all_cores;
 use crate::style::{Named, Style, View};
 
 use super::canvas::Size;
+use super::gcode::Machine;
 use super::plot::Pens;
 use super::png::Spares;
 use super::short_cuts::ShortCuts;
@@ -29,6 +30,10 @@ pub enum Format {
     Pdf,
     /// Drawing exchange format of release 12: polylines in millimetres, always a plot.
     Dxf,
+    /// Hewlett-Packard graphics language: strokes in units of 1/40 mm, always a plot.
+    Hpgl,
+    /// G-code: strokes in millimetres with the commands of a [`Machine`], always a plot.
+    GCode,
 }
 
 impl Format {
@@ -36,6 +41,12 @@ impl Format {
     #[must_use]
     pub fn has_lengths(self) -> bool {
         self != Self::Png
+    }
+
+    /// Returns whether pictures are always plots.
+    #[must_use]
+    pub fn is_plot(self) -> bool {
+        matches!(self, Self::Dxf | Self::Hpgl | Self::GCode)
     }
 }
 
@@ -45,6 +56,8 @@ impl Named for Format {
         ("png", Self::Png),
         ("pdf", Self::Pdf),
         ("dxf", Self::Dxf),
+        ("hpgl", Self::Hpgl),
+        ("gcode", Self::GCode),
     ];
 }
 
@@ -93,6 +106,8 @@ pub struct Options {
     pub plot: bool,
     /// Number of pens of a plot; by default one for every colour where there are few.
     pub pens: Pens,
+    /// Commands of the machine that reads G-code.
+    pub machine: Machine,
     /// Whether an SVG is made of nested instances, so that its size depends on the graph and the number of
     /// steps and not on the elements. Has no effect on other formats; excludes detail and plots.
     pub instanced: bool,
@@ -105,7 +120,8 @@ pub struct Options {
     /// pixels wide, or filled with a colour that is not opaque.
     pub band: u64,
     /// Share of the length of all outlines, from 0 to 1, to which the picture is drawn, in the order in which a pen
-    /// draws them: colour after colour, and in a colour along the elements. Has no effect on instanced SVG and on DXF.
+    /// draws them: colour after colour, and in a colour along the elements. Has no effect on instanced SVG and on formats
+    /// that are always plots.
     pub drawn: f64,
     /// Encoding of a PNG.
     pub png: PngEncoding,
@@ -129,6 +145,7 @@ setters!(Options {
     unit: Unit,
     plot: bool,
     pens: Pens,
+    machine: Machine,
     instanced: bool,
     in_one_piece: u64,
     band: u64,
@@ -149,6 +166,7 @@ impl Default for Options {
             unit: Unit::Pixel,
             plot: false,
             pens: Pens::default(),
+            machine: Machine::default(),
             instanced: false,
             in_one_piece: 1 << 24,
             band: 1 << 21,

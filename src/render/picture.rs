@@ -3,7 +3,7 @@
 use super::plot::Plotted;
 
 /// A picture that has been written.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Picture {
     /// Width and height in pixels.

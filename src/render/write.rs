@@ -17,7 +17,7 @@ use super::picture::Picture;
 use super::plot::{Plot, Plotted};
 use super::png::Png;
 use super::svg::Svg;
-use super::{bands, dxf, instanced};
+use super::{bands, dxf, gcode, hpgl, instanced, plot};
 
 /// Grows a graph and writes the approximant as a picture.
 ///
@@ -71,9 +71,14 @@ pub(super) fn write_in(
         Format::Svg => PathFormat::Svg,
         Format::Png => PathFormat::Png,
         Format::Pdf => PathFormat::Pdf,
-        Format::Dxf => {
+        format @ (Format::Dxf | Format::Hpgl | Format::GCode) => {
             let plot = Plot::of(drawing, options, cancel)?;
-            dxf::write(&plot, options.unit, &options.labels, out)?;
+            let page = plot::Page::of(&plot, options.unit);
+            match format {
+                Format::Hpgl => hpgl::write(&plot, page, out)?,
+                Format::GCode => gcode::write(&plot, page, &options.machine, &options.labels, out)?,
+                _ => dxf::write(&plot, page, &options.labels, out)?,
+            }
             return Ok(Some(plot.plotted));
         }
     };

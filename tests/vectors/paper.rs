@@ -130,7 +130,7 @@ fn the_command_line_has_millimetres() {
     let (code, said) = run(&[&plot[..], &["--stroke-width", "0.3mm", "--margin", "10mm"]].concat());
     assert_eq!(code, Some(0), "{said}");
     let expected = "koch.svg: step 3 of koch, 64 elements, 200 x 72.2 mm, 1 stroke of 426 mm, \
-                    63 mm from stroke to stroke (as drawn: 63 mm), 0 edges left out as drawn before, ";
+                    0 mm from stroke to stroke (as drawn: 0 mm), 0 edges left out as drawn before, ";
     assert!(said.starts_with(expected), "{said}");
     let svg = std::fs::read_to_string(folder.path().join("koch.svg")).unwrap();
     assert!(svg.contains(r#"width="200mm" height="72.2mm" viewBox="0 0 200000 72200""#));
@@ -141,7 +141,7 @@ fn the_command_line_has_millimetres() {
     let refused: [(&[&str], &str); 7] = [
         (
             &["--size", "200mm", "-o", "a.png"],
-            "a PNG is sized in pixels, not in millimetres",
+            "a PNG is sized in pixels, not in lengths",
         ),
         (&["--size", "20cm"], "a side is a whole number of pixels"),
         (&["--size", "1.23mm"], "one decimal at most"),

@@ -11,7 +11,13 @@ use kfrac::style::{ColorBy, Colour};
 use super::readers::read;
 use super::{Read, bounds, common, draw, length, library, plot, total, written};
 
-const FORMATS: [Format; 3] = [Format::Svg, Format::Pdf, Format::Dxf];
+const FORMATS: [Format; 5] = [
+    Format::Svg,
+    Format::Pdf,
+    Format::Dxf,
+    Format::Hpgl,
+    Format::GCode,
+];
 
 /// An edge on a lattice, from its lesser end.
 type Edge = [[i64; 2]; 2];
@@ -28,7 +34,8 @@ fn on_lattice(edges: impl IntoIterator<Item = [[f64; 2]; 2]>, unit: f64) -> Vec<
         [0, 1].map(|axis| {
             let steps = (end[axis] - low[axis]) / unit;
             let whole = steps.round();
-            assert!((steps - whole).abs() < 0.01, "{steps}");
+            // HP-GL rounds to fortieths of a millimetre.
+            assert!((steps - whole).abs() < 0.02, "{steps}");
             #[expect(clippy::cast_possible_truncation, reason = "a whole number")]
             let whole = whole as i64;
             whole
@@ -104,13 +111,13 @@ fn the_pen_is_not_carried_farther_than_before() {
         let (picture, bytes) = plot(&rule, steps, Format::Dxf);
         let plotted = picture.plotted.unwrap();
         assert!(plotted.carried <= plotted.carried_as_drawn, "{name}");
-        // As the reader computes it, from the upper left corner.
-        let mut at = [0.0; 2];
+        // As the reader computes it, from the first stroke on.
+        let mut at = None;
         let mut carried = 0.0;
         for stroke in read(Format::Dxf, &bytes) {
-            carried += length([at, stroke.vertices[0]]);
+            carried += at.map_or(0.0, |at| length([at, stroke.vertices[0]]));
             let closed = stroke.closed;
-            at = stroke.vertices[if closed { 0 } else { stroke.vertices.len() - 1 }];
+            at = Some(stroke.vertices[if closed { 0 } else { stroke.vertices.len() - 1 }]);
         }
         let difference = (carried - plotted.carried).abs();
         assert!(difference < 1e-3 * carried.max(1.0), "{name}");
@@ -126,7 +133,11 @@ fn outlines_of_what_is_filled_are_strokes() {
         let strokes = read(format, &bytes);
         // Four squares in a row of 200 mm: 13 edges, which take three strokes.
         let side = (bounds(&strokes)[2] - bounds(&strokes)[0]) / 4.0;
-        assert!((total(&strokes) - 13.0 * side).abs() < 0.05, "{strokes:?}");
+        let rounding = if format == Format::Hpgl { 0.4 } else { 0.05 };
+        assert!(
+            (total(&strokes) - 13.0 * side).abs() < rounding,
+            "{strokes:?}"
+        );
     }
 }
 
@@ -145,7 +156,7 @@ fn colours_are_layers() {
     assert!(layers > 1);
     let text = String::from_utf8(bytes).unwrap();
     assert_eq!(top_level_layers(&text).len(), layers);
-    for format in [Format::Svg, Format::Pdf, Format::Dxf] {
+    for format in FORMATS {
         let (_, bytes) = draw(format);
         let mut inks: Vec<_> = read(format, &bytes).into_iter().map(|it| it.ink).collect();
         inks.dedup();
@@ -198,9 +209,22 @@ fn pens_share_colours() {
             let (picture, bytes) = draw(format, pens);
             let plotted = picture.plotted.unwrap();
             assert_eq!((plotted.layers, plotted.colours), (layers, 64));
-            // Everything is drawn, and the pen is carried over shorter distances.
+            assert_eq!(plotted.pens.len() as u64, layers);
+            for (part, whole) in [
+                (
+                    plotted.pens.iter().map(|pen| pen.drawn).sum::<f64>(),
+                    plotted.drawn,
+                ),
+                (
+                    plotted.pens.iter().map(|pen| pen.carried).sum(),
+                    plotted.carried,
+                ),
+            ] {
+                assert!((part - whole).abs() < 1e-9 * whole);
+            }
+            // Everything is drawn.
             assert!((plotted.drawn - whole.drawn).abs() < 1e-6 * whole.drawn);
-            assert!(plotted.carried < whole.carried / 2.0);
+            assert!(plotted.carried <= plotted.carried_as_drawn);
             let strokes = read(format, &bytes);
             let mut inks: Vec<_> = strokes.iter().map(|it| it.ink.clone()).collect();
             inks.dedup();
@@ -251,4 +275,25 @@ fn plots_are_the_same_on_any_number_of_threads() {
         let one = with(1);
         assert!(one == with(2) && one == with(3), "{format:?}");
     }
+}
+
+/// Machines get their own commands, and stop for a change of the pen.
+#[test]
+fn machines_have_their_commands() {
+    let rule = library("pythagoras");
+    let (picture, bytes) = draw(&rule, 4, |options| {
+        options.format = Format::GCode;
+        options.style.color_by = ColorBy::Step;
+        options.machine.feed = 800.0;
+        options.machine.pen_up = "M3 S0".into();
+        options.machine.pen_down = "M3 S90".into();
+    });
+    let plotted = picture.plotted.unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let count = |line: &str| text.lines().filter(|it| *it == line).count() as u64;
+    assert_eq!(count("M3 S90"), plotted.strokes);
+    assert_eq!(count("M3 S0"), plotted.strokes + 1);
+    assert_eq!(count("G1 F800"), plotted.strokes);
+    assert_eq!(count("M0"), plotted.layers - 1);
+    assert!(plotted.layers > 1 && !text.contains('Z'));
 }

@@ -16,6 +16,8 @@ pub(crate) fn read(format: Format, bytes: &[u8]) -> Vec<Read> {
         Format::Svg => svg(bytes),
         Format::Pdf => pdf(bytes),
         Format::Dxf => dxf(bytes),
+        Format::Hpgl => hpgl(bytes),
+        Format::GCode => gcode(bytes),
         _ => panic!("{format:?} has no strokes that are read here"),
     }
 }
@@ -144,4 +146,106 @@ pub(crate) fn dxf(bytes: &[u8]) -> Vec<Read> {
         }
     };
     drawing.entities().map(read).collect()
+}
+
+/// Reads the strokes of HP-GL, with y down from the origin.
+pub(crate) fn hpgl(bytes: &[u8]) -> Vec<Read> {
+    const UNIT: f64 = 1.0 / 40.0;
+    let text = std::str::from_utf8(bytes).unwrap();
+    let mut instructions = text.split(';').map(str::trim);
+    assert_eq!(instructions.next(), Some("IN"));
+    let mut strokes: Vec<Read> = Vec::new();
+    let (mut ink, mut at) = (String::new(), [0.0; 2]);
+    let mut is_down = false;
+    for instruction in instructions.filter(|it| !it.is_empty()) {
+        let (name, parameters) = instruction.split_at(2);
+        let numbers = || {
+            parameters
+                .split(',')
+                .filter(|it| !it.is_empty())
+                .map(|it| it.parse::<i32>().unwrap())
+        };
+        match name {
+            "SP" => ink = parameters.into(),
+            "PU" | "PD" => {
+                let numbers: Vec<_> = numbers().map(|number| f64::from(number) * UNIT).collect();
+                assert!(numbers.len().is_multiple_of(2) && numbers.len() <= 128);
+                for to in numbers.chunks_exact(2) {
+                    let to = [to[0], -to[1]];
+                    if name == "PD" && !is_down {
+                        strokes.push(Read {
+                            vertices: vec![at],
+                            closed: false,
+                            ink: ink.clone(),
+                        });
+                    }
+                    is_down = name == "PD";
+                    if is_down {
+                        strokes.last_mut().unwrap().vertices.push(to);
+                    }
+                    at = to;
+                }
+                is_down = name == "PD";
+            }
+            other => unreachable!("{other}"),
+        }
+    }
+    assert_eq!(ink, "0", "the pen is put away");
+    strokes
+}
+
+/// Reads the strokes of G-code with the commands of the default machine, with y down from the upper edge.
+pub(crate) fn gcode(bytes: &[u8]) -> Vec<Read> {
+    let text = std::str::from_utf8(bytes).unwrap();
+    let size = text
+        .lines()
+        .find_map(|line| line.strip_prefix("; ")?.split_once(" mm, "));
+    let top: f64 = size
+        .unwrap()
+        .0
+        .split_once(" x ")
+        .unwrap()
+        .1
+        .parse()
+        .unwrap();
+    let mut strokes: Vec<Read> = Vec::new();
+    let (mut ink, mut at, mut is_down) = (String::new(), [0.0, top], false);
+    let mut lines = text.lines().filter(|line| !line.is_empty());
+    for line in lines.by_ref() {
+        if let Some(comment) = line.strip_prefix("; ") {
+            ink = comment.into();
+            continue;
+        }
+        let mut words = line
+            .split(' ')
+            .map(|word| (&word[..1], word[1..].parse::<f64>().unwrap()));
+        let command = words.next().unwrap();
+        let words: std::collections::BTreeMap<_, _> = words.collect();
+        match command {
+            ("G", 21.0 | 90.0) | ("M", 0.0) => assert!(!is_down),
+            ("M", 2.0) => break,
+            ("G", 0.0 | 1.0) => {
+                if let Some(z) = words.get("Z") {
+                    is_down = *z <= 0.0;
+                    if is_down {
+                        strokes.push(Read {
+                            vertices: vec![at],
+                            closed: false,
+                            ink: ink.clone(),
+                        });
+                    }
+                }
+                if let (Some(x), Some(y)) = (words.get("X"), words.get("Y")) {
+                    assert_eq!(is_down, command.1 == 1.0, "{line}");
+                    at = [*x, top - y];
+                    if is_down {
+                        strokes.last_mut().unwrap().vertices.push(at);
+                    }
+                }
+            }
+            other => unreachable!("{other:?}"),
+        }
+    }
+    assert!(!is_down && lines.next().is_none(), "the program ends");
+    strokes
 }

@@ -13,7 +13,7 @@ use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
-use super::super::{Failure, format, output, progress, readable};
+use super::super::{Failure, format, output, progress, readable, redrawn};
 use super::Arguments;
 use super::frames::{Frames, Purpose};
 use super::plan::Film;
@@ -263,9 +263,6 @@ impl Numbered {
 /// Returns the text from which a PNG was made; `None` without a complete file.
 fn provenance(path: &Path) -> Option<String> {
     const END: &[u8] = b"IEND\xAE\x42\x60\x82";
-    let bytes = std::fs::read(path).ok().filter(|it| it.ends_with(END))?;
-    let reader = png::Decoder::new(io::Cursor::new(bytes)).read_info().ok()?;
-    let texts = &reader.info().utf8_text;
-    let comment = texts.iter().find(|text| text.keyword == "Comment")?;
-    comment.get_text().ok()
+    std::fs::read(path).ok().filter(|it| it.ends_with(END))?;
+    redrawn::of_png(path).ok().flatten()
 }

@@ -82,6 +82,10 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     };
     let head = read(&mut input, 1 << 12)?;
     let kind = InputKind::of(path, &head);
+    if arguments.exact && kind != InputKind::Rule {
+        let message = "--exact computes the dimensions of rules: pictures and points are measured";
+        return Err(Failure::Usage(message.into()));
+    }
     let mut whole = Cursor::new(head).chain(input);
     match kind {
         InputKind::Picture => {
@@ -166,6 +170,7 @@ fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
         title: title.unwrap_or_else(|| loaded.name.clone()),
         set: "the limit set of the fertile elements".into(),
         exact: Some(exact(loaded)?),
+        is_exact: arguments.exact,
         ..Measured::default()
     };
     if let Some(graph) = loaded.in_space(None)? {
@@ -176,6 +181,7 @@ fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
         return Ok(match LimitSet::of(&graph) {
             Ok(set) if arguments.slice.is_some() => of_slice(arguments, &set, measured)?,
             Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
+            Err(_) if arguments.exact => measured,
             Err(error) => measured.without(&error),
         });
     }
@@ -187,6 +193,7 @@ fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
     };
     Ok(match LimitSet::of(&graph) {
         Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
+        Err(_) if arguments.exact => measured,
         Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless) => {
             return of_growth(arguments, &graph, steps, measured);
         }
@@ -254,6 +261,10 @@ fn of_limit<M: Space + AffineMap>(
 where
     M::Frame: Bounded,
 {
+    if arguments.exact {
+        measured.report_measure(arguments, weighted, graph);
+        return measured;
+    }
     let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
     measured.counting = BoxCounting::of_limit(set, arguments.base, &grids, threads);
     if measured.counting.boxes.is_empty() {
@@ -427,8 +438,14 @@ impl Measured {
             }
         };
         let (orders, base, series) = (&arguments.orders, arguments.base, arguments.grids);
-        self.spectrum =
-            Generalised::of_measure(&cascade, orders, base, series, arguments.threads());
+        self.spectrum = match arguments.exact {
+            false => Generalised::of_measure(&cascade, orders, base, series, arguments.threads()),
+            true if self.spectrum_known.is_none() => Vec::new(),
+            true => orders
+                .iter()
+                .map(|&order| Generalised::unmeasured(order))
+                .collect(),
+        };
     }
 
     /// Measures points as a sample of a set, with boxes that are at least `finest`.

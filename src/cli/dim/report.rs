@@ -281,6 +281,10 @@ pub(super) fn described(measured: &Measured) -> String {
     if let Some(exact) = &measured.exact {
         known(&mut text, exact);
     }
+    if measured.is_exact {
+        spectrum(&mut text, measured);
+        return text;
+    }
     table(&mut text, &measured.counting, measured.unit);
     spectrum(&mut text, measured);
     if !measured.lacunarity.is_empty() {
@@ -357,11 +361,11 @@ fn spectrum(text: &mut String, measured: &Measured) {
         }
     };
     let head = exact("exact".into());
-    let _ = writeln!(
-        text,
-        "{of}\n{:>6}{head}  {:>8}  {:>8}  {:>9}",
-        "q", "D_q", "± 2 s.e.", "r²"
-    );
+    let measures = match measured.is_exact {
+        true => String::new(),
+        false => format!("  {:>8}  {:>8}  {:>9}", "D_q", "± 2 s.e.", "r²"),
+    };
+    let _ = writeln!(text, "{of}\n{:>6}{head}{measures}", "q");
     for it in &measured.spectrum {
         let name = match it.order {
             1.0 => "information",
@@ -378,6 +382,7 @@ fn spectrum(text: &mut String, measured: &Measured) {
                 2.0 * estimate.std_error,
                 estimate.r_squared
             ),
+            None if measured.is_exact => format!("{:>6}{known}  {name}", it.order),
             None if has_known => format!("{:>6}{known}  {:>30}{name}", it.order, ""),
             None => continue,
         };

@@ -115,7 +115,13 @@ impl<'a> Drawing<'a> {
             { picture.plotted.as_ref() }.and_then(|plotted| arguments.plot.note_of_pens(plotted));
         let empty = { picture.empty.as_ref() }.map(|empty| zoom::nothing(&loaded.name, empty));
         let lighter = (drawn != *goal).then(|| goal.note_of_lighter(drawn));
-        for note in [warning, pens, empty, lighter].into_iter().flatten() {
+        let each_pen = picture
+            .plotted
+            .as_ref()
+            .map(plot::of_pens)
+            .unwrap_or_default();
+        let notes = [warning, pens].into_iter().flatten().chain(each_pen);
+        for note in notes.chain([empty, lighter].into_iter().flatten()) {
             growth.note(&note);
         }
         if let Some(held) = &growth.held {
@@ -185,7 +191,8 @@ impl<'a> Drawing<'a> {
             let drafted = light::draft(|out| {
                 let most = Some(light::MAX_ELEMENTS);
                 let picture = self.draw(goal, graph, most, None, out)?;
-                Ok((picture, picture.elements))
+                let elements = picture.elements;
+                Ok((picture, elements))
             });
             drafted.map_err(explain)
         })?;
@@ -240,7 +247,7 @@ impl<'a> Drawing<'a> {
         let is_filled = |object: &Object| graph.base_elements()[object.base_element].is_closed();
         let mut drawn = graph.objects().iter().filter(|object| object.visible);
         let has_lines = options.plot
-            || self.format == Format::Dxf
+            || self.format.is_plot()
             || options.style.outlines_polygons()
             || drawn.any(|object| !is_filled(object));
         let mut asked = self.arguments.picture.of_lines().into_iter();
@@ -316,6 +323,7 @@ impl<'a> Drawing<'a> {
             unit,
             plot: plot.is_asked(),
             pens: plot.pens(picture),
+            machine: plot.machine(),
             instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),
             drawn: self.arguments.drawn.unwrap_or(1.0),

@@ -67,6 +67,10 @@ impl Named for Format {
         ("png", Self::Picture(render::Format::Png)),
         ("pdf", Self::Picture(render::Format::Pdf)),
         ("dxf", Self::Picture(render::Format::Dxf)),
+        ("hpgl", Self::Picture(render::Format::Hpgl)),
+        ("plt", Self::Picture(render::Format::Hpgl)),
+        ("gcode", Self::Picture(render::Format::GCode)),
+        ("nc", Self::Picture(render::Format::GCode)),
         ("csv", Self::Table(export::TableFormat::Csv)),
         ("json", Self::Table(export::TableFormat::JsonLines)),
         ("jsonl", Self::Table(export::TableFormat::JsonLines)),
@@ -149,6 +153,7 @@ impl Plan {
             Format::Table(_) | Format::Scene(_) => None,
         };
         let is_table = drawn.is_none();
+        let always_plots = drawn.is_some_and(render::Format::is_plot);
         if is_chaos
             && let Some(format) = drawn
             && format != render::Format::Png
@@ -172,13 +177,17 @@ impl Plan {
             "--plot applies to pictures, not to tables and scenes",
         )?;
         refuse(
-            plot.has_pens() && !plot.is_asked() && drawn != Some(render::Format::Dxf),
-            "--pens applies to plots: add --plot, or write a .dxf",
+            plot.has_pens() && !plot.is_asked() && !always_plots,
+            "--pens applies to plots: add --plot, or write a .dxf, .hpgl or .gcode",
         )?;
+        for (option, is_asked) in plot.of_machines() {
+            let message =
+                format!("{option} is a command of machines that read G-code: write a .gcode");
+            refuse(is_asked && drawn != Some(render::Format::GCode), &message)?;
+        }
         refuse(
             arguments.size.unit != Unit::Pixel && drawn.is_some_and(|format| !format.has_lengths()),
-            "a PNG is sized in pixels, not in millimetres: --size 2000 is 2000 pixels; SVG, PDF and DXF \
-             support both",
+            "a PNG is sized in pixels, not in lengths: --size 2000 is 2000 pixels; other formats support both",
         )?;
         refuse(
             arguments.depth.is_some() && is_table,
@@ -214,8 +223,7 @@ impl Plan {
             "--zoom draws the neighbourhood of a point, and --svg instanced a whole step: give only one of them",
         )?;
         refuse(
-            arguments.drawn.is_some()
-                && (is_table || is_nested || drawn == Some(render::Format::Dxf)),
+            arguments.drawn.is_some() && (is_table || is_nested || always_plots),
             "--drawn draws a part of all lines: write a .png, .svg or .pdf of single lines",
         )?;
         refuse(

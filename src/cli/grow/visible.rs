@@ -80,6 +80,7 @@ pub(super) fn draw(
         unit: size.unit,
         plot: plot.is_asked(),
         pens: plot.pens(picture),
+        machine: plot.machine(),
         drawn: arguments.drawn.unwrap_or(1.0),
         threads: growth.threads(),
         labels: labels(loaded, &format!("Step {steps}"), "grow", all),
@@ -102,6 +103,9 @@ pub(super) fn draw(
     let mut summary = format!("step {steps} of {name}, {elements}, {size}");
     if let Some(plotted) = &drawn.plotted {
         if let Some(note) = plot.note_of_pens(plotted) {
+            growth.note(&note);
+        }
+        for note in plot::of_pens(plotted) {
             growth.note(&note);
         }
         summary.push_str(&format!(", {}", plot::described(plotted)));

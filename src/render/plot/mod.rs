@@ -19,6 +19,7 @@ mod unique;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::geometry::DVec2;
 use crate::grow::WalkError;
 use crate::parallel::{Team, with_team};
 use crate::style::Colour;
@@ -26,8 +27,9 @@ use crate::style::Colour;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::options::Options;
-use super::paint::{Paint, Pen, Position, Stroke};
+use super::paint::{FINE, Paint, Pen, Position, Stroke};
 use super::surface::Surface;
+use super::unit::Unit;
 use clip::{ClipWindow, flattened};
 use merge::merged;
 use order::{Order, Traversal};
@@ -39,7 +41,7 @@ use unique::Unique;
 pub use pens::Pens;
 
 /// Extent of a plot.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Plotted {
     /// Number of strokes, each after a lift of the pen.
@@ -50,14 +52,59 @@ pub struct Plotted {
     pub colours: u64,
     /// Distance that is drawn, in millimetres.
     pub drawn: f64,
-    /// Distance that the raised pen is moved, in millimetres: in every layer from the upper left corner to the
-    /// first stroke, and from stroke to stroke.
+    /// Distance that raised pens are moved, in millimetres: in every layer from the first stroke on.
     pub carried: f64,
-    /// Distance that the raised pen would be moved if the strokes had the order of the picture, in
-    /// millimetres.
+    /// Distance that raised pens would be moved if the strokes had the order of the picture, in millimetres.
     pub carried_as_drawn: f64,
+    /// The pens, in the order of drawing.
+    pub pens: Vec<PlottedPen>,
     /// Number of edges, or pieces of edges, that are left out as repetitions.
     pub repeated: u64,
+}
+
+/// Extent of the strokes of a pen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PlottedPen {
+    /// Colour of the layer.
+    pub colour: Colour,
+    /// Number of strokes.
+    pub strokes: u64,
+    /// Distance that is drawn, in millimetres.
+    pub drawn: f64,
+    /// Distance that the raised pen is moved from the first stroke on, in millimetres.
+    pub carried: f64,
+}
+
+/// The page of a plot in millimetres, with y up from its lower left corner.
+#[derive(Clone, Copy)]
+pub(super) struct Page {
+    scale: f64,
+    size: [f64; 2],
+}
+
+impl Page {
+    /// Returns the page of a plot.
+    pub(super) fn of(plot: &Plot, unit: Unit) -> Self {
+        Self {
+            scale: unit.millimetres() / FINE,
+            size: plot.size.map(|side| f64::from(side) * unit.millimetres()),
+        }
+    }
+
+    /// Returns width and height.
+    pub(super) fn size(&self) -> [f64; 2] {
+        self.size
+    }
+
+    /// Returns the coordinates of a position.
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "positions on a picture are exact"
+    )]
+    pub(super) fn place(&self, [x, y]: Position) -> [f64; 2] {
+        [x as f64 * self.scale, self.size[1] - y as f64 * self.scale]
+    }
 }
 
 /// Surface that collects a drawing as strokes.
@@ -253,6 +300,7 @@ impl Plot {
         let layers = by_pen(layers, pens);
         let places = plot.places.as_slice();
         let mut unique = Unique::new(places);
+        let scale = unit.millimetres() / FINE;
         // Layers are processed from the top down.
         for (colour, strokes) in layers.into_iter().rev() {
             let mut kept = Strokes::default();
@@ -267,37 +315,37 @@ impl Plot {
             let strokes = merged(&kept);
             go_on()?;
             let as_drawn = Order::as_drawn(&strokes, places);
-            plot.plotted.carried_as_drawn += as_drawn.travel;
+            plot.plotted.carried_as_drawn += scale * as_drawn.travel;
             let order = as_drawn.shortened(&strokes, places);
-            plot.plotted.carried += order.travel;
-            plot.plotted.strokes += strokes.len() as u64;
-            for stroke in strokes.iter() {
-                let edges = stroke.windows(2).map(|edge| edge.iter().copied());
-                let ends = edges.map(|edge| edge.map(|point| vector(places[point as usize])));
-                let lengths = ends.map(|mut ends| match (ends.next(), ends.next()) {
-                    (Some(from), Some(to)) => from.distance(to),
-                    _ => 0.0,
-                });
-                plot.plotted.drawn += lengths.sum::<f64>();
-            }
+            let vertices = |stroke: &'_ [Point]| -> Vec<DVec2> {
+                let places = stroke.iter().map(|&point| vector(places[point as usize]));
+                places.collect()
+            };
+            let length = |stroke| -> f64 {
+                let vertices = vertices(stroke);
+                let edges = vertices.windows(2).map(|edge| edge[0].distance(edge[1]));
+                edges.sum()
+            };
+            plot.plotted.pens.push(PlottedPen {
+                colour,
+                strokes: strokes.len() as u64,
+                drawn: scale * strokes.iter().map(length).sum::<f64>(),
+                carried: scale * order.travel,
+            });
             plot.layers.push(Layer {
                 colour,
                 strokes,
                 order,
             });
         }
-        plot.plotted.repeated = unique.repeated;
         plot.layers.reverse();
-        plot.plotted.layers = plot.layers.len() as u64;
-        let scale = unit.millimetres() / super::FINE;
         let plotted = &mut plot.plotted;
-        for length in [
-            &mut plotted.drawn,
-            &mut plotted.carried,
-            &mut plotted.carried_as_drawn,
-        ] {
-            *length *= scale;
-        }
+        plotted.pens.reverse();
+        plotted.repeated = unique.repeated;
+        plotted.layers = plotted.pens.len() as u64;
+        plotted.strokes = plotted.pens.iter().map(|pen| pen.strokes).sum();
+        plotted.drawn = plotted.pens.iter().map(|pen| pen.drawn).sum();
+        plotted.carried = plotted.pens.iter().map(|pen| pen.carried).sum();
         Ok(plot)
     }
 

@@ -22,8 +22,7 @@ pub(super) enum Traversal {
     From(usize),
 }
 
-/// Order of strokes, with the distance that the raised pen is moved: from the upper left corner of the
-/// picture to the first stroke and between strokes, but not back.
+/// Order of strokes, with the distance that the raised pen is moved between strokes.
 pub(super) struct Order {
     pub(super) turns: Vec<Turn>,
     pub(super) travel: f64,
@@ -47,11 +46,11 @@ impl Order {
 
     fn of(turns: Vec<Turn>, strokes: &Strokes, places: &[[i32; 2]]) -> Self {
         let ends = |turn: &Turn| ends(turn, strokes, places);
-        let mut at = DVec2::ZERO;
+        let mut at = None;
         let mut travel = 0.0;
         for [from, to] in turns.iter().map(ends) {
-            travel += at.distance(from);
-            at = to;
+            travel += at.map_or(0.0, |at: DVec2| at.distance(from));
+            at = Some(to);
         }
         Self { turns, travel }
     }
@@ -148,14 +147,13 @@ fn exchanged(order: Order, strokes: &Strokes, places: &[[i32; 2]]) -> Order {
     for _ in 0..ROUNDS {
         let mut is_better = false;
         for first in 0..lines.len() {
-            let at = first
-                .checked_sub(1)
-                .map_or(DVec2::ZERO, |before| lines[before][1]);
+            let before = first.checked_sub(1).map(|before| lines[before][1]);
+            let to = |at: DVec2| before.map_or(0.0, |before| before.distance(at));
             for last in first..lines.len().min(first + REACH) {
                 let [begin, end] = [lines[first][0], lines[last][1]];
                 let next = lines.get(last + 1).map(|line| line[0]);
                 let on = |from: DVec2| next.map_or(0.0, |next| from.distance(next));
-                let gain = at.distance(begin) + on(end) - at.distance(end) - on(begin);
+                let gain = to(begin) + on(end) - to(end) - on(begin);
                 // A gain beyond rounding ensures that the loop terminates.
                 if gain > 1e-3 {
                     is_better = true;

@@ -24,7 +24,7 @@ use crate::render::drawing::Drawing;
 use crate::render::paint::{FINE, Paint, Pen, Position, Stroke, pen, position};
 use crate::render::surface::Surface;
 use crate::render::write::write_in;
-use crate::render::{Format, NoRoom, Options, Picture, RenderError};
+use crate::render::{NoRoom, Options, Picture, RenderError};
 use crate::style::{Cap, ColorBy, Colour, Join, Shade, Slice};
 
 use self::arrange::{Piece, arranged};
@@ -195,7 +195,7 @@ impl<'a> Visible<'a> {
         Ok(Self {
             size: placement.size,
             options,
-            is_plot: options.plot || options.format == Format::Dxf,
+            is_plot: options.plot || options.format.is_plot(),
             faces,
             lines,
             elements,
