@@ -2,6 +2,7 @@
 
 use crate::geometry::{Bounds, Frame, Frame2};
 use crate::graph::Graph;
+use crate::lsystem::NoGrowth;
 
 use super::Bounded;
 
@@ -30,6 +31,9 @@ pub enum NoLimit {
     /// No element is replaced infinitely often.
     #[error("nothing stays fertile")]
     NothingFertile,
+    /// The words of an L-system approach no limit set.
+    #[error(transparent)]
+    Words(#[from] NoGrowth),
     /// The limit set is empty.
     #[error("nothing of it is drawn in the limit")]
     Empty,
@@ -65,6 +69,9 @@ impl<F: Frame> Graph<F> {
     ///
     /// The reason why they are not.
     pub(crate) fn check_maps(&self) -> Result<(), NoLimit> {
+        if let Some(reason) = self.no_growth {
+            return Err(reason.into());
+        }
         if !self.is_regular() || !self.is_plain() {
             return Err(if self.draws() {
                 NoLimit::Draws
