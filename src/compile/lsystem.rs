@@ -65,7 +65,7 @@ impl Graph {
                     };
                     let graph = Self::of_lsystem(&words, steps, seed, max_elements)?;
                     return Ok(Self {
-                        no_growth: Some(reason),
+                        no_limit: Some(reason.into()),
                         ..graph
                     });
                 }

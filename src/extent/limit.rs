@@ -31,6 +31,12 @@ pub enum NoLimit {
     /// No element is replaced infinitely often.
     #[error("nothing stays fertile")]
     NothingFertile,
+    /// Products of maps grow, and shrink on average only.
+    #[error(
+        "there is no limit set: its maps contract on average only, and random iteration draws the measure that its points \
+         approach"
+    )]
+    OnAverage,
     /// The words of an L-system approach no limit set.
     #[error(transparent)]
     Words(#[from] NoGrowth),
@@ -69,8 +75,8 @@ impl<F: Frame> Graph<F> {
     ///
     /// The reason why they are not.
     pub(crate) fn check_maps(&self) -> Result<(), NoLimit> {
-        if let Some(reason) = self.no_growth {
-            return Err(reason.into());
+        if let Some(reason) = self.no_limit {
+            return Err(reason);
         }
         if !self.is_regular() || !self.is_plain() {
             return Err(if self.draws() {

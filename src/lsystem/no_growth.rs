@@ -36,7 +36,7 @@ pub enum NoGrowth {
     /// Nothing is drawn in the limit.
     #[error("nothing of it is drawn in the limit")]
     Empty,
-    /// What is drawn shrinks to points.
+    /// Drawings shrink to points.
     #[error(
         "all that it draws grows less than the turtle moves, and shrinks to points in the limit"
     )]

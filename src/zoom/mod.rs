@@ -267,6 +267,9 @@ pub fn check_model(model: &Model) -> Result<(), ZoomError> {
 /// Checks that a graph may have points to zoom into.
 pub(crate) fn check(model: &Model, graph: &Graph) -> Result<(), ZoomError> {
     check_model(model)?;
+    if let Some(reason) = graph.no_limit {
+        return Err(ZoomError::NoLimit(reason));
+    }
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);
     }

@@ -3,7 +3,7 @@
 //! Let the turtle's displacement by every module grow by a factor κ with every step, in the limit; then the drawing of
 //! a module, divided by κⁿ after n steps, approaches the union of the drawings of its successor's modules, divided by κ
 //! and placed by the sums of the displacements before them. These maps contract if |κ| > 1, and have one family of
-//! compact sets as their limit (Hutchinson 1981; Mauldin & Williams 1988). What grows less becomes a point. If
+//! compact sets as their limit (Hutchinson 1981; Mauldin & Williams 1988). Drawings that grow less become points. If
 //! κ = 1, lines are kept, and factors of the turtle's steps may make the maps contract.
 //!
 //! Directions are those of [a period](growth) of steps. If the sets of its steps differ, approximants approach several

@@ -35,7 +35,7 @@ impl Turn {
     }
 }
 
-/// What a word displaces and draws: lines of one step, or modules that are replaced.
+/// Units of the displacements and drawings of words: lines of one step, or modules that are replaced.
 ///
 /// [`STEP`](Self::STEP) is the line, and the others follow in the order of their kinds.
 pub(super) type Variable = usize;
