@@ -248,14 +248,43 @@ impl Model {
         self.as_kind().compile(steps, seed, max_elements)
     }
 
-    /// Returns the model whose graph has the limit set: the model itself, except for an L-system that
-    /// rewrites edges apart from widths and colours, which may differ from step to step without end. For
-    /// the latter it returns the system [without them](LSystem::without_appearance).
+    /// Returns the model whose graph has the limit set: the model itself, except for an L-system that does not
+    /// rewrite edges. For the latter it returns the system [without widths and
+    /// colours](LSystem::without_appearance), and if that does not rewrite edges either, a system whose graph is that of
+    /// the limit set of its words: it has no approximants other than those of that graph.
     #[must_use]
     pub fn of_limit(&self) -> Cow<'_, Self> {
         match self.as_kind().of_limit() {
             Some(model) => Cow::Owned(model),
             None => Cow::Borrowed(self),
+        }
+    }
+
+    /// Returns the model that is grown to a detail if no number of steps is given: the model itself or, for an L-system
+    /// whose steps all start anew, that of [its limit set](Self::of_limit), if there is one and its lines have no widths
+    /// and colours of their own.
+    #[must_use]
+    pub fn of_detail(&self) -> Cow<'_, Self> {
+        match self {
+            Self::LSystem(system)
+                if self.as_kind().starts_anew() && system.without_appearance() == **system =>
+            {
+                self.of_zoom()
+            }
+            _ => Cow::Borrowed(self),
+        }
+    }
+
+    /// Returns the model of which parts of any size are grown: the model itself or, for an L-system whose steps all start
+    /// anew, that of [its limit set](Self::of_limit), if there is one.
+    #[must_use]
+    pub fn of_zoom(&self) -> Cow<'_, Self> {
+        if !self.as_kind().starts_anew() {
+            return Cow::Borrowed(self);
+        }
+        match self.of_limit() {
+            Cow::Owned(limit) if !limit.as_kind().starts_anew() => Cow::Owned(limit),
+            _ => Cow::Borrowed(self),
         }
     }
 

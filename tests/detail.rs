@@ -441,12 +441,16 @@ fn a_detail_that_cannot_be_had_is_refused() {
     }
 }
 
-/// Where every step starts anew, the file gives the number of steps, for the detail cannot decide it.
+/// Where there is no limit set, the file gives the number of steps, for the detail cannot decide it.
 #[test]
 fn steps_that_start_anew_are_those_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     for (name, said) in [
-        ("plant-f", "step 5 of plant-f to a detail of 0.5 pixels, "),
+        (
+            "honda-tree",
+            "step 12 of honda-tree to a detail of 0.5 pixels, ",
+        ),
+        ("plant-f", "plant-f to a detail of 0.5 pixels, 10 steps, "),
         (
             "signals-e",
             "step 26 of signals-e to a detail of 0.5 pixels, 824 elements",

@@ -1,5 +1,6 @@
 //! The model of iterated function systems, against the reference, closed forms and brute force.
 
+mod averages;
 mod contraction;
 mod interpolation;
 mod measure;

@@ -326,6 +326,75 @@ fn ways_from_starts_lie_in_the_picture() {
     assert!(bare.status.success());
 }
 
+/// Systems that contract on average only are drawn by random iteration and refused wherever a limit set is needed; a
+/// symmetric one has pictures of its symmetry.
+#[test]
+fn systems_that_contract_on_average_are_played() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let text = format!("kind: ifs\nmaps:\n{text}");
+        fs::write(folder.path().join(name), text).unwrap();
+    };
+    write(
+        "symmetric.yaml",
+        "  - {scale: 0.55, shift: [0.4, 0.1], weight: 1}\n  - {scale: 1, rotate: 72, weight: 1}\n",
+    );
+    write(
+        "seldom.yaml",
+        "  - {scale: 1/2, shift: [1, 0], weight: 4}\n  - {scale: 2, rotate: 30, weight: 1}\n",
+    );
+    write(
+        "never.yaml",
+        "  - {scale: 1/2, shift: [1, 0], weight: 1}\n  - {scale: 2, rotate: 30, weight: 2}\n",
+    );
+    let exponent = 0.5 * f64::ln(0.55);
+    for (name, exponent) in [("symmetric", exponent), ("seldom", 0.6 * f64::ln(0.5))] {
+        let warned = said(
+            folder.path(),
+            &format!("grow {name}.yaml --method chaos --points 200k --size 100 -o {name}.png"),
+        );
+        let shown = format!("its Lyapunov exponent is {exponent:.6}");
+        assert!(warned.contains(&shown), "{warned}");
+        let info = kfrac(folder.path(), &format!("info {name}.yaml --json")).stdout;
+        let info: serde_json::Value = serde_json::from_slice(&info).unwrap();
+        let found = info["lyapunov_exponent"]["upper"].as_f64().unwrap();
+        assert!((found - exponent).abs() < 1e-12);
+        assert!(info["limit_bounds"].is_null() && info["contraction"]["contracts"] == false);
+        for refused in [
+            "grow NAME --zoom 10 --at 0.(0) -o x.png",
+            "convert NAME --to instancing",
+            "compare NAME NAME",
+        ] {
+            let command = refused.replace("NAME", &format!("{name}.yaml"));
+            let output = kfrac(folder.path(), &command);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert!(
+                !output.status.success() && said.contains("on average only"),
+                "{command}: {said}"
+            );
+        }
+        said(
+            folder.path(),
+            &format!("grow {name}.yaml --steps 4 -o {name}.svg"),
+        );
+    }
+    let refused = String::from_utf8(kfrac(folder.path(), "info never.yaml").stderr).unwrap();
+    assert!(refused.contains("map 2 does not contract"), "{refused}");
+
+    // The points have the exact mean of the measure.
+    let text = fs::read_to_string(folder.path().join("symmetric.yaml")).unwrap();
+    let source = kfrac::diagnostic::Source::new("symmetric", text);
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    let Model::Ifs(system) = document.resolve(&[]).unwrap().0 else {
+        unreachable!()
+    };
+    let maps = WeightedMaps::of(system.ifs()).unwrap();
+    let points = RandomPoints::new(&maps, &Start::Attractor, 1).take(200_000);
+    let mean = points.map(|point| point.place).sum::<DVec2>() / 200_000.0;
+    let exact = system.ifs().measure().unwrap().moments.mean;
+    assert!(mean.distance(exact) < 0.01, "{mean} {exact}");
+}
+
 #[test]
 fn what_cannot_be_played_is_said() {
     let folder = tempfile::tempdir().unwrap();

@@ -50,7 +50,8 @@ pub(super) struct Arguments {
     /// null where the rule does not determine them or they exceed a double. In space, area and volume are the surface and
     /// the volume of all elements: exact unless they overlap or touch. instanced_svg_bytes is the size
     /// of the last step with --svg instanced; null if that is not possible. limit_bounds is the bounding box
-    /// of the limit set; an L-system has one if all its approximants are drawn as large as the first.
+    /// of the limit set, if there is one. lyapunov_exponent is that of a system of maps that is not known to contract,
+    /// or an upper bound of it from products of so many maps; upper is null for minus infinity.
     #[arg(long)]
     json: bool,
 }

@@ -121,6 +121,14 @@ impl Loaded {
         }
     }
 
+    /// Replaces the model by the one that has a limit set, if that is another one.
+    pub(super) fn led(mut self, to: impl FnOnce(&Model) -> Cow<'_, Model>) -> Self {
+        if let Cow::Owned(model) = to(&self.model) {
+            self.model = model;
+        }
+        self
+    }
+
     /// Sets the degrees by which graphs are turned about the origin of the file.
     pub(super) fn turned(self, turn: Option<f64>) -> Self {
         Self {

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::info;
 use super::readable::decimal;
 use crate::geometry::{DVec2, Homothety, Point as _};
-use crate::ifs::{AffineMap, Contraction, Ifs, PointOf, System, Verdict};
+use crate::ifs::{AffineMap, Contraction, Exponent, Ifs, PointOf, System, Verdict};
 use crate::model::Model;
 
 /// Maps of a system, their contraction, and the measure of random iteration.
@@ -17,6 +17,8 @@ pub(super) struct SystemInfo {
     /// Property that default weights are proportional to.
     weights_by: Option<Weights>,
     contraction: ContractionInfo,
+    /// Contraction on average of random iteration, if the system is not known to contract.
+    lyapunov_exponent: Option<ExponentInfo>,
     measure: Option<MeasureInfo>,
 }
 
@@ -48,6 +50,32 @@ struct ContractionInfo {
 struct MeasureInfo {
     mean: [f64; 2],
     covariance: [[f64; 2]; 2],
+}
+
+#[derive(Serialize)]
+struct ExponentInfo {
+    /// Upper bound; null for minus infinity.
+    upper: f64,
+    exact: bool,
+    length: u32,
+    #[serde(skip)]
+    text: String,
+}
+
+impl ExponentInfo {
+    fn of(exponent: Exponent) -> Self {
+        let Exponent {
+            upper,
+            is_exact,
+            length,
+        } = exponent;
+        Self {
+            upper,
+            exact: is_exact,
+            length,
+            text: exponent.to_string(),
+        }
+    }
 }
 
 impl ContractionInfo {
@@ -120,6 +148,9 @@ impl SystemInfo {
             default_weights: weights_by.is_some(),
             weights_by,
             contraction: ContractionInfo::of(system.contraction()),
+            lyapunov_exponent: { system.contraction().verdict != Verdict::Contracts }
+                .then(|| ifs.lyapunov_exponent().map(ExponentInfo::of))
+                .flatten(),
             measure,
         }
     }
@@ -166,6 +197,9 @@ impl SystemInfo {
                  {length} map{s}"
             ),
         ));
+        if let Some(exponent) = &self.lyapunov_exponent {
+            lines.push(("on average", exponent.text.clone()));
+        }
         if let Some(measure) = &self.measure {
             let [x, y] = measure.mean.map(|value| decimal(value, unit));
             lines.push(("mean", format!("[{x}, {y}]")));

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::geometry::{Bounds, Outline, Point};
-use crate::ifs::{AffineMap, Ifs, OutlineOf, System};
+use crate::ifs::{AffineMap, Ifs, OutlineOf, System, Verdict};
 
 use super::instancing::instance;
-use crate::extent::{Bounded, Fineness, Own};
+use crate::extent::{Bounded, Fineness, NoLimit, Own};
 use crate::graph::{Chain, Graph, Object, Replacement, Successor};
 
 /// Limit of the number of instances in a graph whose objects record the last map.
@@ -46,6 +46,8 @@ impl<F: Bounded> Graph<F> {
     fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, by_last_map: bool) -> Self {
         let ifs = system.ifs();
         let mut graph = Compiler::new(system, by_last_map).run();
+        let diverges = system.contraction().verdict == Verdict::Diverges;
+        graph.no_limit = diverges.then_some(NoLimit::OnAverage);
         graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
         let initial = ifs.initial().map(|set| M::outlines(set).swap_remove(0));

@@ -10,10 +10,12 @@
 //! word are computed from its path ([words]). Systems with contexts, and systems whose graphs would be
 //! too large, are derived as strings.
 
+mod chords;
 mod effects;
 mod far;
 mod kinds;
 mod levels;
+mod limit;
 mod long;
 mod paint;
 mod reader;
@@ -22,7 +24,7 @@ mod state;
 mod words;
 mod worn;
 
-pub(crate) use similar::Chords;
+pub(crate) use chords::Chords;
 
 use std::collections::BTreeMap;
 
@@ -30,17 +32,19 @@ use crate::diagnostic::Diagnostic;
 use crate::geometry::{Affine as _, Bounds, Frame3, Outline as _};
 use crate::instancing::Thickness;
 use crate::lsystem::{
-    Drawn, LSystem, LSystemInSpace, Placed, RewriteError, TubePart, Turtle, TurtleFrame,
+    Drawn, LSystem, LSystemInSpace, NoGrowth, Placed, RewriteError, TubePart, Turtle, TurtleFrame,
 };
 use crate::style::Tube;
 
 use self::effects::Effects;
 use self::levels::{Levels, levels};
+use self::limit::Limit;
 use crate::graph::{Chain, CompileError, Graph, Instance, Object, Replacement};
 
 impl Graph {
     /// Compiles an L-system for a number of steps: by edge rewriting, otherwise to objects by module and
-    /// level, otherwise from the elements that the turtle draws of the derived word.
+    /// level, otherwise from the elements that the turtle draws of the derived word. The graph of a system that stands for
+    /// its limit set has that set, or the reason why there is none.
     ///
     /// # Errors
     ///
@@ -51,6 +55,22 @@ impl Graph {
         seed: u64,
         max_elements: u64,
     ) -> Result<Self, CompileError> {
+        if system.in_limit {
+            match Limit::of(system, 0).and_then(|limit| limit.graph()) {
+                Ok(graph) => return Ok(graph),
+                Err(reason) => {
+                    let words = LSystem {
+                        in_limit: false,
+                        ..system.clone()
+                    };
+                    let graph = Self::of_lsystem(&words, steps, seed, max_elements)?;
+                    return Ok(Self {
+                        no_limit: Some(reason.into()),
+                        ..graph
+                    });
+                }
+            }
+        }
         let levels = |NotCompiled| {
             let effects = Effects::of_system(system, steps)?;
             Self::of_levels(effects, steps)
@@ -180,6 +200,16 @@ fn in_space(
 }
 
 impl LSystem {
+    /// Checks that the words of the system approach a limit set if they are drawn smaller from step to step, without
+    /// widths and colours.
+    ///
+    /// # Errors
+    ///
+    /// The reason why they do not, or why that is not decided.
+    pub fn check_growth(&self) -> Result<(), NoGrowth> {
+        Limit::of(self, 0)?.graph().map(|_| ())
+    }
+
     /// Converts the error to a diagnostic of the file from which the system was read.
     pub(crate) fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         let diagnostic = Diagnostic::error(error.to_string());

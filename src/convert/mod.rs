@@ -22,11 +22,14 @@ mod structure;
 
 pub use refusal::Refusal;
 
+use std::borrow::Cow;
+
 use crate::build::written::{self, Entries};
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
+use crate::extent::NoLimit;
 use crate::geometry::{DAffine2, DAffine3, Frame3};
 use crate::graph::{CompileError, Graph};
 use crate::metadata::Metadata;
@@ -99,6 +102,11 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         let own = in_space(model, &graph, to, keeps)?;
         return read_back(model, to, own);
     }
+    let limit = match keeps {
+        Keeps::Limit => model.of_zoom(),
+        Keeps::Approximants => Cow::Borrowed(model),
+    };
+    let model = &*limit;
     let steps = match model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
         Some(deepest) => model.metadata().steps.unwrap_or(deepest),
         None => STEPS,
@@ -107,6 +115,11 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     // A time-indexed structure has no limit set, but is finite after its steps.
     let ends = graph.is_time_indexed() && graph.is_plain() && to == Kind::Instancing;
     if !ends {
+        if let Model::LSystem(system) = model {
+            system
+                .check_growth()
+                .map_err(|reason| Refusal::from(NoLimit::from(reason)))?;
+        }
         graph.limit().map_err(Refusal::from)?;
     }
     if let (Model::Ifs(system), Keeps::Approximants) = (model, keeps)

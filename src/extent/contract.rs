@@ -25,6 +25,9 @@ impl<F: Bounded> Graph<F> {
 
     /// Returns a bound on the stretch of products, or `None` if no bound is found by which they contract.
     pub(crate) fn products(&self) -> Option<Products> {
+        if self.no_limit.is_some() {
+            return None;
+        }
         let ratio = self.longest_ratio();
         let even = |sum| Products {
             sum,

@@ -2,6 +2,7 @@
 
 use crate::geometry::{Bounds, Frame, Frame2};
 use crate::graph::Graph;
+use crate::lsystem::NoGrowth;
 
 use super::Bounded;
 
@@ -30,6 +31,15 @@ pub enum NoLimit {
     /// No element is replaced infinitely often.
     #[error("nothing stays fertile")]
     NothingFertile,
+    /// Products of maps grow, and shrink on average only.
+    #[error(
+        "there is no limit set: its maps contract on average only, and random iteration draws the measure that its points \
+         approach"
+    )]
+    OnAverage,
+    /// The words of an L-system approach no limit set.
+    #[error(transparent)]
+    Words(#[from] NoGrowth),
     /// The limit set is empty.
     #[error("nothing of it is drawn in the limit")]
     Empty,
@@ -65,6 +75,9 @@ impl<F: Frame> Graph<F> {
     ///
     /// The reason why they are not.
     pub(crate) fn check_maps(&self) -> Result<(), NoLimit> {
+        if let Some(reason) = self.no_limit {
+            return Err(reason);
+        }
         if !self.is_regular() || !self.is_plain() {
             return Err(if self.draws() {
                 NoLimit::Draws

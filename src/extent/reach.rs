@@ -103,7 +103,7 @@ impl<F: Bounded> Graph<F> {
     pub fn shrinks(&self) -> bool {
         // Ratios are rounded; an object that returns at its own size must not seem to shrink.
         const SLACK: f64 = 1.0 + 1e-9;
-        if self.resets().contains(&true) {
+        if self.no_limit.is_some() || self.resets().contains(&true) {
             return false;
         }
         if self.longest_ratio() * SLACK < 1.0 {

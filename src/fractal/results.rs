@@ -1,5 +1,6 @@
 //! Pictures, elements and numbers of a fractal.
 
+use std::borrow::Cow;
 use std::io::Write;
 use std::num::NonZero;
 use std::path::Path;
@@ -281,14 +282,14 @@ pub struct Dimension {
 
 impl Fractal {
     fn compile(&self, steps: u32) -> Result<Graph, CompileError> {
-        self.model
+        self.drawn()
             .compile_normalised(steps, self.seed, self.max_elements)
     }
 
     /// Compiles a graph that has what colours distinguish.
     fn compile_for(&self, steps: u32, color_by: ColorBy) -> Result<Graph, Error> {
         let graph = self
-            .model
+            .drawn()
             .compile_coloured(color_by, || self.compile(steps));
         let graph = graph.map_err(|error| self.invalid(&error))?;
         let message = "it has too many maps and sets for colours by the map that is applied last";
@@ -299,9 +300,17 @@ impl Fractal {
         self.model.diagnostic(error).into()
     }
 
+    /// Returns the model that is drawn.
+    fn drawn(&self) -> Cow<'_, Model> {
+        match self.steps.is_none() && self.detail.is_some() {
+            true => self.model.of_detail(),
+            false => Cow::Borrowed(&self.model),
+        }
+    }
+
     fn goal(&self) -> Result<Goal, Error> {
         let compile = |steps| self.compile(steps);
-        let goal = Goal::choose(&self.model, self.steps, self.detail, compile);
+        let goal = Goal::choose(&self.drawn(), self.steps, self.detail, compile);
         goal.map_err(|error| self.invalid(&error))
     }
 

@@ -40,6 +40,7 @@ pub(crate) use source::{Buffers, Source};
 use std::sync::Arc;
 
 use crate::expression::degrees;
+use crate::extent::NoLimit;
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame, Frame2, Homothety, Point};
 use crate::instancing::Appearance;
 use crate::rule::Part;
@@ -63,6 +64,8 @@ pub struct Graph<F: Frame = Frame2> {
     /// initiator.
     pub(crate) roots: Arc<Roots<F>>,
     pub(crate) depth: Option<u32>,
+    /// Reason why the model, as its graph does not show, has no limit set.
+    pub(crate) no_limit: Option<NoLimit>,
     pub(crate) regular: bool,
     pub(crate) counts_index: bool,
     pub(crate) draws: bool,
@@ -97,6 +100,7 @@ impl<F: Frame> Graph<F> {
             initiators,
             roots: Arc::default(),
             depth: None,
+            no_limit: None,
             regular: true,
             counts_index: false,
             draws: false,

@@ -35,6 +35,7 @@ mod covered;
 mod error;
 mod interpolation;
 mod linear;
+mod lyapunov;
 mod map;
 mod measure;
 mod moments;
@@ -54,6 +55,7 @@ pub(crate) use interpolation::pieces;
 pub use interpolation::{
     InterpolationError, interpolate, interpolation_dimension, scale_of_dimension,
 };
+pub use lyapunov::Exponent;
 pub use map::{Map, about, axes, complex, complex_conjugate, toward};
 pub use measure::{MapMeasure, Measure};
 pub use moments::Moments;

@@ -6,7 +6,8 @@ use crate::metadata::Metadata;
 
 /// A system with the data of its file that do not belong to its mathematics.
 ///
-/// Guarantee: the system does not diverge.
+/// Guarantee: the system contracts, or does so on average, or neither is decided; unless maps have been
+/// [omitted](Self::omitting).
 #[derive(Clone, Debug, PartialEq)]
 pub struct System<M: AffineMap = DAffine2> {
     pub(crate) metadata: Metadata,

@@ -34,6 +34,7 @@ mod compass;
 mod expand;
 mod frame;
 mod lengths;
+mod no_growth;
 mod rewrite;
 mod space;
 mod surroundings;
@@ -43,6 +44,7 @@ mod word;
 
 pub use compass::Compass;
 pub use frame::{Axis, Heading3, TurtleFrame};
+pub use no_growth::NoGrowth;
 pub use rewrite::RewriteError;
 pub use space::{LSystemInSpace, Tropism, Walked};
 pub use tube::{Stretch, TubeLine, TubePart};
@@ -63,6 +65,8 @@ pub struct LSystem {
     pub(crate) symbols: Vec<Symbol>,
     pub(crate) axiom: Vec<Module>,
     pub(crate) productions: Vec<Production>,
+    /// Whether the system stands for its limit set, not for its words.
+    pub(crate) in_limit: bool,
 }
 
 /// A symbol with a number of arguments: `F` and `F(l)` are different symbols.
@@ -261,6 +265,14 @@ impl LSystem {
             symbol.meaning.retain(|action| !action.changes_appearance());
         }
         plain
+    }
+
+    /// Returns the system that stands for its limit set, without actions on width and colour.
+    pub(crate) fn in_limit(&self) -> Self {
+        Self {
+            in_limit: true,
+            ..self.without_appearance()
+        }
     }
 
     /// Returns whether a symbol changes the turtle's colour.

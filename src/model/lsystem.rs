@@ -27,11 +27,17 @@ impl OfKind for Arc<LSystem> {
             return None;
         }
         let plain = self.without_appearance();
-        (plain != **self && Graph::rewrites_edges(&plain)).then(|| plain.into())
+        if plain != **self && Graph::rewrites_edges(&plain) {
+            return Some(plain.into());
+        }
+        (self.is_deterministic() && !self.in_limit).then(|| LSystem::in_limit(self).into())
     }
 
     fn starts_anew(&self) -> bool {
-        !Graph::rewrites_edges(self)
+        match self.in_limit {
+            true => self.check_growth().is_err(),
+            false => !Graph::rewrites_edges(self),
+        }
     }
 
     fn deepest(&self, max_steps: u32, max_elements: u64) -> Option<u32> {

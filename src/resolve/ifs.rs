@@ -9,8 +9,8 @@ use crate::document::{
 use crate::expression::{Affine, Program, Symbols};
 use crate::geometry::DAffine2;
 use crate::ifs::{
-    AffineMap, Condensation, Contraction, Definition, Edge, Ifs, IfsError, Map, System, Verdict,
-    WeightOwner,
+    AffineMap, Condensation, Contraction, Definition, Edge, Exponent, Ifs, IfsError, Map, System,
+    Verdict, WeightOwner,
 };
 use crate::metadata::Metadata;
 
@@ -274,7 +274,8 @@ impl Resolver<OfIfs> {
         self.error(&place, error.to_string());
     }
 
-    /// Refuses a system that does not contract, and warns if the verdict is undecided.
+    /// Refuses a system that does not contract even on average, and warns if it does on average only or if the verdict is
+    /// undecided.
     fn check_contraction<M: AffineMap>(
         &mut self,
         document: &IfsDocument,
@@ -304,6 +305,12 @@ impl Resolver<OfIfs> {
                 };
                 let name = ifs.product_name(&contraction.word);
                 let message = format!("{name} {does} not contract: over and over, {it} {grows}");
+                if let Some(exponent) = ifs.lyapunov_exponent().filter(Exponent::is_negative) {
+                    let message = format!("{message}; the system contracts on average: {exponent}");
+                    let hint = "random iteration (--method chaos) draws its measure; it has no limit set to descend to";
+                    self.warn(&place, message, hint);
+                    return Some(());
+                }
                 let hint = "a system needs maps that contract: all of their products must shrink";
                 self.error_with_hint(&place, message, hint);
                 None

@@ -93,6 +93,7 @@ impl Resolver<OfLSystem> {
             symbols: std::mem::take(&mut self.kind.symbols),
             axiom: axiom?,
             productions,
+            in_limit: false,
         };
         if system.has_colours() && !document.metadata.sets_colours {
             system.metadata.style.color_by = ColorBy::Tint;

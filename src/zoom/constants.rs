@@ -61,7 +61,7 @@ impl<'a> Constants<'a> {
     ///
     /// # Errors
     ///
-    /// If an L-system does not rewrite edges: each number of steps then has its own initiator.
+    /// If an L-system neither rewrites edges nor stands for its limit set: each number of steps then has its own initiator.
     pub(super) fn new(model: &'a Model, graph: &'a Graph, bits: usize) -> Result<Self, ZoomError> {
         let mut precision = Precision::new(bits);
         precision.set_parameters(&model.metadata().numbers);

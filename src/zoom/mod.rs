@@ -124,10 +124,11 @@ pub enum ZoomError {
          the window are not grown; a window draws a part of a step"
     )]
     CountsIndex,
-    /// The L-system does not rewrite edges: each number of steps has its own initiator.
+    /// The L-system does not rewrite edges: each number of steps has its own initiator, and only [its limit
+    /// set](Model::of_zoom) can be zoomed into.
     #[error(
-        "there is nothing to zoom into without end: it does not rewrite edges, so that every step of it \
-         starts anew; a window draws a part of a step"
+        "it does not rewrite edges, so that every step of it starts anew: its limit set is zoomed into, without a \
+         number of steps; a window draws a part of a step"
     )]
     StartsAnew,
     /// The graph gives no bound on the extent of subtrees.
@@ -249,17 +250,26 @@ pub fn zoom(
 ///
 /// # Errors
 ///
-/// If an L-system does not rewrite edges: compiling it may require long words.
+/// If an L-system neither rewrites edges nor stands for [its limit set](Model::of_zoom): compiling it may require long
+/// words.
 pub fn check_model(model: &Model) -> Result<(), ZoomError> {
-    match model.as_kind().starts_anew() {
-        true => Err(ZoomError::StartsAnew),
-        false => Ok(()),
+    if !model.as_kind().starts_anew() {
+        return Ok(());
     }
+    if let Model::LSystem(system) = model
+        && let Err(reason) = system.check_growth()
+    {
+        return Err(ZoomError::NoLimit(reason.into()));
+    }
+    Err(ZoomError::StartsAnew)
 }
 
 /// Checks that a graph may have points to zoom into.
 pub(crate) fn check(model: &Model, graph: &Graph) -> Result<(), ZoomError> {
     check_model(model)?;
+    if let Some(reason) = graph.no_limit {
+        return Err(ZoomError::NoLimit(reason));
+    }
     if graph.counts_index() {
         return Err(ZoomError::CountsIndex);
     }

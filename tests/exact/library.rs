@@ -1,5 +1,7 @@
 //! Exact dimensions of the library's rules.
 
+use kfrac::catalogue::{Catalogue, Shelf};
+use kfrac::document::Document;
 use kfrac::graph::Graph;
 use kfrac::measure::exact::{GraphDimensions, Overlap, dimensions_of_graph};
 
@@ -24,6 +26,39 @@ fn evaluated(form: &str) -> f64 {
     let file = format!("initiator: segment\ngenerator: koch\ndimension: {form}\n");
     let (rule, _) = common::document_of(&file).resolve(&[]).unwrap();
     rule.metadata().dimension.unwrap()
+}
+
+/// Dimensions of the limit sets of L-systems that do not rewrite edges, and of their boundaries.
+#[test]
+fn limit_sets_of_words_have_their_dimensions() {
+    let log = |a: f64, b: f64| a.ln() / b.ln();
+    for (name, value, boundary) in [
+        ("dragon-lsystem", 2.0, Some(1.523_627_086_202)),
+        ("hilbert-lsystem", 2.0, Some(1.0)),
+        ("peano-lsystem", 2.0, Some(1.0)),
+        ("arrowhead-lsystem", log(3.0, 2.0), None),
+        ("gasket-lsystem", log(3.0, 2.0), None),
+        ("cantor-lsystem", log(2.0, 3.0), None),
+    ] {
+        let catalogue = Catalogue::embedded();
+        let source = catalogue.component(Shelf::LSYSTEMS, name).unwrap();
+        let document = Document::read(&source, &catalogue).unwrap();
+        let (model, _) = document.resolve(&[]).unwrap();
+        let found = grown(&model.of_limit().compile(3).unwrap())
+            .dimensions
+            .unwrap();
+        let of_boundary = found.boundary.and_then(|it| it.value);
+        assert!(near(found.hausdorff.value.unwrap(), value), "{name}");
+        assert_eq!(
+            of_boundary.is_some(),
+            boundary.is_some(),
+            "{name} {of_boundary:?}"
+        );
+        assert!(
+            of_boundary.zip(boundary).is_none_or(|(a, b)| near(a, b)),
+            "{name} {of_boundary:?}"
+        );
+    }
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn mistakes_are_told() {
         (
             &["signals-a", "--zoom", "10", "--at", "0.(0)"],
             1,
-            "does not rewrite edges",
+            "productions have contexts",
         ),
     ] {
         let (code, text) = said(arguments);

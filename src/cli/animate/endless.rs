@@ -34,7 +34,8 @@ pub(super) fn period(arguments: &Arguments, loaded: &Loaded) -> Result<Period, F
     }
     // A mirrored period is taken twice.
     let path: Vec<u32> = [first.as_slice(), &repeated, &repeated, &repeated].concat();
-    let graph = loaded.compile(u32::try_from(path.len()).unwrap_or(u32::MAX))?;
+    let graph = loaded.compile_limit(u32::try_from(path.len()).unwrap_or(u32::MAX));
+    let graph = graph.map_err(|error| loaded.failure(&error))?;
     let frames = nested(&graph, &path).ok_or_else(|| {
         wrong("--zoom loop needs replacements that are equal at every step, without random draws, and an address of its elements")
     })?;

@@ -194,7 +194,7 @@ fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
     Ok(match LimitSet::of(&graph) {
         Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
         Err(_) if arguments.exact => measured,
-        Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless) => {
+        Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless | NoLimit::Words(_)) => {
             return of_growth(arguments, &graph, steps, measured);
         }
         Err(error) => measured.without(&error),

@@ -17,7 +17,7 @@ use crate::chaos::{ClassBy, Game, RandomPoint, RandomPoints, Start, Walked, Weig
 use crate::export;
 use crate::geometry::{DVec3, Homothety};
 use crate::grow::Progress;
-use crate::ifs::{PointOf, System};
+use crate::ifs::{PointOf, System, Verdict};
 use crate::metadata::Metadata;
 use crate::render::{RenderError, Tone};
 use crate::style::{ColorBy, Named};
@@ -244,6 +244,17 @@ impl<'a, M: Walked> Iteration<'a, M> {
         place: Homothety<PointOf<M>>,
         start: Start<PointOf<M>>,
     ) -> Result<Self, Failure> {
+        let contracts = source.contraction().verdict != Verdict::Diverges || {
+            source.ifs().lyapunov_exponent()
+        }
+        .is_some_and(|it| it.is_negative());
+        if !contracts {
+            return Err(anyhow!(
+                "{} cannot be drawn by random iteration: its maps do not contract, not even on average",
+                loaded.name
+            )
+            .into());
+        }
         let system = WeightedMaps::of(source.ifs()).map_err(|error| {
             let message = format!("{} cannot be drawn by random iteration", loaded.name);
             anyhow::Error::new(error).context(message)

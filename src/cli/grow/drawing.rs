@@ -7,6 +7,7 @@ use crate::fractal::Goal;
 use crate::geometry::Homothety;
 use crate::graph::{Graph, Object};
 use crate::grow::Progress;
+use crate::model::Model;
 use crate::render::{self, Canvas, Format, Labels, Picture, RenderError, Size, Unit};
 use crate::style::{ColorBy, Named, Style};
 use crate::zoom::check_model;
@@ -44,6 +45,10 @@ impl<'a> Drawing<'a> {
         let (steps, detail) = (arguments.steps, arguments.detail);
         let (loaded, goal) = match shown {
             ShownPart::Zoom(_) => {
+                let loaded = match steps {
+                    Some(_) => loaded,
+                    None => loaded.led(Model::of_zoom),
+                };
                 check_model(&loaded.model).map_err(|error| output::explain(error.into(), path))?;
                 // The zoom finds windows of any size in numbers of sufficient precision, in the coordinates
                 // of the file.
@@ -55,6 +60,10 @@ impl<'a> Drawing<'a> {
                 (loaded, goal)
             }
             ShownPart::Window => {
+                let loaded = match (steps, detail) {
+                    (None, Some(_)) => loaded.led(Model::of_detail),
+                    _ => loaded,
+                };
                 let goal = Goal::asked(steps, detail, &loaded)?;
                 (loaded, goal)
             }

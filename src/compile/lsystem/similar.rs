@@ -13,7 +13,6 @@ use crate::rule::BaseElement;
 use super::NotCompiled;
 use super::effects::Effects;
 use super::far::Far;
-use super::long::{Displacements, Sums as _, Vector};
 use super::paint::Paint;
 use super::reader::{DrawnPart, Of, Reader};
 use super::state::{Pose, StrokeAttributes, TurtleState};
@@ -84,13 +83,13 @@ impl Shape {
 
 /// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct ObjectKey {
-    kind: usize,
+pub(super) struct ObjectKey {
+    pub(super) kind: usize,
     paint: Paint,
 }
 
 /// Numbers of objects.
-type Objects = BTreeMap<ObjectKey, usize>;
+pub(super) type Objects = BTreeMap<ObjectKey, usize>;
 
 /// Limit of the number of objects.
 const MAX_OBJECTS: usize = 1 << 12;
@@ -147,55 +146,12 @@ impl Graph {
     /// steps.
     #[must_use]
     pub fn rewrites_edges(system: &LSystem) -> bool {
-        Self::of_edges(system).is_ok()
+        !system.in_limit && Self::of_edges(system).is_ok()
     }
 }
 
-/// Ends of the lines of a word, by position, in multiples of 2^-bits.
-type Lines = Vec<[Vector; 2]>;
-
-/// Lines of an L-system that rewrites edges, to arbitrary precision.
-#[derive(Debug)]
-pub(crate) struct Chords {
-    /// Lines of the axiom.
-    pub(crate) initiator: Lines,
-    /// Lines that replace each object of the graph, relative to the chord of the object.
-    pub(crate) objects: Vec<Lines>,
-}
-
-impl Chords {
-    /// Computes the lines of a system to a number of bits; `None` if it does not rewrite edges.
-    pub(crate) fn of(system: &LSystem, bits: usize) -> Option<Self> {
-        let effects = Effects::closed(system, 1).ok()?;
-        let edges = Edges { effects };
-        edges.draws().ok()?;
-        let effects = &edges.effects;
-        let mut ways = Displacements::new(effects.compass, Some(bits));
-        let (initiator, _) = ways.lines(effects, &effects.kinds.axiom, edges.start().pose)?;
-        let mut objects = Vec::new();
-        for key in edges.objects().ok()?.into_keys() {
-            let kind = &effects.kinds.all[key.kind];
-            let word = kind.alternatives.first().map(|only| &only.word[..]);
-            let (lines, chord) =
-                ways.lines(effects, word.unwrap_or_default(), TurtleState::SAME.pose)?;
-            let seen = |line: [Vector; 2]| line.map(|end| quotient(&end, &chord, bits));
-            objects.push(lines.into_iter().map(seen).collect());
-        }
-        Some(Self { initiator, objects })
-    }
-}
-
-/// Returns the quotient of vectors as complex numbers, in multiples of 2^-`bits`; 0 if the divisor is 0.
-fn quotient([a, b]: &Vector, [c, d]: &Vector, bits: usize) -> Vector {
-    let below = c * c + d * d;
-    if below.is_zero() {
-        return [below.clone(), below];
-    }
-    [a * c + b * d, b * c - a * d].map(|above| (above << bits) / &below)
-}
-
-struct Edges {
-    effects: Effects,
+pub(super) struct Edges {
+    pub(super) effects: Effects,
 }
 
 impl Edges {
@@ -237,7 +193,7 @@ impl Edges {
 
     /// Returns, for every kind, whether it draws. Fails unless each kind that does draws exactly one
     /// line, from the position before it to the position after it, until it is replaced.
-    fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
+    pub(super) fn draws(&self) -> Result<Vec<bool>, NotCompiled> {
         let mut draws = Vec::new();
         for (kind, of) in self.effects.kinds.all.iter().enumerate() {
             if !of.is_fertile() && self.effects.system.symbols()[of.symbol].draws() == 0 {
@@ -350,7 +306,7 @@ impl Edges {
     }
 
     /// Returns the initial state of the turtle.
-    fn start(&self) -> TurtleState {
+    pub(super) fn start(&self) -> TurtleState {
         let Effects {
             system, compass, ..
         } = &self.effects;
@@ -392,7 +348,7 @@ impl Edges {
     }
 
     /// Returns the objects in order: those of the axiom, and their descendants.
-    fn objects(&self) -> Result<Objects, NotCompiled> {
+    pub(super) fn objects(&self) -> Result<Objects, NotCompiled> {
         let kinds = &self.effects.kinds;
         let keys = |word: &[usize], colour: i64| -> Result<Vec<ObjectKey>, NotCompiled> {
             let mut reader = Reader::new(&self.effects, TurtleState::SAME, false);

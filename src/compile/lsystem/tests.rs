@@ -17,6 +17,8 @@ use crate::style::Colour;
 
 use super::effects::Effects;
 
+mod limits;
+mod named;
 mod random;
 
 /// Element as drawn.

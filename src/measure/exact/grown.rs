@@ -48,7 +48,8 @@ pub fn dimensions_of_graph_within<F: Bounded>(graph: &Graph<F>, effort: Effort) 
     if graph.draws() {
         return at_random(graph);
     }
-    let system = GraphDirectedSystem::of(graph);
+    // Rounded, an isometry may seem to contract.
+    let system = GraphDirectedSystem::of(graph).filter(|_| graph.no_limit.is_none());
     let dimensions = system.and_then(|system| dimensions_within(&system, effort));
     let Some(dimensions) = dimensions else {
         let reason = similarity_dimension(graph).note;

@@ -8,10 +8,10 @@ use anyhow::anyhow;
 
 use crate::chaos::{GameError, HistogramWindow, RandomPoints, Start, play};
 use crate::export;
-use crate::geometry::{Bounds, DAffine2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::Graph;
 use crate::grow::Progress;
-use crate::ifs::System;
+use crate::ifs::{System, Verdict};
 use crate::model::Model;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, write_density};
 use crate::style::{ColorBy, Colour, Style};
@@ -24,6 +24,12 @@ use super::Iteration;
 
 /// Number of points from which the extent of walks is estimated.
 const PILOT: usize = 20_000;
+
+/// Largest factor of products that keep sizes, up to rounding.
+const GROWS: f64 = 1.0 + 1e-9;
+
+/// Share of points, as a divisor, that lie outside each side of the window where some are far from all others.
+const FAR: usize = 200;
 
 /// Least margin in pixels, which keeps points on the edge of the box inside the picture.
 const EDGE: f64 = 1.0 / 32.0;
@@ -88,8 +94,14 @@ impl<'a> PlaneGame<'a> {
         let mut bounds = limit.unwrap_or(Bounds::EMPTY);
         let Iteration { system, start, .. } = &self.iteration;
         if limit.is_none() || *start != Start::Attractor {
-            for point in RandomPoints::new(system, start, 0).take(PILOT) {
-                bounds.add(point.place);
+            let points = RandomPoints::new(system, start, 0).take(PILOT);
+            let points: Vec<DVec2> = points.map(|point| point.place).collect();
+            // If products of maps grow, few points are far from all others.
+            let contraction = self.source.contraction();
+            let grows = contraction.verdict == Verdict::Diverges && contraction.lower > GROWS;
+            let cut = if grows { points.len() / FAR } else { 0 };
+            for end in middle(&points, cut) {
+                bounds.add(end);
             }
         }
         Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
@@ -188,4 +200,16 @@ impl<'a> PlaneGame<'a> {
             _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
         }
     }
+}
+
+/// Returns the corners of the bounding box of points without a number of them at each end of both axes.
+fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
+    let ends = |coordinate: fn(&DVec2) -> f64| {
+        let mut all: Vec<f64> = points.iter().map(coordinate).collect();
+        all.sort_by(f64::total_cmp);
+        let kept = &all[cut..all.len() - cut];
+        [kept[0], kept[kept.len() - 1]]
+    };
+    let ([left, right], [low, high]) = (ends(|point| point.x), ends(|point| point.y));
+    [DVec2::new(left, low), DVec2::new(right, high)]
 }

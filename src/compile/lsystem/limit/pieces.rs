@@ -1,0 +1,375 @@
+//! The limit sets of variables as unions of smaller copies of each other.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::DVec2;
+
+use super::NoGrowth;
+use super::alike::are_alike;
+use super::growth::{Growth, Steps};
+use super::number::{Complex, Numbers};
+use super::polynomial::SAME;
+use super::turns::{Reader, Reading, STEP, Turned, Variable};
+
+/// Limit of the number of sets.
+const MAX_SETS: usize = 1 << 10;
+
+/// Difference that is attributed to rounding to doubles.
+pub(super) const ROUNDING: f64 = 1e-10;
+
+/// Image of a set: z ↦ `place` + `factor` z, or `place` + `factor` z̄ if it is mirrored.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) set: usize,
+    pub(super) place: Complex,
+    pub(super) factor: Complex,
+    pub(super) mirrored: bool,
+}
+
+impl Piece {
+    /// Returns the image of a point.
+    pub(super) fn image(&self, point: &Complex) -> Complex {
+        let point = match self.mirrored {
+            true => &point.conjugate(),
+            false => point,
+        };
+        &self.place + &(&self.factor * point)
+    }
+
+    /// Returns the coefficients of the map in doubles.
+    pub(super) fn near(&self) -> [DVec2; 2] {
+        [self.place.near(0), self.factor.near(0)]
+    }
+
+    /// Returns whether a piece is the image of a set of the same class by the same map.
+    fn is_same(&self, other: &Self, classes: &[usize]) -> bool {
+        let kinds = |it: &Self| (classes[it.set], it.mirrored);
+        let mut numbers = self.near().into_iter().zip(other.near());
+        kinds(self) == kinds(other)
+            && numbers.all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
+    }
+}
+
+/// Set of a variable at a step of the period.
+#[derive(Debug)]
+pub(super) struct Set {
+    pub(super) pieces: Vec<Piece>,
+    /// Displacement of the variable, if it decides any place.
+    pub(super) way: Option<Complex>,
+    /// Whether it is the line of one step, which is kept.
+    pub(super) is_line: bool,
+}
+
+/// Sets and the pieces of the axiom.
+#[derive(Debug)]
+pub(super) struct Pieces {
+    pub(super) axiom: Vec<Piece>,
+    pub(super) sets: Vec<Set>,
+}
+
+impl Pieces {
+    /// Returns the sets that the approximants approach.
+    pub(super) fn of(
+        reader: &Reader<'_>,
+        steps: &Steps,
+        growth: &Growth,
+        numbers: &mut Numbers,
+    ) -> Result<Self, NoGrowth> {
+        let mut finder = Finder {
+            steps,
+            growth,
+            numbers,
+            keys: BTreeMap::new(),
+            open: Vec::new(),
+            sets: Vec::new(),
+        };
+        let mut axioms = Vec::new();
+        for phase in 0..growth.period {
+            let reading = reader.read(
+                &reader.kinds.axiom,
+                Some(steps.effects(steps.first + phase)),
+            )?;
+            axioms.push(finder.pieces(&reading, phase, None)?);
+        }
+        finder.finish()?;
+        let sets = finder.sets;
+        let pieces = Self {
+            axiom: Vec::new(),
+            sets,
+        };
+        let classes = pieces.classes();
+        // The number of different sets divides that of the steps of the period.
+        let is_cycle = |cycle: usize| {
+            let mut later = axioms.iter().enumerate().skip(cycle);
+            axioms.len().is_multiple_of(cycle)
+                && later.all(|(number, it)| are_alike(&pieces.sets, &axioms[number % cycle], it))
+        };
+        let cycle = (1..axioms.len())
+            .find(|&it| is_cycle(it))
+            .unwrap_or(axioms.len());
+        if cycle > 1 {
+            let cycle = u32::try_from(cycle).unwrap_or(u32::MAX);
+            return Err(NoGrowth::Alternates(cycle));
+        }
+        let axiom = axioms.swap_remove(0);
+        if !pieces.contracts() {
+            return Err(NoGrowth::Slow);
+        }
+        Ok(Self { axiom, ..pieces }.merged(&classes).without_points())
+    }
+
+    /// Returns whether the product of the factors of every cycle of sets is smaller than 1.
+    fn contracts(&self) -> bool {
+        // The longest logarithm of a product that leads to a set does not rise after as many factors as there are sets.
+        let mut longest = vec![0.0; self.sets.len()];
+        for _ in 0..=self.sets.len() {
+            let mut rises = false;
+            for (number, set) in self.sets.iter().enumerate() {
+                for piece in &set.pieces {
+                    let product: f64 = longest[number] + piece.factor.log2() + 2.0 * ROUNDING;
+                    if product > longest[piece.set] + ROUNDING {
+                        longest[piece.set] = product;
+                        rises = true;
+                    }
+                }
+            }
+            if !rises {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Returns the classes of sets that consist of the same pieces (Hopcroft 1971), by the first of each.
+    fn classes(&self) -> Vec<usize> {
+        let kind = |set: &Set| usize::from(set.is_line);
+        let mut classes: Vec<usize> = self.sets.iter().map(kind).collect();
+        loop {
+            let mut firsts: Vec<usize> = Vec::new();
+            let is_same = |a: usize, b: usize| {
+                let [one, other] = [a, b].map(|it| &self.sets[it].pieces);
+                classes[a] == classes[b]
+                    && one.len() == other.len()
+                    && one.iter().zip(other).all(|(a, b)| a.is_same(b, &classes))
+            };
+            let mut next = Vec::new();
+            for number in 0..self.sets.len() {
+                let first = firsts.iter().copied().find(|&first| is_same(first, number));
+                next.push(first.unwrap_or_else(|| {
+                    firsts.push(number);
+                    number
+                }));
+            }
+            if next == classes {
+                return classes;
+            }
+            classes = next;
+        }
+    }
+
+    /// Returns the sets with one for each class, without pieces that occur twice.
+    fn merged(self, classes: &[usize]) -> Self {
+        let kept: Vec<usize> = (0..classes.len()).filter(|&it| classes[it] == it).collect();
+        let number = |set: usize| kept.binary_search(&classes[set]).unwrap_or(0);
+        let merged = |pieces: Vec<Piece>| {
+            let mut all: Vec<Piece> = Vec::new();
+            for piece in pieces {
+                if !all.iter().any(|it| it.is_same(&piece, classes)) {
+                    all.push(piece);
+                }
+            }
+            for piece in &mut all {
+                piece.set = number(piece.set);
+            }
+            all
+        };
+        let sets = self.sets.into_iter().enumerate();
+        let sets = sets.filter(|(number, _)| classes[*number] == *number);
+        Self {
+            axiom: merged(self.axiom),
+            sets: sets
+                .map(|(_, set)| Set {
+                    pieces: merged(set.pieces),
+                    ..set
+                })
+                .collect(),
+        }
+    }
+
+    /// Returns the sets without pieces that are points of the pieces beside them: lines of one step vanish if the others
+    /// grow.
+    fn without_points(mut self) -> Self {
+        let points = self.greatest(|set, known| {
+            !set.is_line && { set.pieces.iter() }.all(|it| known[it.set] && is_zero(&it.place))
+        });
+        let larger = |set: &Set| -> Vec<Piece> {
+            let pieces = set.pieces.iter().filter(|it| !points[it.set]);
+            pieces.cloned().collect()
+        };
+        let starts = self.greatest(|set, known| {
+            let pieces = larger(set);
+            set.is_line || { pieces.iter() }.any(|it| known[it.set] && is_zero(&it.place))
+        });
+        let way = |set: usize| self.sets[set].way.as_ref();
+        let ends = self.greatest(|set, known| {
+            let Some(end) = &set.way else { return false };
+            set.is_line
+                || larger(set).iter().any(|it| {
+                    let last = way(it.set).map(|way| it.image(way));
+                    starts[it.set] && is_zero(&(&it.place - end))
+                        || known[it.set] && last.is_some_and(|last| is_zero(&(&last - end)))
+                })
+        });
+        let without = |pieces: &[Piece]| -> Vec<Piece> {
+            let is_met = |point: &Piece| {
+                pieces.iter().filter(|it| !points[it.set]).any(|it| {
+                    let last = way(it.set).map(|way| it.image(way));
+                    starts[it.set] && is_zero(&(&it.place - &point.place))
+                        || ends[it.set] && last.is_some_and(|it| is_zero(&(&it - &point.place)))
+                })
+            };
+            let left = pieces.iter().filter(|it| !points[it.set] || !is_met(it));
+            left.cloned().collect()
+        };
+        let axiom = without(&self.axiom);
+        let pieces: Vec<Vec<Piece>> = self.sets.iter().map(|set| without(&set.pieces)).collect();
+        for (number, (set, pieces)) in self.sets.iter_mut().zip(pieces).enumerate() {
+            // A point keeps one piece: itself.
+            if !points[number] {
+                set.pieces = pieces;
+            } else {
+                set.pieces.truncate(1);
+            }
+        }
+        Self { axiom, ..self }
+    }
+
+    /// Returns the largest class of sets for which a property holds that depends on the class.
+    fn greatest(&self, holds: impl Fn(&Set, &[bool]) -> bool) -> Vec<bool> {
+        let mut known = vec![true; self.sets.len()];
+        loop {
+            let next: Vec<bool> = { self.sets.iter().zip(&known) }
+                .map(|(set, was)| *was && holds(set, &known))
+                .collect();
+            if next == known {
+                return known;
+            }
+            known = next;
+        }
+    }
+}
+
+/// Returns whether a point is the origin.
+fn is_zero(place: &Complex) -> bool {
+    place.log2() <= SAME
+}
+
+struct Finder<'f> {
+    steps: &'f Steps,
+    growth: &'f Growth,
+    numbers: &'f mut Numbers,
+    /// Sets by variable and step of the period.
+    keys: BTreeMap<(Variable, usize), usize>,
+    open: Vec<(Variable, usize)>,
+    sets: Vec<Set>,
+}
+
+impl Finder<'_> {
+    /// Returns the pieces of a word whose modules are at a step of the period, divided by a ratio.
+    fn pieces(
+        &mut self,
+        reading: &Reading,
+        phase: usize,
+        ratio: Option<&Complex>,
+    ) -> Result<Vec<Piece>, NoGrowth> {
+        let mut pieces = Vec::new();
+        let bits = self.numbers.bits();
+        let mut places = vec![Complex::real(0.0, bits)];
+        for sum in &reading.sums {
+            let turned = self.turned(sum);
+            // A sum that leads to no part may have terms that decide no place.
+            let way = self.growth.ways[phase][sum.of].as_ref();
+            let way = way.map(|way| match sum.turn.mirrored {
+                true => way.conjugate(),
+                false => way.clone(),
+            });
+            let before = &places[sum.at];
+            places.push(way.map_or_else(|| before.clone(), |way| before + &(&turned * &way)));
+        }
+        for part in &reading.parts {
+            let place = &places[part.at];
+            let factor = self.turned(part);
+            let by = |number: &Complex| match ratio {
+                Some(ratio) => number.over(ratio),
+                None => number.clone(),
+            };
+            pieces.push(Piece {
+                place: by(place),
+                factor: by(&factor),
+                mirrored: part.turn.mirrored,
+                set: self.set(part.of, phase)?,
+            });
+        }
+        Ok(pieces)
+    }
+
+    fn turned(&mut self, of: &Turned) -> Complex {
+        let direction = self.numbers.direction(of.turn.heading).value;
+        let scale = Complex::real(of.turn.scale, self.numbers.bits());
+        &direction * &scale
+    }
+
+    /// Returns the number of the set of a variable.
+    fn set(&mut self, variable: Variable, phase: usize) -> Result<usize, NoGrowth> {
+        // The line is the same at all steps.
+        let phase = if variable == STEP { 0 } else { phase };
+        let next = self.keys.len();
+        if next > MAX_SETS {
+            return Err(NoGrowth::Size);
+        }
+        let number = *self.keys.entry((variable, phase)).or_insert(next);
+        if number == next {
+            self.open.push((variable, phase));
+        }
+        Ok(number)
+    }
+
+    /// Finds the pieces of all sets.
+    fn finish(&mut self) -> Result<(), NoGrowth> {
+        let mut done = 0;
+        while let Some(&(variable, phase)) = self.open.get(done) {
+            done += 1;
+            let period = self.growth.period;
+            let ratio = self.growth.ratio.clone();
+            let is_line = variable == STEP && self.growth.is_one;
+            let bits = self.numbers.bits();
+            let pieces = if is_line {
+                Vec::new()
+            } else if variable == STEP {
+                vec![Piece {
+                    set: self.set(STEP, 0)?,
+                    place: Complex::real(0.0, bits),
+                    factor: Complex::real(1.0, bits).over(&ratio),
+                    mirrored: false,
+                }]
+            } else {
+                let step = if phase == 0 { period } else { phase };
+                let reading = self
+                    .steps
+                    .reading(self.steps.first + step, variable)
+                    .clone();
+                self.pieces(&reading, step - 1, Some(&ratio))?
+            };
+            let way = match is_line {
+                true => Some(Complex::real(1.0, bits)),
+                false => self.growth.ways[phase][variable].clone(),
+            };
+            self.sets.push(Set {
+                pieces,
+                way,
+                is_line,
+            });
+        }
+        Ok(())
+    }
+}

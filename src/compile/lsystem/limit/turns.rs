@@ -1,0 +1,208 @@
+//! Words as the turtle reads them at a step: where each part starts and how it is turned, given the turns of all modules
+//! one step before.
+
+use crate::lsystem::{Action, Compass, LSystem};
+
+use super::super::kinds::Kinds;
+use super::NoGrowth;
+
+/// Direction of the turtle relative to an earlier one, with the length of its steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    pub(super) heading: u64,
+    pub(super) mirrored: bool,
+    /// Length of its steps; negative if they go backwards.
+    pub(super) scale: f64,
+}
+
+impl Turn {
+    pub(super) const NONE: Self = Self {
+        heading: 0,
+        mirrored: false,
+        scale: 1.0,
+    };
+
+    pub(super) fn then(self, compass: Compass, next: Self) -> Self {
+        let turn = match self.mirrored {
+            true => compass.back(next.heading),
+            false => next.heading,
+        };
+        Self {
+            heading: compass.sum(self.heading, turn),
+            mirrored: self.mirrored ^ next.mirrored,
+            scale: self.scale * next.scale,
+        }
+    }
+}
+
+/// Units of the displacements and drawings of words: lines of one step, or modules that are replaced.
+///
+/// [`STEP`](Self::STEP) is the line, and the others follow in the order of their kinds.
+pub(super) type Variable = usize;
+
+/// Number of the line of one step among the variables.
+pub(super) const STEP: Variable = 0;
+
+/// Variable that is turned, at the end of a sum of displacements.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turned {
+    pub(super) of: Variable,
+    /// Number of the sum before it: of its place.
+    pub(super) at: usize,
+    pub(super) turn: Turn,
+}
+
+/// Drawing of a word.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    /// Last terms of all sums but the first, which is 0.
+    pub(super) sums: Vec<Turned>,
+    /// Parts that are drawn.
+    pub(super) parts: Vec<Turned>,
+    /// Number of the sum that is the place after the word.
+    pub(super) end: usize,
+    /// Direction after the word.
+    pub(super) turn: Turn,
+}
+
+impl Reading {
+    /// Iterates over the terms of a sum, from the last to the first.
+    pub(super) fn terms(&self, mut sum: usize) -> impl Iterator<Item = &Turned> {
+        std::iter::from_fn(move || {
+            let last = &self.sums[sum.checked_sub(1)?];
+            sum = last.at;
+            Some(last)
+        })
+    }
+}
+
+/// Directions after all variables at a step, and whether they draw.
+pub(super) type Effects = Vec<(Turn, bool)>;
+
+/// Reader of the words of a system.
+pub(super) struct Reader<'s> {
+    pub(super) system: &'s LSystem,
+    pub(super) compass: Compass,
+    pub(super) kinds: &'s Kinds,
+    /// Kinds that are replaced, in order.
+    pub(super) fertile: Vec<usize>,
+    /// Variables by kind, of those that are replaced.
+    variables: Vec<Option<Variable>>,
+}
+
+impl<'s> Reader<'s> {
+    pub(super) fn new(system: &'s LSystem, kinds: &'s Kinds) -> Self {
+        let all = 0..kinds.all.len();
+        let fertile: Vec<usize> = all.filter(|&kind| kinds.all[kind].is_fertile()).collect();
+        let variable = |kind: usize| fertile.binary_search(&kind).ok().map(|place| place + 1);
+        Self {
+            system,
+            compass: Compass::of(system),
+            kinds,
+            variables: (0..kinds.all.len()).map(variable).collect(),
+            fertile,
+        }
+    }
+
+    /// Reads the words that replace all variables, whose modules have effects.
+    pub(super) fn replaced(&self, effects: &Effects) -> Result<Vec<Reading>, NoGrowth> {
+        let word = |kind: &usize| &self.kinds.all[*kind].alternatives[0].word;
+        let readings = self
+            .fertile
+            .iter()
+            .map(|kind| self.read(word(kind), Some(effects)));
+        readings.collect()
+    }
+
+    /// Reads all variables as modules that are not replaced.
+    pub(super) fn kept(&self) -> Result<Vec<Reading>, NoGrowth> {
+        let readings = self.fertile.iter().map(|kind| self.read(&[*kind], None));
+        readings.collect()
+    }
+
+    /// Reads a word whose modules have effects, or are not replaced.
+    pub(super) fn read(
+        &self,
+        word: &[usize],
+        effects: Option<&Effects>,
+    ) -> Result<Reading, NoGrowth> {
+        let mut reading = Reading {
+            sums: Vec::new(),
+            parts: Vec::new(),
+            end: 0,
+            turn: Turn::NONE,
+        };
+        let mut saved = Vec::new();
+        for &kind in word {
+            match (self.variables[kind], effects) {
+                (Some(variable), Some(effects)) => {
+                    let (turn, draws) = effects[variable];
+                    self.go(&mut reading, variable, 1.0, draws);
+                    reading.turn = reading.turn.then(self.compass, turn);
+                }
+                _ => self.act(kind, &mut reading, &mut saved)?,
+            }
+        }
+        Ok(reading)
+    }
+
+    /// Goes ahead by a variable.
+    fn go(&self, reading: &mut Reading, of: Variable, steps: f64, draws: bool) {
+        let turned = Turned {
+            of,
+            at: reading.end,
+            turn: Turn {
+                scale: reading.turn.scale * steps,
+                ..reading.turn
+            },
+        };
+        if draws && turned.turn.scale != 0.0 {
+            reading.parts.push(turned);
+        }
+        reading.sums.push(turned);
+        reading.end = reading.sums.len();
+    }
+
+    /// Applies the actions of a module that is not replaced.
+    fn act(
+        &self,
+        kind: usize,
+        reading: &mut Reading,
+        saved: &mut Vec<(usize, Turn)>,
+    ) -> Result<(), NoGrowth> {
+        let of = &self.kinds.all[kind];
+        for action in &self.system.symbols()[of.symbol].meaning {
+            match action {
+                Action::Draw(steps) => {
+                    self.go(reading, STEP, steps.eval(&of.arguments), true);
+                }
+                Action::Move(steps) | Action::Glide(steps) => {
+                    self.go(reading, STEP, steps.eval(&of.arguments), false);
+                }
+                Action::Turn(angle) => {
+                    let heading = self.compass.of_degrees(angle.eval(&of.arguments));
+                    let turn = Turn {
+                        heading,
+                        ..Turn::NONE
+                    };
+                    reading.turn = reading.turn.then(self.compass, turn);
+                }
+                Action::Reflect => reading.turn.mirrored ^= true,
+                Action::Scale(factor) => reading.turn.scale *= factor.eval(&of.arguments),
+                Action::Push => saved.push((reading.end, reading.turn)),
+                Action::Pop => {
+                    if let Some(state) = saved.pop() {
+                        (reading.end, reading.turn) = state;
+                    }
+                }
+                action if action.changes_appearance() => {}
+                _ => return Err(NoGrowth::Actions),
+            }
+        }
+        if reading.turn.scale.is_finite() && reading.turn.scale != 0.0 {
+            Ok(())
+        } else {
+            Err(NoGrowth::Actions)
+        }
+    }
+}

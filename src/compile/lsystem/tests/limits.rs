@@ -1,0 +1,240 @@
+//! Limit sets, held against approximants of steps that cannot be drawn, and against edge rewriting.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use proptest::strategy::ValueTree as _;
+use proptest::test_runner::TestRunner;
+
+use super::super::limit::Limit;
+use super::*;
+use crate::lsystem::NoGrowth;
+
+/// Largest number of points that are compared.
+const MOST: u64 = 1_500;
+
+/// Largest distance that the number of points allows, as a share of the radius.
+const NEAR: f64 = 0.1;
+
+fn conjugate(z: DVec2) -> DVec2 {
+    DVec2::new(z.x, -z.y)
+}
+
+fn radius(points: &[DVec2]) -> f64 {
+    points.iter().map(|it| it.length()).fold(0.0, f64::max)
+}
+
+/// Returns points without those that are close to others.
+fn spread(points: &[DVec2]) -> Vec<DVec2> {
+    let mut cells = BTreeMap::new();
+    for point in points {
+        let cell = (*point * 100.0).floor().to_array().map(f64::to_bits);
+        cells.entry(cell).or_insert(*point);
+    }
+    cells.into_values().collect()
+}
+
+/// Returns the largest distance of points from others.
+fn excess(from: &[DVec2], to: &[DVec2]) -> f64 {
+    let nearest = |it: &DVec2| {
+        let all = to.iter().map(|at| at.distance_squared(*it));
+        all.fold(f64::MAX, f64::min)
+    };
+    from.iter().map(nearest).fold(0.0, f64::max).sqrt()
+}
+
+/// Returns the Hausdorff distance of two sets up to a similarity about the origin, as a share of their radius.
+fn distance(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let [a, b] = [a, b].map(|points| {
+        let size = radius(points);
+        let scaled: Vec<DVec2> = points.iter().map(|it| *it / size).collect();
+        spread(&scaled)
+    });
+    let longest = |it: &&DVec2| it.length() > 0.97;
+    let Some(farthest) = b
+        .iter()
+        .copied()
+        .max_by(|a, b| a.length().total_cmp(&b.length()))
+    else {
+        return 1.0;
+    };
+    let mut turns: Vec<(DVec2, bool)> = Vec::new();
+    for candidate in a.iter().filter(longest) {
+        for mirrored in [false, true] {
+            let from = if mirrored {
+                conjugate(*candidate)
+            } else {
+                *candidate
+            };
+            let turn = conjugate(from).rotate(farthest).normalize();
+            if !turns
+                .iter()
+                .any(|(known, it)| *it == mirrored && known.distance(turn) < 0.02)
+            {
+                turns.push((turn, mirrored));
+            }
+        }
+    }
+    let off = |(turn, mirrored): &(DVec2, bool)| {
+        let image = |it: &DVec2| if *mirrored { conjugate(*it) } else { *it }.rotate(*turn);
+        let ours: Vec<DVec2> = a.iter().map(image).collect();
+        excess(&ours, &b).max(excess(&b, &ours))
+    };
+    turns.iter().map(off).fold(1.0, f64::min)
+}
+
+/// Returns the starts of the elements of a graph after as many steps as the number of points allows.
+fn starts(graph: &Graph) -> Vec<DVec2> {
+    let fits = |steps: &u32| graph.check_size(*steps, MOST).is_ok();
+    let deepest = (0..40).take_while(fits).last().unwrap_or(0);
+    let drawn = drawn(graph, deepest, 0);
+    drawn.iter().map(|it| it.points[0]).collect()
+}
+
+/// Returns the distance of a limit set from an approximant far beyond those that can be drawn: from the starts of all
+/// modules some generations before its step.
+fn distance_from_words(system: &LSystem, limit: &Graph) -> f64 {
+    const LAST: u32 = 160;
+    let levels = compiled(system, LAST);
+    let levels = Graph {
+        initiators: vec![levels.initiator(LAST).clone()],
+        ..levels
+    };
+    distance(&starts(&levels), &starts(limit))
+}
+
+fn limit(system: &LSystem) -> Result<Graph, NoGrowth> {
+    Limit::of(system, 0)?.graph()
+}
+
+/// Published systems have a limit set if and only if they should, and approach it.
+#[test]
+fn published_systems() {
+    let without = BTreeMap::from([
+        ("tiles", NoGrowth::Alternates(2)),
+        ("weed", NoGrowth::Alternates(2)),
+        ("Fibonacci", NoGrowth::Alternates(30)),
+        ("bush of five letters", NoGrowth::Slow),
+        ("tree of one length", NoGrowth::Slow),
+        ("spiral", NoGrowth::Slow),
+        ("line that stays", NoGrowth::Slow),
+        ("mango leaf", NoGrowth::Actions),
+        ("signal", NoGrowth::Contexts),
+        ("turns of an unknown angle", NoGrowth::Turns),
+    ]);
+    assert!(named::ALL.len() >= 60);
+    for named in named::ALL {
+        let system = system(&named::text(named));
+        let found = limit(&system);
+        let edges = Graph::of_edges(&system);
+        let (name, expected) = (named.0, without.get(named.0));
+        match (&found, &edges) {
+            (Ok(graph), edges) => {
+                let off = distance_from_words(&system, graph);
+                let same = edges
+                    .as_ref()
+                    .map(|edges| distance(&starts(edges), &starts(graph)));
+                eprintln!(
+                    "{name:36} {:3} sets, {off:.3} {same:?}",
+                    graph.objects().len()
+                );
+                assert!(
+                    off < NEAR && same.is_ok_and(|it| it < NEAR) == edges.is_ok(),
+                    "{name}"
+                );
+            }
+            (Err(reason), _) => eprintln!("{name:36} {reason}"),
+        }
+        assert_eq!(found.err().as_ref(), expected, "{name}");
+    }
+}
+
+fn word(letters: &'static str, most: usize) -> impl Strategy<Value = String> {
+    let letters = letters.chars().map(String::from).collect::<Vec<_>>();
+    let module = prop::sample::select(letters);
+    let inner = move |most| {
+        let modules = prop::collection::vec(module.clone(), 1..most);
+        modules.prop_map(|all| all.concat())
+    };
+    prop_oneof![
+        3 => inner(most),
+        1 => (inner(3), inner(4), inner(3)).prop_map(|(a, b, c)| format!("{a}[{b}]{c}")),
+        1 => (inner(4), inner(4), inner(3)).prop_map(|(a, b, c)| format!("F[+{a}][-{b}]{c}")),
+    ]
+}
+
+/// Systems of the shapes that are published: letters that are rewritten and draw nothing, and lines that are kept,
+/// deleted, doubled or rewritten.
+fn text() -> impl Strategy<Value = String> {
+    let angles = "90 90 90 60 60 45 36 30 120 72 25 25.7 22.5 20 18 15";
+    let angles = prop::sample::select(angles.split(' ').collect::<Vec<_>>());
+    let axioms = "X FX XF X+X+X+X F+F+F+F X+XF+X F++F++F [X]+[Y] X-Y";
+    let axioms = prop::sample::select(axioms.split(' ').collect::<Vec<_>>());
+    let letters = "XXYYFFF++--+-|";
+    let line = prop_oneof![
+        3 => Just("F".to_owned()),
+        1 => Just(String::new()),
+        2 => Just("FF".to_owned()),
+        1 => Just("F+F-F".to_owned()),
+        2 => word("FFFF+-+-XY", 6),
+    ];
+    let words = (word(letters, 9), word(letters, 9), line);
+    (angles, axioms, words).prop_map(|(angle, axiom, (x, y, line))| {
+        format!(
+            "angle: {angle}\naxiom: '{axiom}'\nproductions: {{X: '{x}', Y: '{y}', F: '{line}'}}\n"
+        )
+    })
+}
+
+/// Growth of random systems is decided, and those that have a limit set approach it.
+#[test]
+fn random_systems() {
+    const COUNT: usize = 150;
+    let mut runner = TestRunner::deterministic();
+    let (mut undecided, mut approached) = (0, 0);
+    for _ in 0..COUNT {
+        let text = text().new_tree(&mut runner).unwrap().current();
+        let system = system(&text);
+        match limit(&system) {
+            Ok(graph) => {
+                approached += 1;
+                let off = distance_from_words(&system, &graph);
+                assert!(off < NEAR, "{off} {text}");
+            }
+            Err(NoGrowth::Size | NoGrowth::Turns) => undecided += 1,
+            Err(_) => assert!(
+                Graph::of_edges(&system).is_err() || text.contains("F: 'F'"),
+                "{text}"
+            ),
+        }
+    }
+    eprintln!("{approached} of {COUNT} have a limit set, {undecided} are not decided");
+    assert!(undecided * 100 <= COUNT * 15 && approached * 5 >= COUNT);
+}
+
+/// Lines of any precision are those of the graph.
+#[test]
+fn long_lines() {
+    for named in named::ALL
+        .iter()
+        .filter(|it| ["Penrose tiling", "plant f", "Peano curve"].contains(&it.0))
+    {
+        let system = LSystem::in_limit(&system(&named::text(named)));
+        let graph = Graph::of_lsystem(&system, 0, 0, 1).unwrap();
+        for bits in [64, 3000] {
+            let chords = super::super::chords::Chords::of(&system, bits).unwrap();
+            let unit = 0.5f64.powi(64);
+            for (object, lines) in graph.objects().iter().zip(&chords.objects) {
+                let chain = &object.successor().unwrap().body;
+                assert_eq!(chain.instances.len(), lines.len());
+                for (instance, line) in chain.instances.iter().zip(lines) {
+                    let [from, _] = line;
+                    let place =
+                        [0, 1].map(|axis| (&from[axis] >> (bits - 64)).to_f64().value() * unit);
+                    let off = instance.frame.origin() - DVec2::from_array(place);
+                    assert!(off.length() < 1e-14, "{}: {off}", named.0);
+                }
+            }
+        }
+    }
+}
