@@ -4,9 +4,13 @@ use std::io::Write;
 
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-use crate::chaos::Histogram;
-use crate::style::{Colour, Named, Palette};
+use crate::chaos::{Histogram, RandomPoints, Start, WeightedMaps};
+use crate::geometry::Bounds;
+use crate::graph::Graph;
+use crate::ifs::System;
+use crate::style::{Colour, Named, Palette, View};
 
+use super::canvas::{Canvas, Size};
 use super::error::RenderError;
 use super::options::Labels;
 use super::options::PngEncoding;
@@ -92,6 +96,39 @@ impl Default for Density {
             png: PngEncoding::default(),
         }
     }
+}
+
+/// Number of points from which the extent of walks is estimated.
+const PILOT: usize = 20_000;
+
+/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
+const EDGE: f64 = 1.0 / 32.0;
+
+/// Returns the canvas for the points of random iteration: the window of the view, or else the box of the attractor and of
+/// the ways to it. The box is exact where the system determines it; otherwise, and for ways from a start, it is that of some
+/// thousand points.
+///
+/// # Errors
+///
+/// Returns an error if the picture has no room for the box, or if the box is not finite.
+pub fn density_canvas(
+    source: &System,
+    system: &WeightedMaps,
+    start: &Start,
+    view: &View,
+    size: Size,
+) -> Result<Canvas, RenderError> {
+    if let Some(window) = view.window {
+        return Ok(Canvas::of_window(window, view, size)?);
+    }
+    let limit = Graph::of_system(source).limit_bounds();
+    let mut bounds = limit.unwrap_or(Bounds::EMPTY);
+    if limit.is_none() || *start != Start::Attractor {
+        for point in RandomPoints::new(system, start, 0).take(PILOT) {
+            bounds.add(point.place);
+        }
+    }
+    Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
 }
 
 /// Number of hits below which levels are tabulated.

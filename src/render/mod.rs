@@ -58,7 +58,7 @@ mod write;
 mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
-pub use density::{Density, Shades, Tone, write_density};
+pub use density::{Density, Shades, Tone, density_canvas, write_density};
 pub(crate) use drawing::Drawing;
 pub use error::{NoDetail, NoZoom, Remedy, RenderError};
 pub use instanced::{NotInstanced, SceneFormat, write_scene};
@@ -83,4 +83,4 @@ pub(crate) use tracer::Tracer;
 pub use unit::Unit;
 pub use write::write;
 pub(crate) use write::write_drawing;
-pub use zoomed::{ZoomTarget, write_zoomed};
+pub use zoomed::{ZoomTarget, pixels_zoomed, write_zoomed};

@@ -6,14 +6,13 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use crate::chaos::{GameError, HistogramWindow, RandomPoints, Start, play};
+use crate::chaos::{GameError, HistogramWindow, play};
 use crate::export;
-use crate::geometry::{Bounds, DAffine2};
-use crate::graph::Graph;
+use crate::geometry::DAffine2;
 use crate::grow::Progress;
 use crate::ifs::System;
 use crate::model::Model;
-use crate::render::{Canvas, Density, RenderError, Shades, Size, write_density};
+use crate::render::{Canvas, Density, RenderError, Shades, Size, density_canvas, write_density};
 use crate::style::{ColorBy, Colour, Style};
 
 use super::super::super::Failure;
@@ -21,12 +20,6 @@ use super::super::super::labels::labels;
 use super::super::super::rule::Loaded;
 use super::super::Arguments;
 use super::Iteration;
-
-/// Number of points from which the extent of walks is estimated.
-const PILOT: usize = 20_000;
-
-/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
-const EDGE: f64 = 1.0 / 32.0;
 
 /// Random iteration in the plane.
 pub(in crate::cli::grow) struct PlaneGame<'a> {
@@ -81,18 +74,8 @@ impl<'a> PlaneGame<'a> {
         } = &self.iteration;
         let view = arguments.picture.view(self.source.metadata());
         let view = view.within(place);
-        if let Some(window) = view.window {
-            return Ok(Canvas::of_window(window, &view, size)?);
-        }
-        let limit = Graph::of_system(&self.source).limit_bounds();
-        let mut bounds = limit.unwrap_or(Bounds::EMPTY);
         let Iteration { system, start, .. } = &self.iteration;
-        if limit.is_none() || *start != Start::Attractor {
-            for point in RandomPoints::new(system, start, 0).take(PILOT) {
-                bounds.add(point.place);
-            }
-        }
-        Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+        density_canvas(&self.source, system, start, &view, size)
     }
 
     /// Plays the game, draws it and returns a summary.
