@@ -27,7 +27,7 @@ fn rules(file: &str, text: &str) -> Vec<(String, String)> {
             .collect();
         match info.trim() {
             "yaml" => rules.push((format!("{file}:{number}"), block.join("\n") + "\n")),
-            "yaml fragment" | "text" | "rust" | "sh" => {}
+            "yaml fragment" | "text" | "rust" | "sh" | "python" => {}
             other => panic!("{file}:{number}: blocks of '{other}' are not known to this test"),
         }
     }
