@@ -44,6 +44,7 @@
 //! | names in the library | [`catalogue`] |
 //! | a system whose attractor is a picture | [`fit`](fit()) |
 //! | maps of the parameters of a system | [`family`] |
+//! | data sets of pictures with labels | [`dataset`] |
 //! | rules made by a program | [`build`] |
 //! | a change of a file that keeps its comments and layout | [`edit`] |
 //!
@@ -134,6 +135,7 @@ pub mod cli;
 mod compile;
 pub mod convert;
 mod count;
+pub mod dataset;
 pub mod diagnostic;
 mod digraph;
 pub mod document;

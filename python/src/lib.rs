@@ -4,6 +4,7 @@
 //! at an interrupt, and reports mistakes as exceptions; see [`work`]. Types of results are named tuples of `kfrac._results`.
 
 mod arrow;
+mod dataset;
 mod error;
 mod fit;
 mod fractal;
@@ -17,6 +18,8 @@ use pyo3::prelude::*;
 /// Linear fractals: grown from production rules, drawn and measured.
 #[pymodule(gil_used = false)]
 mod _kfrac {
+    #[pymodule_export]
+    use crate::dataset::Dataset;
     #[pymodule_export]
     use crate::error::KfracError;
     #[pymodule_export]

@@ -13,7 +13,7 @@ import kfrac._kfrac
 
 FUNCTION = ast.FunctionDef
 
-SLOTS = {"__len__", "__getitem__"}
+SLOTS = {"__len__", "__getitem__", "__init__"}
 """Methods whose arguments Python itself names."""
 
 
@@ -48,7 +48,7 @@ def test_signatures_are_those_of_the_stubs(name: str, stub: FUNCTION, described:
 
 def test_all_that_is_public_is_in_the_stubs() -> None:
     described = {name for name, _, _ in stubs()}
-    for owner in [kfrac.Fractal, kfrac.Table]:
+    for owner in [kfrac.Fractal, kfrac.Table, kfrac._kfrac.Dataset]:
         public = [name for name in vars(owner) if not name.startswith("_")]
         assert {f"{owner.__name__}.{name}" for name in public} <= described
 

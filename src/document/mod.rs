@@ -11,6 +11,7 @@
 mod animation;
 mod assemble;
 mod data;
+mod dataset;
 mod ifs;
 mod instancing;
 mod lsystem;
@@ -29,6 +30,10 @@ mod view;
 mod yaml;
 
 pub use animation::FilmOption;
+pub use dataset::{
+    AcceptDocument, CategoriesDocument, DatasetDocument, Fit, Format, InstancesDocument, Law,
+    LawDocument, Mode, PictureDocument, RandomDocument, SourceDocument,
+};
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
     InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument, Scales,

@@ -194,7 +194,7 @@ fn premultiplied(colour: Colour) -> PremultipliedColorU8 {
     clippy::cast_sign_loss,
     reason = "casts from floats saturate"
 )]
-fn level(tone: f64) -> u8 {
+pub(super) fn level(tone: f64) -> u8 {
     ((tone * 255.0).round() as u8).max(1)
 }
 
