@@ -15,7 +15,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
+use crate::document::node::{Node, Value};
 use crate::kind::Kind;
+use crate::metadata::Description;
 
 pub use file::{cannot_be_read, open_file};
 
@@ -337,6 +339,40 @@ impl Catalogue {
         let text = embedded(entry.shelf, &entry.name).unwrap_or_default();
         let (folder, name) = (entry.shelf.folder(), &entry.name);
         Ok(Source::new(format!("library/{folder}/{name}.yaml"), text))
+    }
+
+    /// Returns title, description, source and tags of a library file, without checking the rest of it. A file that cannot be
+    /// read has none.
+    ///
+    /// ```
+    /// use kfrac::catalogue::Catalogue;
+    ///
+    /// let library = Catalogue::embedded();
+    /// let entries = library.entries();
+    /// let is_plant = |it: &&_| library.description(it).tags.contains(&"plant".into());
+    /// assert!(entries.iter().filter(is_plant).any(|it| it.name == "barnsley-fern"));
+    /// ```
+    #[must_use]
+    pub fn description(&self, entry: &LibraryFile) -> Description {
+        let node = self.open(entry).ok();
+        let node = node.and_then(|source| Node::parse(&source).ok());
+        let get = |key| Some(&node.as_ref()?.get(key)?.value);
+        let text = |key| match get(key) {
+            Some(Value::Text(text)) => Some(text.trim_end().to_owned()),
+            _ => None,
+        };
+        Description {
+            title: text("title"),
+            about: text("about"),
+            source: text("source"),
+            tags: match get("tags") {
+                Some(Value::Sequence(tags)) => {
+                    let tags = tags.iter().filter_map(Node::written);
+                    tags.map(str::to_owned).collect()
+                }
+                _ => Vec::new(),
+            },
+        }
     }
 
     /// Returns all files of the given name on the given shelves, in the order of lookup: the first

@@ -77,6 +77,11 @@ impl Path {
         mix(u64::from(from.min(to)) << 32 | u64::from(from.max(to)))
     }
 
+    /// Returns the random number stream of a name at this path.
+    pub(crate) fn random(self, name: &str) -> Pcg {
+        self.stream(hash_of_name(name), None)
+    }
+
     /// Returns the random number stream of a name at this path, or of one of its edges.
     fn stream(self, name: u64, edge: Option<u8>) -> Pcg {
         let own = edge.map_or(self.hash, |edge| self.edge(edge));

@@ -31,14 +31,20 @@
 //! | parameters, a family of curves | [`Fractal::set`] |
 //! | elements one by one, tables | [`Fractal::elements`], [`Fractal::write`] |
 //! | raw pixels, frames of a film, cancelling | [`Fractal::pixels`], [`Fractal::frames`], [`Fractal::cancel`] |
+//! | all elements in memory, column by column | [`Fractal::columns`] |
+//! | points of random iteration, pixel by pixel | [`Fractal::histogram`] |
+//! | pictures of parts without a limit of magnification | [`Fractal::zoom`] |
 //! | the way to another fractal | [`Fractal::toward`], [`tween`] |
-//! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::bounds`], [`Fractal::dimension`] |
+//! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::estimate`], [`Fractal::bounds`], [`Fractal::dimension`] |
+//! | all of these at once, distance of two fractals | [`Fractal::info`], [`Fractal::compare`] |
+//! | the file with values of its parameters | [`Fractal::yaml`] |
 //! | sets in space: camera and shading, elements, extent | [`Fractal::space`], [`Fractal::elements_in_space`], [`Fractal::bounds_in_space`] |
 //! | mistakes in a file, with their places | [`Error::diagnostics`] |
 //! | the format of files, and their keys | [`document`] |
 //! | names in the library | [`catalogue`] |
 //! | a system whose attractor is a picture | [`fit`](fit()) |
 //! | maps of the parameters of a system | [`family`] |
+//! | data sets of pictures with labels | [`dataset`] |
 //! | rules made by a program | [`build`] |
 //! | a change of a file that keeps its comments and layout | [`edit`] |
 //!
@@ -129,6 +135,7 @@ pub mod cli;
 mod compile;
 pub mod convert;
 mod count;
+pub mod dataset;
 pub mod diagnostic;
 mod digraph;
 pub mod document;
@@ -178,7 +185,7 @@ pub use bits::Bits;
 pub use count::Count;
 pub use draws::{Corner, Distribution, Path, Variable};
 pub use fit::fit;
-pub use fractal::{Dimension, Error, Fractal, Frames, Goal, proposed_steps};
+pub use fractal::{Dimension, Error, Fractal, Frames, Goal, Info, proposed_steps};
 pub use grow::Element;
 pub use kind::Kind;
 pub use metadata::{Description, Metadata, Parameter};

@@ -95,6 +95,9 @@ pub(crate) const DEEPEST: u32 = 12;
 /// Largest number of elements of a step that is proposed.
 pub(crate) const MOST_PROPOSED: u64 = 20_000;
 
+/// Limit of the elements of a word in which mistakes are looked for.
+const MOST_CHECKED: u64 = 20_000;
+
 /// Properties of a model that depend on its kind. Each kind implements them in a file of this module.
 pub(crate) trait OfKind {
     /// Returns the metadata of the file.
@@ -350,6 +353,17 @@ impl Model {
             Kind::Rule | Kind::LSystem => None,
             _ => self.as_kind().compile_in_space(0, records_last)?.ok(),
         }
+    }
+
+    /// Returns a mistake that shows only where elements are replaced, by compiling the model for a few steps.
+    pub(crate) fn mistake(&self) -> Option<Diagnostic> {
+        let steps = self.metadata().steps.unwrap_or(1).min(16);
+        let compile = |steps| match self.graph_in_space_for(steps, 0, MOST_CHECKED) {
+            Some(graph) => graph.map(drop),
+            None => self.compile_for(steps, 0, MOST_CHECKED).map(drop),
+        };
+        let compiled = compile(steps).or_else(|error| error.deepest().map_or(Err(error), compile));
+        compiled.err().map(|error| self.diagnostic(&error))
     }
 
     /// Converts an error of [`Model::compile`] or of a walk to a diagnostic of the model's file.

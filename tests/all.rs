@@ -13,6 +13,7 @@ mod command_line;
 mod common;
 mod compare;
 mod convert;
+mod datasets;
 mod detail;
 mod dimensions;
 mod edits;

@@ -42,6 +42,8 @@ fn examples_work() {
     for path in [folder.path().join("mine.yaml"), rules.join("other.yaml")] {
         fs::write(path, &rule).unwrap();
     }
+    let set = "{kind: dataset, categories: {systems: {rule: gasket}}, picture: {size: 32}}";
+    fs::write(folder.path().join("set.yaml"), set).unwrap();
     let curve = "Koch { Angle 6 Axiom F F=F+F--F+F }";
     let maps = "Dust { .5 0 0 .5 0 0 1 .3 0 0 .3 1 0 1 }";
     for (name, text) in [("fractint.l", curve), ("other.ifs", maps)] {

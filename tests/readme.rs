@@ -1,11 +1,12 @@
 //! The rules in the two README files are read, resolved without a warning, compiled and grown.
 //!
-//! A block that begins with ```` ```yaml ```` alone is a whole rule. One that begins with ```` ```yaml
-//! fragment ```` is a part of one and is skipped.
+//! A block that begins with ```` ```yaml ```` alone is a whole rule, and one that begins with ```` ```yaml dataset ```` a
+//! data set. One that begins with ```` ```yaml fragment ```` is a part of one and is skipped.
 
 use std::convert::Infallible;
 
 use kfrac::catalogue::Catalogue;
+use kfrac::dataset::Dataset;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
 use kfrac::geometry::Frame;
@@ -27,7 +28,11 @@ fn rules(file: &str, text: &str) -> Vec<(String, String)> {
             .collect();
         match info.trim() {
             "yaml" => rules.push((format!("{file}:{number}"), block.join("\n") + "\n")),
-            "yaml fragment" | "text" | "rust" | "sh" => {}
+            "yaml dataset" => {
+                let set = Dataset::parse(&block.join("\n"));
+                set.unwrap_or_else(|error| panic!("{file}:{number}: {error}"));
+            }
+            "yaml fragment" | "text" | "rust" | "sh" | "python" => {}
             other => panic!("{file}:{number}: blocks of '{other}' are not known to this test"),
         }
     }

@@ -260,6 +260,37 @@ fn check<M: Walked>(
     Ok(())
 }
 
+/// Largest number of points that can be requested.
+const MAX_POINTS: u64 = 1_000_000_000_000;
+
+/// Parses a number of points with an optional suffix k, M or G: `500k`, `10M`.
+///
+/// # Errors
+///
+/// Returns a message if the text is no whole number from 1 to 10¹².
+pub fn points_of_text(text: &str) -> Result<u64, String> {
+    let (number, factor) = match text.char_indices().next_back() {
+        Some((end, 'k')) => (&text[..end], 1e3),
+        Some((end, 'M')) => (&text[..end], 1e6),
+        Some((end, 'G')) => (&text[..end], 1e9),
+        _ => (text, 1.0),
+    };
+    let points = number.parse::<f64>().map(|number| number * factor);
+    match points {
+        #[expect(clippy::cast_precision_loss, reason = "the limit is exact")]
+        Ok(points) if points > MAX_POINTS as f64 && points.is_finite() => {
+            Err("too many points: the limit is 1000G".into())
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number within the limit"
+        )]
+        Ok(points) if points >= 1.0 && points.fract() == 0.0 => Ok(points as u64),
+        _ => Err("a number of points is a whole number from 1, such as 500k, 10M or 2G".into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -362,6 +393,24 @@ mod tests {
                 (f64::from(any) - expected).abs() < error,
                 "{pixel} {any} {expected}"
             );
+        }
+    }
+
+    #[test]
+    fn points_are_counted_in_thousands_millions_and_milliards() {
+        for (text, number) in [
+            ("1", 1),
+            ("500k", 500_000),
+            ("2.5M", 2_500_000),
+            ("1e7", 10_000_000),
+            ("1000G", MAX_POINTS),
+        ] {
+            assert_eq!(points_of_text(text), Ok(number), "{text}");
+        }
+        for text in [
+            "", "0", "-1", "0.5", "k", "M", "10m", "NaN", "inf", "1001G", "1é",
+        ] {
+            assert!(points_of_text(text).is_err(), "{text}");
         }
     }
 }

@@ -46,9 +46,6 @@ pub(super) struct DiagnosticRow<'a> {
     hint: Option<&'a str>,
 }
 
-/// Limit of the elements of a word in which mistakes are looked for.
-const MOST_CHECKED: u64 = 20_000;
-
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let mut all = Vec::new();
     for file in &arguments.files {
@@ -105,16 +102,7 @@ pub(crate) fn checked(
 ) -> Result<(Document, Model, Diagnostics), Diagnostics> {
     let document = Document::read(source, catalogue)?;
     let (model, mut diagnostics) = document.resolve(&[])?;
-    let steps = model.metadata().steps.unwrap_or(1).min(16);
-    // Some mistakes show only where elements are replaced.
-    let compile = |steps| match model.graph_in_space_for(steps, 0, MOST_CHECKED) {
-        Some(graph) => graph.map(drop),
-        None => model.compile_for(steps, 0, MOST_CHECKED).map(drop),
-    };
-    if let Err(error) = compile(steps).or_else(|error| error.deepest().map_or(Err(error), compile))
-    {
-        diagnostics.push(model.diagnostic(&error));
-    }
+    diagnostics.extend(model.mistake());
     diagnostics.extend(animate::mistakes(&document));
     Ok((document, model, diagnostics))
 }

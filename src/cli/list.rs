@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::catalogue::{Catalogue, LibraryFile, Shelf};
 use crate::diagnostic::{Diagnostic, did_you_mean};
-use crate::document::node::{Node, Value};
+use crate::metadata::Description;
 
 use super::{Failure, gallery, help, output};
 
@@ -106,29 +106,18 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 /// Returns the row of an entry. A file that cannot be read has its name only; `kfrac check` reports its
 /// errors.
 pub(crate) fn row(entry: &LibraryFile, catalogue: &Catalogue) -> ListRow {
-    let node = catalogue
-        .open(entry)
-        .ok()
-        .and_then(|source| Node::parse(&source).ok());
-    let get = |key| node.as_ref().and_then(|node| node.get(key));
-    let text = |key| match get(key).map(|node| &node.value) {
-        Some(Value::Text(text)) => Some(text.trim_end().to_owned()),
-        _ => None,
-    };
-    let tags = match get("tags").map(|node| &node.value) {
-        Some(Value::Sequence(tags)) => tags
-            .iter()
-            .filter_map(Node::written)
-            .map(str::to_owned)
-            .collect(),
-        _ => Vec::new(),
-    };
+    let Description {
+        title,
+        source,
+        tags,
+        ..
+    } = catalogue.description(entry);
     ListRow {
         name: entry.name.clone(),
         kind: entry.shelf.kind(),
-        title: text("title"),
+        title,
         tags,
-        source: text("source"),
+        source,
         path: entry
             .path
             .as_ref()

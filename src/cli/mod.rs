@@ -9,6 +9,7 @@ mod completions;
 pub(crate) mod component;
 mod convert;
 mod count;
+mod dataset;
 mod dim;
 pub(crate) mod family;
 mod fit;
@@ -101,6 +102,7 @@ enum Command {
     Import(import::Arguments),
     Compare(compare::Arguments),
     Fit(fit::Arguments),
+    Dataset(dataset::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
     Schema(schema::Arguments),
@@ -260,6 +262,7 @@ pub fn run() -> ExitCode {
         Command::Import(arguments) => import::run(arguments),
         Command::Compare(arguments) => compare::run(arguments, &catalogue),
         Command::Fit(arguments) => fit::run(arguments),
+        Command::Dataset(arguments) => dataset::run(arguments, &catalogue),
         Command::Completions(arguments) => completions::run(arguments, &catalogue),
         Command::Man(arguments) => man::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),

@@ -270,6 +270,15 @@ fn standard_input() -> Result<Arc<Source>, Failure> {
     Ok(Source::read("<stdin>", bytes)?)
 }
 
+/// Opens a file that is no rule, or standard input.
+pub(super) fn open_as_written(path: &Path) -> Result<Arc<Source>, Failure> {
+    input::note(path);
+    if path == Path::new("-") {
+        return standard_input();
+    }
+    Ok(crate::catalogue::read_file(path)?)
+}
+
 /// Opens the file that `argument` names.
 pub(super) fn open(argument: &Path, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
     input::note(argument);

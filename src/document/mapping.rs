@@ -187,4 +187,4 @@ macro_rules! mapping {
     };
 }
 
-pub(super) use mapping;
+pub(super) use {mapping, variants};

@@ -11,6 +11,7 @@
 mod animation;
 mod assemble;
 mod data;
+mod dataset;
 mod ifs;
 mod instancing;
 mod lsystem;
@@ -29,6 +30,10 @@ mod view;
 mod yaml;
 
 pub use animation::FilmOption;
+pub use dataset::{
+    AcceptDocument, CategoriesDocument, DatasetDocument, Fit, Format, InstancesDocument, Law,
+    LawDocument, Mode, PictureDocument, RandomDocument, SourceDocument,
+};
 pub use ifs::{
     CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
     InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument, Scales,
@@ -63,10 +68,10 @@ use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostics, Place, Source};
-use crate::expression::Expression;
+use crate::expression::{Expression, PARTS};
 use crate::kind::Kind;
 
-use node::Node;
+use node::{Node, Value};
 use read::{KindTable, OfKind, read_metadata};
 use reader::Reader;
 
@@ -194,6 +199,22 @@ impl Document {
     pub fn to_yaml(&self) -> String {
         self.node.to_yaml()
     }
+
+    /// Returns the file as [`to_yaml`](Self::to_yaml) does, with other values of its parameters. Settings of parameters that
+    /// the file does not have are left out.
+    #[must_use]
+    pub fn to_yaml_with(&self, settings: &[Setting]) -> String {
+        let mut node = self.node.clone();
+        for setting in settings {
+            if let Some(value) = node.get_mut("params").and_then(|it| setting.of(it)) {
+                value.value = match &setting.written {
+                    Some(written) => Value::Text(written.to_string()),
+                    None => Value::Number(setting.value),
+                };
+            }
+        }
+        node.to_yaml()
+    }
 }
 
 /// A parameter value from outside the file.
@@ -207,6 +228,27 @@ pub struct Setting {
     pub written: Option<Expression>,
     /// Source span of the value, if it is written in a file.
     pub place: Option<Place>,
+}
+
+impl Setting {
+    /// Returns the value of the parameter among those of a file.
+    fn of<'n>(&self, params: &'n mut Node) -> Option<&'n mut Node> {
+        let mut parts = PARTS.iter().enumerate();
+        let part = parts.find_map(|(part, suffix)| Some((self.name.strip_suffix(suffix)?, part)));
+        let (name, part) = match part {
+            Some((name, part)) => (name, Some(part)),
+            None => (self.name.as_str(), None),
+        };
+        let mut value = params.get_mut(name)?;
+        if let Value::Mapping(_) = value.value {
+            value = value.get_mut("value")?;
+        }
+        let Some(part) = part else { return Some(value) };
+        match &mut value.value {
+            Value::Sequence(parts) => parts.get_mut(part),
+            _ => None,
+        }
+    }
 }
 
 impl From<(&str, f64)> for Setting {

@@ -3,8 +3,10 @@
 use std::convert::Infallible;
 use std::io;
 
+use crate::chaos::{GameError, SystemError};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::grow::WalkError;
+use crate::measure::NoCover;
 use crate::output_file::WriteError;
 use crate::render::RenderError;
 use crate::tween::TweenError;
@@ -34,6 +36,15 @@ pub enum Error {
     /// There is no tween between two fractals.
     #[error(transparent)]
     Tween(#[from] TweenError),
+    /// Points cannot be drawn from the system of maps at random.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// The points of random iteration cannot be counted.
+    #[error(transparent)]
+    Game(#[from] GameError),
+    /// The set has no distance from another one.
+    #[error("it cannot be compared: {0}")]
+    Compare(NoCover),
     /// No dimension is decided or measured.
     #[error("it has no dimension: {0}")]
     NoDimension(String),
@@ -55,6 +66,7 @@ impl Error {
         matches!(
             self,
             Self::Walk(WalkError::Cancelled)
+                | Self::Game(GameError::Cancelled)
                 | Self::Render(RenderError::Walk(WalkError::Cancelled))
         )
     }

@@ -3,12 +3,16 @@
 //! A [`Fractal`] is a validated [`Model`] with the options of growing and drawing it. Builder methods set options;
 //! the other methods grow it anew for each result.
 
+mod described;
+mod distance;
 mod error;
 mod frames;
 mod goal;
 mod options;
+mod points;
 mod results;
 mod space;
+mod table;
 #[cfg(test)]
 mod tests;
 
@@ -25,9 +29,10 @@ use crate::graph::Graph;
 use crate::model::{DrawnInSpace, Model};
 use crate::parallel::all_cores;
 use crate::render::space::SpaceOptions;
-use crate::render::{PngEncoding, Size};
+use crate::render::{PngEncoding, Size, ZoomTarget};
 use crate::style::{Style, View};
 
+pub use described::Info;
 pub use error::Error;
 pub use frames::Frames;
 #[cfg(feature = "cli")]
@@ -60,6 +65,7 @@ pub struct Fractal {
     style: Option<Style>,
     view: Option<View>,
     space: Option<SpaceOptions>,
+    zoom: Option<ZoomTarget>,
     png_encoding: PngEncoding,
     cancel: Option<Arc<AtomicBool>>,
     /// The graph of the model in the file's coordinates, once it has been compiled.
@@ -86,6 +92,7 @@ impl From<Model> for Fractal {
             style: None,
             view: None,
             space: None,
+            zoom: None,
             png_encoding: PngEncoding::default(),
             cancel: None,
             graph: OnceLock::new(),

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Document, MetadataDocument, Setting};
 use crate::render::space::SpaceOptions;
-use crate::render::{PngEncoding, Size};
+use crate::render::{PngEncoding, Size, ZoomTarget};
 use crate::style::{Style, View};
 
 use super::{Error, Fractal};
@@ -153,6 +153,26 @@ impl Fractal {
     #[must_use]
     pub fn space(mut self, space: SpaceOptions) -> Self {
         self.space = Some(space);
+        self
+    }
+
+    /// Sets a point about which pictures of a set of the plane are magnified, without a limit. Elements are replaced down to
+    /// the [detail](Self::detail), one pixel by default; a number of steps ends it earlier. Colours by index, which would
+    /// need all elements before one, become one colour.
+    ///
+    /// ```
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// use kfrac::{Fractal, render::ZoomTarget};
+    ///
+    /// let tip = ZoomTarget::new("1e1000".parse()?, "0.1.(2)".parse()?);
+    /// let far = Fractal::named("koch")?.zoom(Some(tip)).pixels((64, 48))?;
+    /// assert!(far.premultiplied().iter().any(|&byte| byte > 0));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn zoom(mut self, target: Option<ZoomTarget>) -> Self {
+        self.zoom = target;
         self
     }
 

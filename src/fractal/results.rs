@@ -92,10 +92,10 @@ impl Fractal {
             let drawn = pixels_in_space(&set.graph, set.steps, &options, &space, cancel);
             return Ok(drawn?.pixels);
         }
-        let pixels = self.draw_by(&options, |graph, growth, options| {
-            render::pixels(graph, growth, options)
-        })?;
-        Ok(pixels)
+        self.draw_by(&options, |graph, growth, options| match &self.zoom {
+            Some(target) => render::pixels_zoomed(&self.model, graph, growth, options, target),
+            None => render::pixels(graph, growth, options),
+        })
     }
 
     /// Writes a file: a picture (`svg`, `png`, `pdf`, `dxf`) or a table of elements (`csv`, `json`, `jsonl`,
@@ -309,13 +309,16 @@ impl Fractal {
     }
 
     fn goal(&self) -> Result<Goal, Error> {
+        if self.zoom.is_some() {
+            return Ok(Goal::zoomed(self.steps, self.detail));
+        }
         let compile = |steps| self.compile(steps);
         let goal = Goal::choose(&self.drawn(), self.steps, self.detail, compile);
         goal.map_err(|error| self.invalid(&error))
     }
 
     /// Returns the number of steps of elements and numbers, which have no pixels.
-    fn steps_grown(&self) -> Result<u32, Error> {
+    pub(super) fn steps_grown(&self) -> Result<u32, Error> {
         let steps = match self.steps {
             Some(steps) => Ok(steps),
             None => proposed_steps(&self.model, |steps| self.compile(steps)),
@@ -324,7 +327,7 @@ impl Fractal {
     }
 
     /// Returns the graph in the file's coordinates.
-    fn graph(&self) -> Result<&Graph, Error> {
+    pub(super) fn graph(&self) -> Result<&Graph, Error> {
         if let Some(graph) = self.graph.get() {
             return Ok(graph);
         }
@@ -366,10 +369,17 @@ impl Fractal {
     pub(super) fn options(&self, format: Format, size: Size) -> Result<Options, Error> {
         let metadata = self.model.metadata();
         let description = &metadata.description;
+        let style = self.style.as_ref().unwrap_or(&metadata.style).clone();
+        // A zoom counts no elements.
+        let counts = matches!(style.color_by, ColorBy::Index | ColorBy::Fractal);
+        let style = match counts && self.zoom.is_some() {
+            true => style.in_one_colour(),
+            false => style,
+        };
         Ok(Options {
             format,
             size,
-            style: self.style.clone().unwrap_or_else(|| metadata.style.clone()),
+            style,
             view: self.view.unwrap_or(metadata.view),
             threads: self.threads,
             png: self.png_encoding,
@@ -412,8 +422,11 @@ impl Fractal {
                 &mut out,
             )?);
         }
-        self.draw_by(options, |graph, growth, options| {
-            render::write(graph, growth, options, &mut out)
+        self.draw_by(options, |graph, growth, options| match &self.zoom {
+            Some(target) => {
+                render::write_zoomed(&self.model, graph, growth, options, target, &mut out)
+            }
+            None => render::write(graph, growth, options, &mut out),
         })
     }
 

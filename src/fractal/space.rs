@@ -3,7 +3,7 @@
 use crate::geometry::{Bounds, DVec3, Frame3};
 use crate::graph::{Forecast, Graph};
 use crate::grow::{Element, Elements};
-use crate::model::{DrawnError, DrawnInSpace, for_pixels};
+use crate::model::{DrawnError, DrawnInSpace, Model, for_pixels};
 use crate::render::space::{DepthMap, Shade, SpaceOptions, pixels_in_space};
 use crate::render::{Detail, Format, NoRoom, Options, RenderError, Size};
 
@@ -147,11 +147,15 @@ impl Fractal {
         let by = for_pixels(style.color_by);
         let drawn = self.model.drawn_in_space(steps, &growth, by);
         let drawn = drawn.ok_or(Error::InPlane(instead))?;
-        let drawn = drawn.map_err(|error| match error {
-            DrawnError::Compile(error) => self.model.diagnostic(&error).into(),
-            DrawnError::Walk(error) => Error::from(error),
-        })?;
+        let drawn = drawn.map_err(|error| Self::not_drawn(&self.model, error))?;
         Ok(self.drawn_in_space.get_or_init(|| drawn))
+    }
+
+    pub(super) fn not_drawn(model: &Model, error: DrawnError) -> Error {
+        match error {
+            DrawnError::Compile(error) => model.diagnostic(&error).into(),
+            DrawnError::Walk(error) => error.into(),
+        }
     }
 
     /// Returns the graph of a set in space for a picture, and `None` for a set of the plane.
@@ -166,6 +170,11 @@ impl Fractal {
         if options.view.window.is_some() {
             return Err(Error::InSpace(
                 "its camera has a point to look at, and no window",
+            ));
+        }
+        if self.zoom.is_some() {
+            return Err(Error::InSpace(
+                "its camera has a zoom, and no address to look at",
             ));
         }
         self.drawn_in_space("it has windows").map(Some)

@@ -6,9 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::catalogue::{Catalogue, Shelf};
+use crate::export::Column;
 use crate::grow::WalkError;
+use crate::measure::Precision;
 use crate::render::space::{Camera, Light, Shade, SpaceOptions};
-use crate::render::{self, Options, RenderError};
+use crate::render::{self, Options, RenderError, ZoomTarget};
 use crate::style::View;
 
 use super::{Error, Fractal};
@@ -228,4 +230,126 @@ fn the_view_of_a_file_is_that_of_its_pictures() {
     assert!(own == plain.clone().space(space).pixels(40).unwrap());
     let default = SpaceOptions::default();
     assert!(viewed.space(default).pixels(40).unwrap() == plain.pixels(40).unwrap());
+}
+
+#[test]
+fn columns_are_those_of_the_elements() -> Result<(), Error> {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries();
+    let grown = |shelf| Shelf::grown().contains(&shelf);
+    let mut tried = 0;
+    for entry in entries.iter().filter(|entry| grown(entry.shelf)) {
+        let fractal = named(&entry.name).steps(3).max_elements(20_000);
+        let columns = fractal.clone().threads(NonZero::new(3).unwrap()).columns();
+        if fractal.model().is_in_space() {
+            let elements: Result<Vec<_>, _> = fractal.elements_in_space()?.collect();
+            assert_eq!(
+                columns.ok().map(|it| it.rows()),
+                elements.ok().map(|it| it.len())
+            );
+            continue;
+        }
+        let elements: Result<Vec<_>, _> = fractal.elements()?.collect();
+        let (Ok(columns), Ok(elements)) = (columns, elements) else {
+            continue;
+        };
+        let index = elements.iter().map(|it| i64::try_from(it.index).unwrap());
+        assert_eq!(columns.get("index"), Some(&Column::Wholes(index.collect())));
+        let x = elements.iter().map(|it| it.frame.ends()[0].x + 0.0);
+        assert_eq!(
+            columns.get("x0"),
+            Some(&Column::Reals(x.collect())),
+            "{}",
+            entry.name
+        );
+        let joined = elements.iter().map(|it| it.joined);
+        assert_eq!(
+            columns.get("joined"),
+            Some(&Column::Flags(joined.collect()))
+        );
+        tried += 1;
+    }
+    assert!(tried > 100, "{tried}");
+    Ok(())
+}
+
+#[test]
+fn the_file_has_the_values_that_are_set() -> Result<(), Error> {
+    let text = "{kind: ifs, params: {s: [0.5, 0.25], t: {value: 1/3, min: 0}}, \
+                maps: [{times: s}, {times: s, shift: [t, 0]}]}";
+    let system = Fractal::parse(text)?.set_all([("s.im", 0.125), ("t", 0.75)])?;
+    let again = Fractal::parse(&system.yaml().unwrap())?;
+    let values = |it: &Fractal| it.model().metadata().parameters.clone();
+    assert_eq!(values(&again), values(&system));
+    assert_eq!(
+        values(&again).iter().map(|it| it.value).collect::<Vec<_>>(),
+        [0.5, 0.125, 0.75]
+    );
+    assert_eq!(Fractal::from(system.model().clone()).yaml(), None);
+    Ok(())
+}
+
+#[test]
+fn a_zoom_has_pixels_like_its_png() -> Result<(), Error> {
+    let target = ZoomTarget::new("3^30".parse().unwrap(), "0.(1)".parse().unwrap());
+    let koch = named("koch").zoom(Some(target.clone()));
+    let decoded = tiny_skia::Pixmap::decode_png(&koch.png(64)?).expect("it is a PNG");
+    let pixels = koch.pixels(64)?;
+    assert_eq!(pixels.size(), [decoded.width(), decoded.height()]);
+    let covered = |bytes: &[u8]| {
+        bytes
+            .chunks_exact(4)
+            .map(|pixel| pixel[3])
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(covered(pixels.premultiplied()), covered(decoded.data()));
+    assert_ne!(koch.pixels(64)?, named("koch").pixels(64)?);
+    let error = named("menger").zoom(Some(target)).pixels(64).unwrap_err();
+    assert!(error.to_string().starts_with("it lies in space"));
+    Ok(())
+}
+
+#[test]
+fn histograms_cover_the_attractor_or_the_window() -> Result<(), Error> {
+    let square = "{kind: ifs, vertices: {points: [[0, 0], [1, 0], [0, 1], [1, 1]], shrink: 1/2}}";
+    let square = Fractal::parse(square)?;
+    let whole = square.histogram(100_000, 32)?;
+    assert_eq!((whole.size(), whole.inside()), ([32, 32], 100_000));
+    let window = View {
+        window: Some([0.0, 0.0, 0.5, 0.5]),
+        margin: 0.0,
+    };
+    let quarter = square.view(window).histogram(100_000, 32)?.inside();
+    assert!(quarter.abs_diff(25_000) < 1_000, "{quarter}");
+    let error = named("koch").histogram(1000, 32).unwrap_err();
+    assert!(error.diagnostics().is_some());
+    Ok(())
+}
+
+#[test]
+fn distances_are_symmetric_and_in_the_unit_of_the_files() -> Result<(), Error> {
+    let precision = Precision {
+        tolerance: 0.01,
+        ..Precision::default()
+    };
+    let curve = |size: f64| {
+        let text = "{initiator: [[0, 0], [SIZE, 0]], generator: [[0, 0], [1/3, 0], [1/2, 0.3], [2/3, 0], [1, 0]]}";
+        Fractal::parse(&text.replace("SIZE", &size.to_string()))
+    };
+    let (small, large) = (curve(1000.0)?, curve(2000.0)?);
+    let there = small.compare(&large, None, &precision)?;
+    let back = large.compare(&small, None, &precision)?;
+    assert!((there.value() - 1000.0).abs() <= there.error, "{there:?}");
+    assert!((there.value() - back.value()).abs() <= there.error + back.error);
+    assert!(small.compare(&small, Some(3), &precision)?.may_be_same());
+    assert!(small.compare(&named("menger"), None, &precision).is_err());
+    let (sponge, coarse) = (
+        named("menger"),
+        Precision {
+            tolerance: 0.1,
+            ..precision
+        },
+    );
+    assert!(sponge.compare(&sponge, Some(1), &coarse)?.may_be_same());
+    Ok(())
 }

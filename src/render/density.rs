@@ -4,9 +4,13 @@ use std::io::Write;
 
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
 
-use crate::chaos::Histogram;
-use crate::style::{Colour, Named, Palette};
+use crate::chaos::{Histogram, RandomPoints, Start, WeightedMaps};
+use crate::geometry::{Bounds, DVec2};
+use crate::graph::Graph;
+use crate::ifs::{System, Verdict};
+use crate::style::{Colour, Named, Palette, View};
 
+use super::canvas::{Canvas, Size};
 use super::error::RenderError;
 use super::options::Labels;
 use super::options::PngEncoding;
@@ -94,6 +98,63 @@ impl Default for Density {
     }
 }
 
+/// Number of points from which the extent of walks is estimated.
+const PILOT: usize = 20_000;
+
+/// Largest factor of products that keep sizes, up to rounding.
+const GROWS: f64 = 1.0 + 1e-9;
+
+/// Share of points, as a divisor, that lie outside each side of the window where some are far from all others.
+const FAR: usize = 200;
+
+/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
+const EDGE: f64 = 1.0 / 32.0;
+
+/// Returns the canvas for the points of random iteration: the window of the view, or else the box of the attractor and of
+/// the ways to it. The box is exact where the system determines it; otherwise, and for ways from a start, it is that of some
+/// thousand points, without the few that are far from all others where maps grow.
+///
+/// # Errors
+///
+/// Returns an error if the picture has no room for the box, or if the box is not finite.
+pub fn density_canvas(
+    source: &System,
+    system: &WeightedMaps,
+    start: &Start,
+    view: &View,
+    size: Size,
+) -> Result<Canvas, RenderError> {
+    if let Some(window) = view.window {
+        return Ok(Canvas::of_window(window, view, size)?);
+    }
+    let limit = Graph::of_system(source).limit_bounds();
+    let mut bounds = limit.unwrap_or(Bounds::EMPTY);
+    if limit.is_none() || *start != Start::Attractor {
+        let points = RandomPoints::new(system, start, 0).take(PILOT);
+        let points: Vec<DVec2> = points.map(|point| point.place).collect();
+        // If products of maps grow, few points are far from all others.
+        let contraction = source.contraction();
+        let grows = contraction.verdict == Verdict::Diverges && contraction.lower > GROWS;
+        let cut = if grows { points.len() / FAR } else { 0 };
+        for end in middle(&points, cut) {
+            bounds.add(end);
+        }
+    }
+    Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+}
+
+/// Returns the corners of the bounding box of points without a number of them at each end of both axes.
+fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
+    let ends = |coordinate: fn(&DVec2) -> f64| {
+        let mut all: Vec<f64> = points.iter().map(coordinate).collect();
+        all.sort_by(f64::total_cmp);
+        let kept = &all[cut..all.len() - cut];
+        [kept[0], kept[kept.len() - 1]]
+    };
+    let ([left, right], [low, high]) = (ends(|point| point.x), ends(|point| point.y));
+    [DVec2::new(left, low), DVec2::new(right, high)]
+}
+
 /// Number of hits below which levels are tabulated.
 const FEW_HITS: u64 = 4096;
 
@@ -157,7 +218,7 @@ fn premultiplied(colour: Colour) -> PremultipliedColorU8 {
     clippy::cast_sign_loss,
     reason = "casts from floats saturate"
 )]
-fn level(tone: f64) -> u8 {
+pub(super) fn level(tone: f64) -> u8 {
     ((tone * 255.0).round() as u8).max(1)
 }
 

@@ -17,6 +17,7 @@ use super::layout::Layout;
 use super::options::{Detail, Options};
 use super::paint::{overhang, relative_overhang};
 use super::picture::{NearestPoint, Picture};
+use super::pixels::Pixels;
 
 /// Target of a zoomed picture.
 #[derive(Clone, Debug)]
@@ -27,6 +28,15 @@ pub struct ZoomTarget {
     pub at: Address,
     /// Angle in degrees by which the set is turned about that point, counter-clockwise.
     pub turn: f64,
+}
+
+impl ZoomTarget {
+    /// Creates a target without a turn.
+    #[must_use]
+    pub fn new(factor: Factor, at: Address) -> Self {
+        let turn = 0.0;
+        Self { factor, at, turn }
+    }
 }
 
 /// Writes a picture centred on a point, of the size of the picture of the whole set and magnified relative to
@@ -46,67 +56,121 @@ pub fn write_zoomed(
     target: &ZoomTarget,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
-    let style = &options.style;
-    zoom::check(model, graph)?;
-    check(style)?;
-    let canvas = whole(graph, growth, options)?;
-    let (stroke, relative_stroke) = match style.width {
-        Width::Pixels(width) => (width * overhang(style), 0.0),
-        Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
+    let zoomed = Zoomed::find(model, graph, growth, options, target)?;
+    let growth = Growth {
+        steps: zoomed.steps,
+        ..*growth
     };
-    let size = canvas.size();
-    let window = ZoomWindow {
-        // A window that is turned lies in the square around its circle.
-        size: match target.turn == 0.0 {
-            true => size,
-            false => around(size),
-        },
-        scale: canvas.scale(),
-        margin: stroke + 2.0,
-        relative_stroke,
-        areas: style.fill.is_some() && starts_rings(graph) && graph.keeps_lines(),
-        shortest: options.detail.map_or(1.0, |detail| detail.pixels),
-        factor: target.factor.clone(),
-        at: target.at.clone(),
-    };
-    let steps = options.detail.filter(|detail| !detail.decides_steps);
-    let to_limit = steps.is_none();
-    let zoom_growth = zoom::ZoomOptions {
-        seed: growth.seed,
-        steps: steps.map(|_| growth.steps),
-        cancel: growth.cancel,
-    };
-    let found = zoom::zoom(model, graph, &zoom_growth, &window)?;
-    let steps = match (steps, graph.depth()) {
-        (Some(_), _) => growth.steps,
-        (None, Some(depth)) => depth,
-        (None, None) => found.deepest.saturating_add(growth.steps),
-    };
-    let [width, height] = size.map(f64::from);
-    let options = Options {
-        view: View {
-            window: Some([-width / 2.0, -height / 2.0, width, height]),
-            margin: 0.0,
-        },
-        size: Size::Exactly(size[0], size[1]),
-        detail: Some(options.detail.unwrap_or(Detail {
-            pixels: 1.0,
-            decides_steps: true,
-        })),
-        ..options.clone()
-    };
-    let growth = Growth { steps, ..*growth };
-    let turned = found.graph.turned(target.turn);
-    let mut picture = super::write(&turned, &growth, &options, out)?;
-    picture.window = shown(&canvas, target);
-    if let (Some(empty), true, Some(middle)) = (&mut picture.empty, to_limit, target.at.near()) {
-        let half = f64::from(canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
+    let mut picture = super::write(&zoomed.graph, &growth, &zoomed.options, out)?;
+    picture.window = shown(&zoomed.canvas, target);
+    if let (Some(empty), true, Some(middle)) =
+        (&mut picture.empty, zoomed.to_limit, target.at.near())
+    {
+        let half = f64::from(zoomed.canvas.size().into_iter().fold(u32::MAX, u32::min)) / 2.0;
         empty.nearest = zoom::distance(graph, middle).map(|distance| NearestPoint {
             distance,
-            factor: half / (distance * canvas.scale()),
+            factor: half / (distance * zoomed.canvas.scale()),
         });
     }
     Ok(picture)
+}
+
+/// Draws the picture of [`write_zoomed`] as pixels in memory.
+///
+/// # Errors
+///
+/// As for [`write_zoomed`].
+pub fn pixels_zoomed(
+    model: &Model,
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    target: &ZoomTarget,
+) -> Result<Pixels, RenderError> {
+    let zoomed = Zoomed::find(model, graph, growth, options, target)?;
+    let growth = Growth {
+        steps: zoomed.steps,
+        ..*growth
+    };
+    super::pixels(&zoomed.graph, &growth, &zoomed.options)
+}
+
+/// The part of a set about a point, as a set of its own in pixels.
+struct Zoomed {
+    graph: Graph,
+    steps: u32,
+    options: Options,
+    /// Canvas of the whole set.
+    canvas: Canvas,
+    /// Whether elements are replaced without a limit of steps.
+    to_limit: bool,
+}
+
+impl Zoomed {
+    fn find(
+        model: &Model,
+        graph: &Graph,
+        growth: &Growth<'_>,
+        options: &Options,
+        target: &ZoomTarget,
+    ) -> Result<Self, RenderError> {
+        let style = &options.style;
+        zoom::check(model, graph)?;
+        check(style)?;
+        let canvas = whole(graph, growth, options)?;
+        let (stroke, relative_stroke) = match style.width {
+            Width::Pixels(width) => (width * overhang(style), 0.0),
+            Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
+        };
+        let size = canvas.size();
+        let window = ZoomWindow {
+            // A window that is turned lies in the square around its circle.
+            size: match target.turn == 0.0 {
+                true => size,
+                false => around(size),
+            },
+            scale: canvas.scale(),
+            margin: stroke + 2.0,
+            relative_stroke,
+            areas: style.fill.is_some() && starts_rings(graph) && graph.keeps_lines(),
+            shortest: options.detail.map_or(1.0, |detail| detail.pixels),
+            factor: target.factor.clone(),
+            at: target.at.clone(),
+        };
+        let steps = options.detail.filter(|detail| !detail.decides_steps);
+        let to_limit = steps.is_none();
+        let zoom_growth = zoom::ZoomOptions {
+            seed: growth.seed,
+            steps: steps.map(|_| growth.steps),
+            cancel: growth.cancel,
+        };
+        let found = zoom::zoom(model, graph, &zoom_growth, &window)?;
+        let steps = match (steps, graph.depth()) {
+            (Some(_), _) => growth.steps,
+            (None, Some(depth)) => depth,
+            (None, None) => found.deepest.saturating_add(growth.steps),
+        };
+        let [width, height] = size.map(f64::from);
+        let options = Options {
+            view: View {
+                window: Some([-width / 2.0, -height / 2.0, width, height]),
+                margin: 0.0,
+            },
+            size: Size::Exactly(size[0], size[1]),
+            detail: Some(options.detail.unwrap_or(Detail {
+                pixels: 1.0,
+                decides_steps: true,
+            })),
+            ..options.clone()
+        };
+        Ok(Self {
+            graph: found.graph.turned(target.turn),
+            steps,
+            options,
+            canvas,
+            to_limit,
+        })
+    }
 }
 
 /// Returns the square around the circle around a picture, in pixels.

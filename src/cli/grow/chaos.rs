@@ -13,7 +13,9 @@ use std::path::Path;
 
 use anyhow::anyhow;
 
-use crate::chaos::{ClassBy, Game, RandomPoint, RandomPoints, Start, Walked, WeightedMaps};
+use crate::chaos::{
+    ClassBy, Game, RandomPoint, RandomPoints, Start, Walked, WeightedMaps, points_of_text,
+};
 use crate::export;
 use crate::geometry::{DVec3, Homothety};
 use crate::grow::Progress;
@@ -39,7 +41,7 @@ pub(super) struct ChaosArguments {
     #[arg(long, value_parser = picture::named::<Method>(), default_value = "deterministic")]
     method: Method,
     /// Number of points to draw: 500k, 10M, 2G [default: 10M; 100k for tables]
-    #[arg(long, value_name = "N", value_parser = points, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = points_of_text, allow_negative_numbers = true)]
     points: Option<u64>,
     /// Mapping of the number of hits to a tone [default: log]
     #[arg(long, value_parser = picture::named::<Tone>())]
@@ -64,33 +66,6 @@ impl Named for Method {
         ("deterministic", Self::Deterministic),
         ("chaos", Self::Chaos),
     ];
-}
-
-/// Largest number of points that can be requested.
-const MAX_POINTS: u64 = 1_000_000_000_000;
-
-/// Parses a number of points with an optional suffix k, M or G.
-fn points(text: &str) -> Result<u64, String> {
-    let (number, factor) = match text.char_indices().next_back() {
-        Some((end, 'k')) => (&text[..end], 1e3),
-        Some((end, 'M')) => (&text[..end], 1e6),
-        Some((end, 'G')) => (&text[..end], 1e9),
-        _ => (text, 1.0),
-    };
-    let points = number.parse::<f64>().map(|number| number * factor);
-    match points {
-        #[expect(clippy::cast_precision_loss, reason = "the limit is exact")]
-        Ok(points) if points > MAX_POINTS as f64 && points.is_finite() => {
-            Err("too many points: the limit is 1000G".into())
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number within the limit"
-        )]
-        Ok(points) if points >= 1.0 && points.fract() == 0.0 => Ok(points as u64),
-        _ => Err("a number of points is a whole number from 1, such as 500k, 10M or 2G".into()),
-    }
 }
 
 /// Start of walks: a point of the plane, which in space lies in z = 0, or of space.
@@ -350,28 +325,5 @@ impl<'a, M: Walked> Iteration<'a, M> {
     /// Returns the failure for which `path` has not been written.
     fn explain(&self, error: RenderError, path: &Path) -> Failure {
         (self.arguments.growth).explain(error, self.loaded, path)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{MAX_POINTS, points};
-
-    #[test]
-    fn points_are_counted_in_thousands_millions_and_milliards() {
-        for (text, number) in [
-            ("1", 1),
-            ("500k", 500_000),
-            ("2.5M", 2_500_000),
-            ("1e7", 10_000_000),
-            ("1000G", MAX_POINTS),
-        ] {
-            assert_eq!(points(text), Ok(number), "{text}");
-        }
-        for text in [
-            "", "0", "-1", "0.5", "k", "M", "10m", "NaN", "inf", "1001G", "1é",
-        ] {
-            assert!(points(text).is_err(), "{text}");
-        }
     }
 }

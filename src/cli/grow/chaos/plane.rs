@@ -6,14 +6,13 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use crate::chaos::{GameError, HistogramWindow, RandomPoints, Start, play};
+use crate::chaos::{GameError, HistogramWindow, play};
 use crate::export;
-use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::graph::Graph;
+use crate::geometry::DAffine2;
 use crate::grow::Progress;
-use crate::ifs::{System, Verdict};
+use crate::ifs::System;
 use crate::model::Model;
-use crate::render::{Canvas, Density, RenderError, Shades, Size, write_density};
+use crate::render::{Canvas, Density, RenderError, Shades, Size, density_canvas, write_density};
 use crate::style::{ColorBy, Colour, Style};
 
 use super::super::super::Failure;
@@ -21,18 +20,6 @@ use super::super::super::labels::labels;
 use super::super::super::rule::Loaded;
 use super::super::Arguments;
 use super::Iteration;
-
-/// Number of points from which the extent of walks is estimated.
-const PILOT: usize = 20_000;
-
-/// Largest factor of products that keep sizes, up to rounding.
-const GROWS: f64 = 1.0 + 1e-9;
-
-/// Share of points, as a divisor, that lie outside each side of the window where some are far from all others.
-const FAR: usize = 200;
-
-/// Least margin in pixels, which keeps points on the edge of the box inside the picture.
-const EDGE: f64 = 1.0 / 32.0;
 
 /// Random iteration in the plane.
 pub(in crate::cli::grow) struct PlaneGame<'a> {
@@ -87,24 +74,8 @@ impl<'a> PlaneGame<'a> {
         } = &self.iteration;
         let view = arguments.picture.view(self.source.metadata());
         let view = view.within(place);
-        if let Some(window) = view.window {
-            return Ok(Canvas::of_window(window, &view, size)?);
-        }
-        let limit = Graph::of_system(&self.source).limit_bounds();
-        let mut bounds = limit.unwrap_or(Bounds::EMPTY);
         let Iteration { system, start, .. } = &self.iteration;
-        if limit.is_none() || *start != Start::Attractor {
-            let points = RandomPoints::new(system, start, 0).take(PILOT);
-            let points: Vec<DVec2> = points.map(|point| point.place).collect();
-            // If products of maps grow, few points are far from all others.
-            let contraction = self.source.contraction();
-            let grows = contraction.verdict == Verdict::Diverges && contraction.lower > GROWS;
-            let cut = if grows { points.len() / FAR } else { 0 };
-            for end in middle(&points, cut) {
-                bounds.add(end);
-            }
-        }
-        Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+        density_canvas(&self.source, system, start, &view, size)
     }
 
     /// Plays the game, draws it and returns a summary.
@@ -200,16 +171,4 @@ impl<'a> PlaneGame<'a> {
             _ => Shades::Ink(ink.unwrap_or(Colour::BLACK)),
         }
     }
-}
-
-/// Returns the corners of the bounding box of points without a number of them at each end of both axes.
-fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
-    let ends = |coordinate: fn(&DVec2) -> f64| {
-        let mut all: Vec<f64> = points.iter().map(coordinate).collect();
-        all.sort_by(f64::total_cmp);
-        let kept = &all[cut..all.len() - cut];
-        [kept[0], kept[kept.len() - 1]]
-    };
-    let ([left, right], [low, high]) = (ends(|point| point.x), ends(|point| point.y));
-    [DVec2::new(left, low), DVec2::new(right, high)]
 }

@@ -1,0 +1,130 @@
+"""Measures the package, beside numba where it is installed, and prints a table.
+
+    pip install . numba && python benches/measure.py
+
+All times are of one core, the best of some rounds. The package is to be built in release mode, as `pip install` does.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import kfrac
+from kfrac.data import Batches, Dataset
+
+SPEC = """
+kind: dataset
+categories: {systems: {random: {maps: [2, 7], sigma: anderson}, count: 300}}
+picture: {size: SIZE, points: POINTS, mode: MODE}
+"""
+
+
+def dataset(size: int = 256, points: str = "100k", mode: str = "hits") -> Dataset:
+    return Dataset.parse(SPEC.replace("SIZE", str(size)).replace("POINTS", points).replace("MODE", mode))
+
+
+def best(work: Callable[[], object], rounds: int = 3) -> float:
+    """Returns the shortest time of a call, in seconds."""
+    times: list[float] = []
+    for _ in range(rounds):
+        start = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def row(name: str, value: str) -> None:
+    print(f"{name:<58} {value}")
+    sys.stdout.flush()
+
+
+def pictures() -> None:
+    made = dataset()
+    made.render(0, 300, threads=1)  # Draws the systems.
+    arrays = best(lambda: made.render(0, 300, threads=1)) / 300
+    row("arrays a second (256 x 256, 100 k points)", f"{1 / arrays:,.0f}  ({arrays * 1e3:.3f} ms)")
+    png = best(lambda: [made.png(number) for number in range(300)]) / 300
+    row("PNGs a second", f"{1 / png:,.0f}  ({png * 1e3:.3f} ms, {len(made.png(0)):,} bytes the first)")
+    patches = dataset(362, "200k", "patch3")
+    patches.render(0, 100, threads=1)
+    million = best(lambda: [patches.png(number) for number in range(100)]) / 100 * 1e6 / 3600
+    row("FractalDB-1k: 1 M PNGs, 362 x 362, 200 k points, patches", f"{million:.2f} core-hours")
+    try:
+        numba(made, arrays)
+    except ImportError:
+        row("beside numba", "numba is not installed")
+
+
+def numba(made: Dataset, arrays: float) -> None:
+    """Draws the same systems by a loop that numba compiles."""
+    import numba as compiler  # pyright: ignore[reportMissingImports]
+
+    @compiler.njit(fastmath=False)  # pyright: ignore
+    def drawn(maps: Any, weights: Any, points: int, size: int, seed: int) -> Any:
+        np.random.seed(seed)
+        below = np.cumsum(weights) / weights.sum()
+        places = np.empty((points, 2))
+        x, y = 0.0, 0.0
+        for step in range(points + 20):
+            chosen = np.searchsorted(below, np.random.rand())
+            a, b, c, d, e, f = maps[chosen]
+            x, y = a * x + b * y + e, c * x + d * y + f
+            if step >= 20:
+                places[step - 20, 0] = x
+                places[step - 20, 1] = y
+        counts = np.zeros((size, size), dtype=np.uint32)
+        low = np.array([places[:, 0].min(), places[:, 1].min()])
+        high = np.array([places[:, 0].max(), places[:, 1].max()])
+        scale = (size - 1) / (high - low)
+        for point in range(points):
+            column = int((places[point, 0] - low[0]) * scale[0])
+            line = int((places[point, 1] - low[1]) * scale[1])
+            counts[size - 1 - line, column] += 1
+        return counts
+
+    systems = [np.array(made.label(number)["maps"]) for number in range(100)]
+    run = lambda: [drawn(maps[:, :6], maps[:, 6], 100_000, 256, 1) for maps in systems]  # noqa: E731
+    run()
+    one = best(run) / 100
+    row("a loop by numba: arrays a second", f"{1 / one:,.0f}  ({one * 1e3:.2f} ms: {one / arrays:.1f} times as long)")
+
+
+def elements() -> None:
+    dragon = kfrac.load("dragon")
+    for steps, threads in [(20, 1), (23, 1), (23, 2)]:
+        taken = best(lambda: dragon.elements(steps, threads=threads))
+        row(f"elements of dragon({steps}) to memory, {threads} thread(s)", f"{2**steps / taken / 1e6:.1f} M/s ({taken:.3f} s)")
+    tree = kfrac.load("pythagoras")
+    calls = 2000
+    call = best(lambda: [tree.with_(angle=30) for _ in range(calls)]) / calls
+    row("a call of with_", f"{call * 1e6:.1f} µs")
+    call = best(lambda: [tree.forecast(3) for _ in range(calls)]) / calls
+    row("a call of forecast", f"{call * 1e6:.1f} µs")
+    call = best(lambda: [tree.title for _ in range(calls)]) / calls
+    row("a call of title", f"{call * 1e6:.2f} µs")
+
+
+def workers() -> None:
+    try:
+        from torch.utils.data import DataLoader  # pyright: ignore
+    except ImportError:
+        row("torch's DataLoader", "torch is not installed")
+        return
+    batches = Batches(dataset(), 50)
+    loaders: dict[int, Any] = {
+        workers: DataLoader(batches, batch_size=None, num_workers=workers)  # pyright: ignore
+        for workers in (0, 2)
+    }
+    times = {workers: best(lambda: [None for _ in loader]) for workers, loader in loaders.items()}
+    row("torch's DataLoader with 2 workers beside none", f"{times[0] / times[2]:.2f} times as fast")
+
+
+if __name__ == "__main__":
+    pictures()
+    elements()
+    workers()

@@ -1,0 +1,192 @@
+//! Data sets that the command writes: parts, order, resumption, checks.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read as _;
+use std::path::Path;
+
+use kfrac::dataset::Dataset;
+use serde_json::Value;
+
+use crate::common::said;
+
+const SPEC: &str = "\
+kind: dataset
+categories: {systems: [{random: {maps: [2, 4]}, count: 3}, {rule: koch}]}
+instances: {count: 5, weights: jitter(0.1), flips: true}
+picture: {size: 24, points: 2k}
+";
+
+/// Runs the command in a folder that holds the data set.
+fn run(folder: &Path, arguments: &[&str]) -> String {
+    fs::write(folder.join("set.yaml"), SPEC).unwrap();
+    let (status, said) = said(folder, &[&["dataset", "set.yaml"], arguments].concat());
+    assert_eq!(status, Some(0), "{said}");
+    said
+}
+
+/// Returns the files below a folder, with their bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(folder).unwrap().display().to_string();
+            found.insert(name, fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = files(folder);
+    found.retain(|name, _| Path::new(name).extension().is_some_and(|it| it == "png"));
+    found
+}
+
+#[test]
+fn parts_in_any_order_make_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = run(folder.path(), &["-o", "whole", "--threads", "3"]);
+    assert!(said.contains("20 pictures of 4 categories"), "{said}");
+    for part in ["3/3", "1/3", "2/3"] {
+        run(
+            folder.path(),
+            &["-o", "parts", "--shard", part, "--threads", "1"],
+        );
+    }
+    let whole = pictures(&folder.path().join("whole"));
+    assert_eq!(whole.len(), 20);
+    assert!(whole == pictures(&folder.path().join("parts")));
+    let set = Dataset::parse(SPEC).unwrap();
+    let fourth = &whole["00003-koch/000002.png"];
+    assert!(*fourth == set.example(17).unwrap().picture.into_png());
+
+    let labels = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let parts = [1, 2, 3].map(|part| labels(&format!("parts/labels-{part}-of-3.jsonl")));
+    assert_eq!(parts.concat(), labels("whole/labels.jsonl"));
+    let manifest: Value = serde_json::from_str(&labels("whole/manifest.json")).unwrap();
+    assert_eq!(manifest["pictures"], 20);
+    assert_eq!(manifest["spec"], SPEC);
+    assert_eq!(manifest["categories"][3]["closed_form"], "log(4)/log(3)");
+    assert_eq!(
+        manifest["categories"][0]["maps"][0]
+            .as_array()
+            .unwrap()
+            .len(),
+        7
+    );
+}
+
+#[test]
+fn archives_are_those_of_the_whole_in_any_part() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["-o", "whole/%04d.tar", "--archive", "6"]);
+    for part in ["2/2", "1/2"] {
+        run(
+            folder.path(),
+            &["-o", "parts/%04d.tar", "--archive", "6", "--shard", part],
+        );
+    }
+    let [whole, parts] = ["whole", "parts"].map(|name| {
+        let mut found = files(&folder.path().join(name));
+        found.retain(|name, _| name.ends_with(".tar"));
+        found
+    });
+    assert_eq!(
+        whole.keys().collect::<Vec<_>>(),
+        ["0000.tar", "0001.tar", "0002.tar", "0003.tar"]
+    );
+    assert!(whole == parts);
+    let set = Dataset::parse(SPEC).unwrap();
+    let mut archive = tar::Archive::new(whole["0001.tar"].as_slice());
+    let mut names = Vec::new();
+    for entry in archive.entries().unwrap() {
+        let mut entry = entry.unwrap();
+        let name = entry.path().unwrap().display().to_string();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).unwrap();
+        match name.as_str() {
+            "00001_000002.png" => assert!(bytes == set.example(7).unwrap().picture.into_png()),
+            "00001_000002.cls" => assert_eq!(bytes, b"1"),
+            "00001_000002.json" => {
+                let label: Value = serde_json::from_slice(&bytes).unwrap();
+                assert_eq!(
+                    (&label["category"], &label["instance"]),
+                    (&1.into(), &2.into())
+                );
+            }
+            _ => {}
+        }
+        names.push(name);
+    }
+    assert_eq!(names.len(), 18);
+    assert_eq!(
+        names[..3],
+        ["00001_000001.png", "00001_000001.cls", "00001_000001.json"]
+    );
+    run(
+        folder.path(),
+        &["-o", "whole/%04d.tar", "--archive", "6", "--check"],
+    );
+}
+
+#[test]
+fn what_is_there_is_kept_and_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["-o", "out"]);
+    let out = folder.path().join("out");
+    let before = files(&out);
+    fs::remove_file(out.join("00001/000003.png")).unwrap();
+    fs::remove_file(out.join("manifest.json")).unwrap();
+    run(folder.path(), &["-o", "out"]);
+    assert!(files(&out) == before);
+    assert!(run(folder.path(), &["-o", "out", "--check"]).contains("as they would be drawn"));
+
+    fs::write(out.join("00002/000001.png"), "no picture").unwrap();
+    fs::remove_file(out.join("00000/000004.png")).unwrap();
+    let arguments = ["dataset", "set.yaml", "-o", "out", "--check"];
+    let (status, said) = said(folder.path(), &arguments);
+    assert_eq!(status, Some(1));
+    assert!(said.contains("000004.png is missing, or differs"), "{said}");
+    assert!(said.contains("000001.png is missing, or differs"), "{said}");
+}
+
+#[test]
+fn another_data_set_is_not_mixed_in() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["-o", "out"]);
+    fs::write(folder.path().join("set.yaml"), SPEC.replace("24", "25")).unwrap();
+    let wrong: [(&[&str], i32, &str); 5] = [
+        (&["-o", "out"], 1, "holds another data set"),
+        (&["-o", "nothing", "--check"], 1, "holds no data set"),
+        (&["-o", "out/archive.tar"], 2, "%06d.tar"),
+        (&["-o", "new", "--shard", "4/3"], 2, "K from 1 to N"),
+        (&["-o", "new", "--archive", "0"], 2, "from 1 to"),
+    ];
+    for (arguments, expected, message) in wrong {
+        let (status, said) = said(
+            folder.path(),
+            &[&["dataset", "set.yaml"], arguments].concat(),
+        );
+        assert_eq!(status, Some(expected), "{said}");
+        assert!(said.contains(message), "{said}");
+    }
+    fs::write(
+        folder.path().join("set.yaml"),
+        "kind: dataset\ncategories: {systems: {rule: kock}}\n",
+    )
+    .unwrap();
+    let (status, said) = said(folder.path(), &["dataset", "set.yaml", "-o", "new"]);
+    assert_eq!(status, Some(1));
+    assert!(
+        said.contains("set.yaml:2:30") && said.contains("did you mean 'koch'?"),
+        "{said}"
+    );
+    assert!(!folder.path().join("new").exists());
+}
