@@ -142,7 +142,7 @@ pub(super) fn command(
             let set = word.strip_prefix("--set=").and_then(|set| set.split('=').next());
             let is_set = set.is_some_and(|name| settings.iter().any(|own| own == name));
             let is_end = word.starts_with("--steps=") || word.starts_with("--detail=");
-            !is_set && !(is_end && ends) && !word.starts_with("--format=")
+            !(is_set || is_end && ends || word.starts_with("--format="))
         };
         // The first word after the subcommand is the rule.
         let recorded = words.skip(1).filter(is_kept).map(OsString::from);

@@ -42,7 +42,6 @@ pub enum CompileError {
 impl CompileError {
     /// Returns the deepest step whose word is short enough, where that of a later step is too long or takes too much
     /// work.
-    #[cfg(feature = "cli")]
     pub(crate) fn deepest(&self) -> Option<u32> {
         match self {
             Self::Word(RewriteError::TooLong { step, .. } | RewriteError::TooMuchWork { step }) => {
