@@ -1,7 +1,7 @@
 //! Linear maps of the plane and of space: what is common to both.
 
 use std::fmt::Debug;
-use std::ops::Mul;
+use std::ops::{Mul, RangeInclusive};
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
@@ -45,6 +45,9 @@ pub trait Linear:
     fn singular_values(&self) -> [f64; 3];
 }
 
+/// Determinants in whose computation nothing is below or beyond the range of doubles.
+const EXACT: RangeInclusive<f64> = 1e-280..=1e280;
+
 impl Linear for DMat2 {
     type Point = DVec2;
 
@@ -55,6 +58,10 @@ impl Linear for DMat2 {
     }
 
     fn mean_ratio(&self) -> f64 {
+        let area = self.determinant().abs();
+        if EXACT.contains(&area) {
+            return area.sqrt();
+        }
         let largest = f64::max(
             self.x_axis.abs().max_element(),
             self.y_axis.abs().max_element(),
@@ -108,6 +115,10 @@ impl Linear for DMat3 {
     }
 
     fn mean_ratio(&self) -> f64 {
+        let volume = self.determinant().abs();
+        if EXACT.contains(&volume) {
+            return libm::cbrt(volume);
+        }
         let columns = [self.x_axis, self.y_axis, self.z_axis];
         let largest = columns.map(|column| column.abs().max_element());
         let largest = largest.into_iter().fold(0.0, f64::max);
