@@ -36,8 +36,39 @@ const MAX_RASTER: usize = 1 << 26;
 /// Number of copies in a box from which equal ones are removed.
 const MANY: usize = 8;
 
-/// A box, as the copies near it, on a scale on which the box is the unit box.
-type Cell<M> = Vec<LimitCopy<M>>;
+/// Boxes, each as the copies near it, on a scale on which the box is the unit box.
+struct Cells<M: Space> {
+    copies: Vec<LimitCopy<M>>,
+    /// Ends of the boxes' copies, which follow each other.
+    ends: Vec<usize>,
+}
+
+impl<M: Space> Cells<M> {
+    const fn new() -> Self {
+        Self {
+            copies: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn push(&mut self, cell: &[LimitCopy<M>]) {
+        self.copies.extend_from_slice(cell);
+        self.ends.push(self.copies.len());
+    }
+
+    fn get(&self, number: usize) -> &[LimitCopy<M>] {
+        let start = number.checked_sub(1).map_or(0, |last| self.ends[last]);
+        &self.copies[start..self.ends[number]]
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &[LimitCopy<M>]> {
+        (0..self.len()).map(|number| self.get(number))
+    }
+}
 
 /// Number of boxes, and whether it is estimated from a sample.
 type Count = (f64, bool);
@@ -45,7 +76,11 @@ type Count = (f64, bool);
 /// The boxes of the present size that are refined.
 struct Descent<'s, M: Space> {
     set: &'s LimitSet<M>,
-    cells: Vec<Cell<M>>,
+    cells: Cells<M>,
+    /// Boxes of the grid that was entered last, row by row from the lower left, with the copies that come near to them;
+    /// and copies that are to be sorted into such boxes.
+    entered: Vec<Vec<LimitCopy<M>>>,
+    stack: Vec<LimitCopy<M>>,
     /// Number of boxes that each box represents.
     weight: f64,
     random: Pcg,
@@ -58,12 +93,15 @@ impl<'s, M: Space> Descent<'s, M> {
     fn new(set: &'s LimitSet<M>, start: Vec<LimitCopy<M>>, boxes: Counts, seed: usize) -> Self {
         let mut descent = Self {
             set,
-            cells: Vec::new(),
+            cells: Cells::new(),
+            entered: Vec::new(),
+            stack: start,
             weight: 1.0,
             random: Pcg::new(seed as u64, 0xcafe_f00d_d15e_a5e5),
             looked_at: 0,
         };
-        descent.cells = descent.divided(start, boxes);
+        descent.enter(boxes);
+        descent.keep_entered();
         descent
     }
 
@@ -74,8 +112,9 @@ impl<'s, M: Space> Descent<'s, M> {
         }
         let mut left = MAX_COPIES;
         let mut met = 0usize;
-        for cell in &self.cells {
-            met += usize::from(self.set.meets(cell, &mut left)?);
+        let mut stack = Vec::new();
+        for cell in self.cells.iter() {
+            met += usize::from(self.set.meets(cell, &mut stack, &mut left)?);
         }
         (met > 0).then_some((real(met) * self.weight, self.weight > 1.0))
     }
@@ -84,25 +123,32 @@ impl<'s, M: Space> Descent<'s, M> {
     fn go_down(&mut self, base: usize) {
         self.choose();
         self.looked_at = 0;
-        let scale = real(base);
-        let layer = self.set.to_layer(base);
-        let mut cells = Vec::new();
-        for mut cell in std::mem::take(&mut self.cells) {
-            for copy in &mut cell {
-                copy.grow(scale);
-                *copy = copy.moved(layer);
-            }
-            cells.append(&mut self.divided(cell, self.set.parts(base)));
+        let cells = std::mem::replace(&mut self.cells, Cells::new());
+        for cell in cells.iter() {
+            self.magnify(cell, base);
+            self.keep_entered();
             if self.looked_at > MAX_COPIES {
                 break;
             }
         }
-        self.cells = cells;
+    }
+
+    /// Divides a box into those that are smaller by the factor `base`: [`entered`](Self::entered).
+    fn magnify(&mut self, cell: &[LimitCopy<M>], base: usize) {
+        let (scale, layer) = (real(base), self.set.to_layer(base));
+        let larger = cell.iter().map(|&copy| {
+            let mut copy = copy;
+            copy.grow(scale);
+            copy.moved(layer)
+        });
+        self.stack.clear();
+        self.stack.extend(larger);
+        self.enter(self.set.parts(base));
     }
 
     /// Keeps one box of each run of neighbours, if there are too many.
     fn choose(&mut self) {
-        let copies: usize = self.cells.iter().map(Vec::len).sum();
+        let copies = self.cells.copies.len();
         let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1))
             .max(FOLLOWED[M::Point::DIMENSION - 2]);
         if self.cells.len() <= most {
@@ -110,24 +156,27 @@ impl<'s, M: Space> Descent<'s, M> {
         }
         let run = real(self.cells.len()) / real(most);
         self.weight *= run;
-        let places = (0..most).map(|number| whole((real(number) + self.random.unit()) * run));
-        let places: Vec<usize> = places.collect();
-        // A box that two runs share may be chosen twice.
-        let chosen = places.iter().map(|&place| self.cells[place].clone());
-        self.cells = chosen.collect();
+        let mut chosen = Cells::new();
+        for number in 0..most {
+            // A box that two runs share may be chosen twice.
+            let place = whole((real(number) + self.random.unit()) * run);
+            chosen.push(self.cells.get(place));
+        }
+        self.cells = chosen;
     }
 
-    /// Returns the boxes of a grid that copies come near to, row by row from the lower left.
-    fn divided(&mut self, copies: Vec<LimitCopy<M>>, boxes: Counts) -> Vec<Cell<M>> {
-        let mut cells = self.entered(copies, boxes);
-        cells.retain(|cell| !cell.is_empty());
-        cells
+    /// Keeps the boxes that were entered last and that copies come near to.
+    fn keep_entered(&mut self) {
+        let met = self.entered.iter().filter(|cell| !cell.is_empty());
+        met.for_each(|cell| self.cells.push(cell));
     }
 
-    /// Returns all boxes of a grid, row by row from the lower left, with the copies that come near to them.
-    fn entered(&mut self, mut copies: Vec<LimitCopy<M>>, boxes: Counts) -> Vec<Cell<M>> {
-        let mut cells = vec![Cell::new(); boxes.iter().product()];
-        while let Some(copy) = copies.pop() {
+    /// Sorts the copies of the [`stack`](Self::stack) into the boxes of a grid, [`entered`](Self::entered).
+    fn enter(&mut self, boxes: Counts) {
+        let Self { entered, stack, .. } = self;
+        entered.iter_mut().for_each(Vec::clear);
+        entered.resize_with(boxes.iter().product(), Vec::new);
+        while let Some(copy) = stack.pop() {
             let part = &self.set.objects[copy.object];
             let middle = copy.map.apply(part.middle);
             let radius = part.reach * copy.scale;
@@ -143,7 +192,7 @@ impl<'s, M: Space> Descent<'s, M> {
             if radius > LARGEST {
                 if !columns.is_empty() && !rows.is_empty() && !layers.is_empty() {
                     let children = part.children.iter().rev();
-                    copies.extend(children.map(|inner| copy.compose(inner)));
+                    stack.extend(children.map(|inner| copy.compose(inner)));
                 }
                 continue;
             }
@@ -153,16 +202,15 @@ impl<'s, M: Space> Descent<'s, M> {
                         let corner = M::Point::of_coordinates([column, row, layer].map(real));
                         if from_box(middle - corner) <= radius * radius {
                             let number = (layer * boxes[1] + row) * boxes[0] + column;
-                            cells[number].push(copy.moved(-corner));
+                            entered[number].push(copy.moved(-corner));
                         }
                     }
                 }
             }
         }
-        for cell in cells.iter_mut().filter(|cell| cell.len() >= MANY) {
+        for cell in entered.iter_mut().filter(|cell| cell.len() >= MANY) {
             merge(cell, |copy| copy, |_, _| {});
         }
-        cells
     }
 }
 
@@ -246,28 +294,21 @@ impl<M: Space> LimitSet<M> {
         let mut bits = Bits::new(side, side);
         let mut left = MAX_RASTER;
         let mut descent = Descent::new(self, start, boxes, 0);
-        let mut open: Vec<_> = descent
-            .cells
-            .drain(..)
-            .map(|cell| (cell, [0; 2], side))
-            .collect();
-        while let Some((mut cell, [column, row], side)) = open.pop() {
+        let start = descent.cells.iter();
+        let mut open: Vec<_> = start.map(|cell| (cell.to_vec(), [0; 2], side)).collect();
+        let mut stack = Vec::new();
+        while let Some((cell, [column, row], side)) = open.pop() {
             left = left.checked_sub(cell.len())?;
             if side == 1 {
-                if self.meets(&cell, &mut left)? {
+                if self.meets(&cell, &mut stack, &mut left)? {
                     bits.set(column, row);
                 }
                 continue;
             }
-            let layer = self.to_layer(base);
-            for copy in &mut cell {
-                copy.grow(real(base));
-                *copy = copy.moved(layer);
-            }
             descent.looked_at = 0;
-            let parts = descent.entered(cell, self.parts(base));
+            descent.magnify(&cell, base);
             let side = side / base;
-            let parts = parts.into_iter().enumerate();
+            let parts = std::mem::take(&mut descent.entered).into_iter().enumerate();
             let parts = parts.filter(|(_, part)| !part.is_empty());
             open.extend(parts.map(|(number, part)| {
                 let corner = [column + number % base * side, row + number / base * side];
@@ -278,8 +319,13 @@ impl<M: Space> LimitSet<M> {
     }
 
     /// Returns `true` if the unit box holds a point of the set; `copies` are those near it. Returns `None`
-    /// where more than `left` copies would have to be examined.
-    fn meets(&self, copies: &[LimitCopy<M>], left: &mut usize) -> Option<bool> {
+    /// where more than `left` copies would have to be examined. The stack is memory that is used again.
+    fn meets(
+        &self,
+        copies: &[LimitCopy<M>],
+        stack: &mut Vec<LimitCopy<M>>,
+        left: &mut usize,
+    ) -> Option<bool> {
         let lies_in = |copy: &LimitCopy<M>| {
             let point = copy.map.apply(self.objects[copy.object].point);
             let mut coordinates = point.coordinates().into_iter();
@@ -288,7 +334,8 @@ impl<M: Space> LimitSet<M> {
         if copies.iter().any(lies_in) {
             return Some(true);
         }
-        let mut stack = copies.to_vec();
+        stack.clear();
+        stack.extend_from_slice(copies);
         while let Some(copy) = stack.pop() {
             *left = left.checked_sub(1)?;
             let part = &self.objects[copy.object];
