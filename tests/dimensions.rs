@@ -145,8 +145,103 @@ fn exact_dimensions_are_those_of_rules() {
         .assert()
         .code(2);
     let messages = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert!(messages.contains("--exact is for rules"), "{messages}");
+}
+
+/// Approximants as they are drawn have the dimension of their limit within three standard errors, where copies do not
+/// overlap and all elements of a step are equally long.
+#[test]
+fn drawn_approximants_have_the_dimension_of_their_limit() {
+    let cases = [
+        ("koch", "7", 4f64.ln() / 3f64.ln()),
+        ("gasket-recursive", "8", 3f64.ln() / 2f64.ln()),
+        ("vicsek", "5", 5f64.ln() / 3f64.ln()),
+        ("hilbert", "7", 2.0),
+        // The island is filled.
+        ("quadric-koch", "4", 2.0),
+        ("terdragon", "10", 2.0),
+        ("sierpinski-arrowhead", "9", 3f64.ln() / 2f64.ln()),
+        ("koch-lsystem", "6", 4f64.ln() / 3f64.ln()),
+    ];
+    for (name, steps, expected) in cases {
+        let counted = &dim(&[name, "--steps", steps, "--orders", "2"])["box_counting"];
+        let [value, error] = ["value", "std_error"].map(|key| counted[key].as_f64().unwrap());
+        assert!(
+            (value - expected).abs() <= 3.0 * error && error < 0.12,
+            "{name}: {value} ± {error}, {expected}"
+        );
+        let set = counted["set"].as_str().unwrap();
+        assert!(
+            set.starts_with(&format!("approximant {steps} as it is drawn, ")),
+            "{set}"
+        );
+    }
+    // Sizes are in the units of the file: a curve three times as large has boxes three times as large.
+    let [one, three] = ["1", "3"].map(|side| {
+        let text = format!(
+            "initiator: [[0, 0], [{side}, 0]]\ngenerator: [[0, 0], [1/3, 0], [1/2, sqrt(3)/6], [2/3, 0], [1, 0]]\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("curve.yaml");
+        std::fs::write(&path, text).unwrap();
+        let counted = dim(&[path.to_str().unwrap(), "--steps", "5"]);
+        counted["box_counting"]["boxes"][0]["size"].as_f64().unwrap()
+    });
+    assert!((three / one - 3.0).abs() < 1e-9, "{one} {three}");
+}
+
+/// A curve with sides drawn at random has the dimension of the Koch curve, whatever the draws (Falconer 1990, example 15.2).
+#[test]
+fn seeds_have_a_mean_and_a_deviation() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("coast.yaml");
+    let text = "initiator: segment\ngenerator:\n  random: {side: \"choice(-1, 1)\"}\n  \
+                elements: [[0, 0], [1/3, 0], [1/2, \"side*sqrt(3)/6\"], [2/3, 0], [1, 0]]\n";
+    std::fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap();
+    let result = dim(&[path, "--steps", "7", "--seeds", "6", "--orders", "2"]);
+    let draws = result["draws"].as_array().unwrap();
+    let values: Vec<f64> = draws
+        .iter()
+        .map(|draw| draw["value"].as_f64().unwrap())
+        .collect();
+    assert_eq!(values.len(), 6);
+    let mean = values.iter().sum::<f64>() / 6.0;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let spread = &result["box_counting"];
+    let number = |key: &str| spread[key].as_f64().unwrap();
+    assert!((number("mean") - mean).abs() < 1e-12);
+    assert!((number("deviation") - (squares / 5.0).sqrt()).abs() < 1e-12);
+    assert!((number("std_error") - (squares / 30.0).sqrt()).abs() < 1e-12);
+    assert!(number("deviation") > 0.0);
+    // One seed on its own is the first of several.
+    let alone = dim(&[path, "--steps", "7", "--seed", "3", "--orders", "2"]);
+    assert_eq!(alone["box_counting"]["value"], draws[3]["value"]);
+    // Nothing is drawn at random.
+    let same = dim(&["koch", "--steps", "4", "--seeds", "2", "--orders", "2"]);
     assert!(
-        messages.contains("--exact computes the dimensions of rules"),
-        "{messages}"
+        same["warnings"]
+            .to_string()
+            .contains("all seeds give the same counts")
     );
+}
+
+#[test]
+fn rules_without_a_limit_set_are_measured_as_they_are_drawn() {
+    let nothing = dim(&["vegetation"]);
+    assert!(nothing["box_counting"]["value"].is_null());
+    assert!(
+        nothing["warnings"]
+            .to_string()
+            .contains("--steps N measures an approximant")
+    );
+    let drawn = dim(&["vegetation", "--steps", "6"]);
+    assert!(drawn["box_counting"]["value"].as_f64().is_some());
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let run = command
+        .args(["dim", "menger", "--steps", "2"])
+        .assert()
+        .code(2);
+    let message = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+    assert!(message.contains("drawings of the plane"), "{message}");
 }

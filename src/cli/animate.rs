@@ -24,6 +24,7 @@ use crate::diagnostic::Source;
 use crate::document::Document;
 use crate::film::Rate;
 
+use super::exchanged::ExchangedComponents;
 use super::family::Assignment;
 #[cfg(feature = "studio")]
 use super::held;
@@ -242,6 +243,7 @@ impl Arguments {
             rule: self.rule.clone(),
             set: Vec::new(),
             omit: Vec::new(),
+            components: ExchangedComponents::default(),
         };
         let mut loaded: Loaded = named.load_from(source, catalogue, self.quiet)?;
         let completed = self.completed(&loaded.document)?;
@@ -259,7 +261,7 @@ impl Arguments {
             let message = "--svg applies to SVG only: write a .svg";
             return Err(Failure::Usage(message.into()));
         }
-        let film = plan::film(arguments, &loaded, half_way, is_vector, catalogue, path)?;
+        let film = plan::film(arguments, &loaded, half_way, catalogue, path)?;
         if !arguments.quiet && !is_vector {
             let note = forecast::note(&film, format)?;
             note.iter().for_each(|note| text::print_message(note));

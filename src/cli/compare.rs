@@ -21,6 +21,7 @@ use crate::measure::{
 use crate::render::{self, Canvas, Size};
 use crate::style::{ColorBy, Style};
 
+use super::exchanged::ExchangedComponents;
 use super::family::{Assignment, assignment};
 use super::info::{Corners, corners};
 use super::labels::labels_of_two;
@@ -263,6 +264,7 @@ impl Arguments {
                 rule: path.clone(),
                 set: Vec::new(),
                 omit: Vec::new(),
+                components: ExchangedComponents::default(),
             };
             // A parameter that neither has is reported for the first.
             let settings = own.chain(&lost).cloned().collect();

@@ -1,7 +1,9 @@
 //! `kfrac dim`: dimensions of a rule, a picture or a table of points, of the plane or of space.
 
+mod drawn;
 mod input;
 mod report;
+mod seeds;
 mod series;
 
 use std::num::NonZero;
@@ -18,10 +20,11 @@ use crate::render::{self, Labels};
 
 pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
+use super::exchanged::ExchangedComponents;
 use super::family::{Assignment, assignment};
 use super::pixels::PixelArguments;
 use super::rule::RuleArguments;
-use super::{Failure, format, growth, help, number, output, space, text};
+use super::{Failure, format, growth, help, number, output, space, steps, text};
 
 /// Measures the dimension of a rule's limit set, a picture or a table of points
 ///
@@ -41,7 +44,7 @@ use super::{Failure, format, growth, help, number, output, space, text};
 /// a system, or else the natural measure, under which the mass of a copy follows from its size and coinciding
 /// copies count once. Exact values are given where the copies are similar and do not overlap; measured values
 /// come from the masses of boxes around points of the set, computed on the graph.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     /// Rule (a file or a name in the library), picture (PNG, JPEG, PBM, PGM, PPM), points (CSV, PLY), or - for any of them on
@@ -54,6 +57,8 @@ pub(super) struct Arguments {
     /// Omits maps of a system, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     omit: Vec<u32>,
+    #[command(flatten)]
+    components: ExchangedComponents,
     /// Number of values of a parameter that is set to a range: --set ratio=0.5..0.7
     ///
     /// For several values of a parameter, only the exact dimensions are listed and plotted.
@@ -62,6 +67,20 @@ pub(super) struct Arguments {
     /// Computes the exact dimensions of a rule alone, and measures nothing
     #[arg(long, conflicts_with_all = ["slice", "plot"])]
     exact: bool,
+    /// Measures an approximant of the plane as it is drawn, with its strokes and fills, instead of the limit set
+    ///
+    /// The boxes are pixels and their multiples. By default, a pixel is as large as half of the fertile elements:
+    /// smaller boxes would measure the elements themselves.
+    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
+    #[arg(conflicts_with_all = ["exact", "slice"])]
+    steps: Option<u32>,
+    /// Long side of the drawing of --steps in pixels [default: from its elements, 64 to 4096]
+    #[arg(long, value_name = "PX", requires = "steps", value_parser = number::whole("a number of pixels", 16..=16384_u32))]
+    size: Option<u32>,
+    /// Number of seeds from --seed on; lists the dimension of every draw, with mean and standard deviation
+    #[arg(long, value_name = "N", value_parser = number::whole("a number of seeds", 2..=1000_u32))]
+    #[arg(conflicts_with_all = ["exact", "slice", "plot"])]
+    seeds: Option<u32>,
     /// Prints the result as JSON, with all counts
     #[arg(long)]
     json: bool,
@@ -111,6 +130,8 @@ Examples:
       Measures the Koch curve
   kfrac dim twindragon-ifs --exact
       Computes the exact dimensions alone, in a moment
+  kfrac dim random-tree --steps 10 --seeds 20
+      Measures a tree as it is drawn after 10 steps, for 20 random draws
   kfrac dim koch --plot koch-dimension.svg
       Also plots the counts, the fit and the local slopes
   kfrac dim cesaro --set angle=60..89 --samples 7
@@ -168,6 +189,10 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         }
         return output::print_as(arguments.json, &series.json(), || series.described());
     }
+    if let Some(count) = arguments.seeds {
+        let draws = seeds::measure(arguments, catalogue, count)?;
+        return output::print_as(arguments.json, &draws.json(), || draws.described());
+    }
     let mut measured = input::measure(arguments, catalogue)?;
     report::warn(&mut measured);
     if let Some((path, format)) = plot {
@@ -205,7 +230,20 @@ impl Arguments {
             rule: self.rule.clone(),
             set: self.set.clone(),
             omit: self.omit.clone(),
+            components: self.components.clone(),
         }
+    }
+
+    /// Returns an option that is given and has a meaning for rules alone.
+    fn of_rules(&self) -> Option<&'static str> {
+        let given = [
+            ("--exact", self.exact),
+            ("--steps", self.steps.is_some()),
+            ("--seeds", self.seeds.is_some()),
+        ];
+        given
+            .into_iter()
+            .find_map(|(option, is_given)| is_given.then_some(option))
     }
 
     fn threads(&self) -> NonZero<usize> {

@@ -11,6 +11,7 @@ mod convert;
 mod count;
 mod dataset;
 mod dim;
+mod exchanged;
 pub(crate) mod family;
 mod fit;
 mod format;
@@ -198,6 +199,15 @@ impl From<Diagnostics> for Failure {
 impl From<Diagnostic> for Failure {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::File(diagnostic.into())
+    }
+}
+
+impl From<crate::Error> for Failure {
+    fn from(error: crate::Error) -> Self {
+        match error {
+            crate::Error::Invalid(diagnostics) => Self::File(diagnostics),
+            error => Self::Input(error.into()),
+        }
     }
 }
 

@@ -19,6 +19,7 @@ use crate::lsystem::RewriteError;
 use crate::model::{DrawnError, DrawnInSpace, MAX_HELD, Model};
 use crate::style::{ColorBy, Named};
 
+use super::exchanged::ExchangedComponents;
 use super::family::{self, Assignment};
 use super::growth::GrowthArguments;
 use super::{Failure, input, number, redrawn, text};
@@ -55,12 +56,15 @@ pub(super) struct RuleArguments {
     /// Omits maps of a system, by their numbers from 1: --omit 2,3
     #[arg(long, value_name = "MAPS", value_delimiter = ',', value_parser = number::whole("a map", 1..=u32::MAX))]
     pub(super) omit: Vec<u32>,
+    #[command(flatten)]
+    pub(super) components: ExchangedComponents,
 }
 
 /// Member of a family, with its settings.
 pub(super) type Member = (Vec<Setting>, Loaded);
 
 /// Rule that has been read and resolved.
+#[derive(Clone)]
 pub(super) struct Loaded {
     /// Name in messages.
     pub(super) name: String,
@@ -97,6 +101,12 @@ impl Loaded {
     /// Sets the seed and the limit of the number of elements.
     pub(super) fn grown(mut self, growth: &GrowthArguments) -> Self {
         self.growth = (growth.seed, growth.given_max_elements());
+        self
+    }
+
+    /// Sets the seed of random draws.
+    pub(super) fn seeded(mut self, seed: u64) -> Self {
+        self.growth.0 = seed;
         self
     }
 
@@ -318,8 +328,19 @@ impl RuleArguments {
 
     /// Finds, reads and resolves the rule; warnings are printed unless `quiet`.
     pub(super) fn load(&self, catalogue: &Catalogue, quiet: bool) -> Result<Loaded, Failure> {
-        let source = open(&self.rule, catalogue)?;
+        let source = self.source(catalogue)?;
         self.load_from(&source, catalogue, quiet)
+    }
+
+    /// Returns the text of the rule, with its components exchanged.
+    fn source(&self, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
+        match self.components.exchanged(&self.rule)? {
+            Some(source) => {
+                input::note(&self.rule);
+                Ok(source)
+            }
+            None => open(&self.rule, catalogue),
+        }
     }
 
     /// Reads and resolves the rule from its text.
@@ -352,7 +373,7 @@ impl RuleArguments {
         if swept.is_empty() {
             return Ok(Vec::new());
         }
-        let document = Arc::new(input::document(&open(&self.rule, catalogue)?, catalogue)?);
+        let document = Arc::new(input::document(&self.source(catalogue)?, catalogue)?);
         let members = swept.into_iter().enumerate().map(|(number, own)| {
             let settings = [fixed.as_slice(), &own].concat();
             let document = Arc::clone(&document);

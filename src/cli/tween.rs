@@ -8,6 +8,7 @@ use crate::style::Named;
 use crate::tween::TweenBy;
 
 use super::Failure;
+use super::exchanged::ExchangedComponents;
 use super::rule::{Loaded, RuleArguments};
 use super::{number, picture};
 
@@ -73,6 +74,7 @@ pub(super) fn load(to: &Path, catalogue: &Catalogue, quiet: bool) -> Result<Load
         rule: to.to_owned(),
         set: Vec::new(),
         omit: Vec::new(),
+        components: ExchangedComponents::default(),
     };
     named.load(catalogue, quiet)
 }

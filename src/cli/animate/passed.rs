@@ -6,10 +6,34 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 24] = [
-    "rule", "set", "steps", "between", "output", "format", "watch", "open", "seed", "threads",
-    "quiet", "zoom", "turn", "from", "depth", "plot", "pens", "mesh", "size", "morph", "disk",
-    "to", "share", "drawn",
+const OTHERS: [&str; 27] = [
+    "rule",
+    "set",
+    "steps",
+    "between",
+    "output",
+    "format",
+    "watch",
+    "open",
+    "seed",
+    "threads",
+    "quiet",
+    "zoom",
+    "turn",
+    "from",
+    "depth",
+    "plot",
+    "pens",
+    "mesh",
+    "size",
+    "morph",
+    "disk",
+    "to",
+    "share",
+    "drawn",
+    "initiator",
+    "generator",
+    "base_element",
 ];
 
 /// Options of `kfrac animate` that change nothing of a film.

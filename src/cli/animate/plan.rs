@@ -137,13 +137,11 @@ pub(super) fn half_way(
     tween::between(loaded, other, 0.5, by.unwrap_or_default())
 }
 
-/// Returns the film of arguments. `half_way` is the rule in the middle of a tween; frames have no paper if the film
-/// `is_vector`.
+/// Returns the film of arguments. `half_way` is the rule in the middle of a tween.
 pub(super) fn film<'a>(
     arguments: &Arguments,
     loaded: &Loaded,
     half_way: Option<Model>,
-    is_vector: bool,
     catalogue: &'a Catalogue,
     path: &Path,
 ) -> Result<Film<'a>, Failure> {
@@ -151,7 +149,7 @@ pub(super) fn film<'a>(
     let timeline = timeline(arguments);
     timeline.check()?;
     let course = Course::of(arguments, loaded)?;
-    let mut common = common(arguments, loaded, !is_vector);
+    let mut common = common(arguments);
     common.extend(half_way.and_then(|model| steps_of(arguments, model)));
     let frame = |number: u32| {
         let moment = timeline.moment(number);
@@ -256,18 +254,10 @@ pub(super) fn timeline(arguments: &Arguments) -> Timeline {
 }
 
 /// Returns the arguments of all frames: the rule, and options that do not change.
-fn common(arguments: &Arguments, loaded: &Loaded, has_paper: bool) -> Vec<String> {
+fn common(arguments: &Arguments) -> Vec<String> {
     let mut common = vec![arguments.rule.display().to_string()];
     common.extend_from_slice(arguments.others.arguments());
     common.extend(["--threads=1", "--output=-"].map(String::from));
-    let style = &loaded.model.metadata().style;
-    if has_paper
-        && !loaded.model.is_in_space()
-        && style.background.is_none()
-        && !arguments.others.gives("background")
-    {
-        common.push("--background=white".into());
-    }
     common
 }
 

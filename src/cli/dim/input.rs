@@ -24,7 +24,7 @@ use super::super::Failure;
 use super::super::input;
 use super::super::pixels::MAX_BYTES;
 use super::super::rule::Loaded;
-use super::{Arguments, Measured};
+use super::{Arguments, Measured, drawn};
 
 /// Limit of the number of points that are measured of a rule that is grown.
 const MAX_POINTS: usize = 1 << 20;
@@ -82,9 +82,12 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     };
     let head = read(&mut input, 1 << 12)?;
     let kind = InputKind::of(path, &head);
-    if arguments.exact && kind != InputKind::Rule {
-        let message = "--exact computes the dimensions of rules: pictures and points are measured";
-        return Err(Failure::Usage(message.into()));
+    if kind != InputKind::Rule
+        && let Some(option) = arguments.of_rules()
+    {
+        let message =
+            format!("{option} is for rules: pictures and points are measured as they are");
+        return Err(Failure::Usage(message));
     }
     let mut whole = Cursor::new(head).chain(input);
     match kind {
@@ -162,16 +165,17 @@ impl InputKind {
     }
 }
 
-fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
-    let loaded = &loaded.listing(MAX_POINTS as u64);
-    let title = loaded.model.metadata().description.title.clone();
+/// Measures a rule: its limit set, or the approximant of `--steps`.
+pub(super) fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
+    let loaded = &loaded.seeded(arguments.seed).listing(MAX_POINTS as u64);
+    if let Some(steps) = arguments.steps {
+        return drawn::measure(arguments, loaded, steps);
+    }
     let measured = Measured {
-        name: loaded.name.clone(),
-        title: title.unwrap_or_else(|| loaded.name.clone()),
         set: "the limit set of the fertile elements".into(),
         exact: Some(exact(loaded)?),
         is_exact: arguments.exact,
-        ..Measured::default()
+        ..Measured::of_loaded(loaded)
     };
     if let Some(graph) = loaded.in_space(None)? {
         let weighted = match &loaded.model {
@@ -191,14 +195,19 @@ fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured, Failure> {
         Model::Ifs(system) => Some(system.ifs()),
         _ => None,
     };
-    Ok(match LimitSet::of(&graph) {
+    let mut measured = match LimitSet::of(&graph) {
         Ok(set) => of_limit(arguments, &set, &graph, weighted, measured),
         Err(_) if arguments.exact => measured,
         Err(NoLimit::Draws | NoLimit::CountsIndex | NoLimit::Endless | NoLimit::Words(_)) => {
-            return of_growth(arguments, &graph, steps, measured);
+            of_growth(arguments, &graph, steps, measured)?
         }
         Err(error) => measured.without(&error),
-    })
+    };
+    if measured.counting.boxes.is_empty() && !arguments.exact {
+        let remedy = "--steps N measures an approximant as it is drawn";
+        measured.warnings.push(remedy.into());
+    }
+    Ok(measured)
 }
 
 /// Checks that no slice of a set in the plane is asked for.
@@ -322,7 +331,12 @@ fn of_growth(
     Ok(measured.enlarged(graph.place().ratio()))
 }
 
-fn of_picture(arguments: &Arguments, name: &str, picture: Raster) -> Result<Measured, Failure> {
+/// Measures the pixels of a picture that belong to a set.
+pub(super) fn of_picture(
+    arguments: &Arguments,
+    name: &str,
+    picture: Raster,
+) -> Result<Measured, Failure> {
     only_in_space(arguments)?;
     let set = arguments.pixels.decide(name.into(), picture)?;
     let pixels = set.bits;
@@ -380,8 +394,18 @@ fn of_points<M: Space>(
 }
 
 impl Measured {
+    /// Returns the result for a rule of which nothing is measured yet.
+    pub(super) fn of_loaded(loaded: &Loaded) -> Self {
+        let title = loaded.model.metadata().description.title.clone();
+        Self {
+            name: loaded.name.clone(),
+            title: title.unwrap_or_else(|| loaded.name.clone()),
+            ..Self::default()
+        }
+    }
+
     /// Returns the results for the set enlarged by `ratio`.
-    fn enlarged(mut self, ratio: f64) -> Self {
+    pub(super) fn enlarged(mut self, ratio: f64) -> Self {
         if ratio == 1.0 {
             return self;
         }

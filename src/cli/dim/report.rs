@@ -256,7 +256,7 @@ fn decimals(error: f64) -> usize {
 }
 
 /// Formats a size with four digits.
-fn short(size: f64) -> String {
+pub(super) fn short(size: f64) -> String {
     let exponent = libm::log10(size).floor();
     if (-4.0..6.0).contains(&exponent) {
         #[expect(
