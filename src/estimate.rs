@@ -129,7 +129,7 @@ impl<'a> Estimator<'a> {
             let corner = DVec2::new(x, y);
             Bounds::new(corner, corner + DVec2::new(width, height))
         });
-        let canvas = Canvas::fit(&shown, self.options.size, view.margin).ok()?;
+        let canvas = Canvas::fit(&shown, self.options.size, view.pad()).ok()?;
         let populations = forecast.populations()?;
         let fractals = forecast.fractals().to_f64();
         let mut bytes = DOCUMENT + PATH * fractals;

@@ -24,6 +24,12 @@ impl Colour {
     /// Opaque black.
     pub const BLACK: Self = Self([0, 0, 0, 255]);
 
+    /// Opaque white.
+    pub const WHITE: Self = Self([255; 4]);
+
+    /// No colour at all: black without opacity.
+    pub const TRANSPARENT: Self = Self([0; 4]);
+
     /// Creates a colour from red, green, blue and alpha.
     #[must_use]
     pub const fn of_rgba(rgba: [u8; 4]) -> Self {
@@ -367,6 +373,12 @@ impl Style {
         }
     }
 
+    /// Returns the background, unless it is [transparent](Colour::TRANSPARENT).
+    #[must_use]
+    pub fn ground(&self) -> Option<Colour> {
+        self.background.filter(|colour| colour.opacity() > 0.0)
+    }
+
     /// Returns whether closed base elements are outlined in addition to their fill.
     #[must_use]
     pub fn outlines_polygons(&self) -> bool {
@@ -381,11 +393,17 @@ pub struct View {
     /// Window in the rule's units: x and y of the lower left corner, width, height. `None` shows
     /// everything.
     pub window: Option<[f64; 4]>,
-    /// Margin in pixels around the drawing, strokes included.
-    pub margin: f64,
+    /// Margin in pixels around the drawing, strokes included. `None` leaves it to the picture: see
+    /// [`Options::on_paper`](crate::render::Options::on_paper).
+    pub margin: Option<f64>,
 }
 
 impl View {
+    /// Returns the margin in pixels; 0 if it is left to the picture.
+    pub(crate) fn pad(&self) -> f64 {
+        self.margin.unwrap_or_default()
+    }
+
     /// Returns the view in the coordinates that the homothety maps to those of this view.
     #[must_use]
     pub fn within(self, place: &Homothety) -> Self {

@@ -283,7 +283,7 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
         })
         .view(&View {
             window: Some([-1.0, -1.0, 3.0, 2.5]),
-            margin: 4.0,
+            margin: Some(4.0),
         });
     assert_is_written(text, &rule);
 }
@@ -422,7 +422,7 @@ fn numbers_that_are_not_finite_are_refused() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let rule = || segment().generator("g", koch());
         let view = View {
-            margin: value,
+            margin: Some(value),
             ..View::default()
         };
         for rule in [

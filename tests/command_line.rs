@@ -43,7 +43,7 @@ fn the_main_job_works_in_an_empty_folder() {
     let run = run(folder.path(), &["grow", "pythagoras.yaml", "--steps", "8"]).success();
     let said = stderr(&run);
     assert!(
-        said.starts_with("pythagoras.svg: step 8 of pythagoras, 766 elements, 1024 x 699 pixels, "),
+        said.starts_with("pythagoras.svg: step 8 of pythagoras, 766 elements, 1024 x 725 pixels, "),
         "{said}"
     );
     assert_eq!(said.lines().count(), 1);
@@ -194,7 +194,7 @@ fn a_step_that_is_too_large_is_refused_before_the_work_starts() {
     let refused = run(folder.path(), &["grow", "koch", "--steps", "40"]).code(1);
     assert_eq!(
         stderr(&refused),
-        "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements, about 52 GB of SVG and \
+        "error: step 40 of koch has 1,208,925,819,614,629,174,706,176 elements, about 48 GB of SVG and \
          4e8 years of drawing; 12 is the deepest step within --max-elements 50,000,000; \
          --detail 0.5 draws it to half a pixel\n"
     );

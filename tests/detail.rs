@@ -181,7 +181,7 @@ fn window(rule: &Rule, window: [f64; 4], side: u32) -> Options {
         .format(Format::Png)
         .view(View {
             window: Some(window),
-            margin: 0.0,
+            margin: Some(0.0),
         })
         .size(Size::Exactly(side, side))
 }
@@ -278,7 +278,7 @@ fn the_detail_is_that_of_the_picture_as_it_comes_out() {
             })
             .view(View {
                 window: None,
-                margin: 1.0,
+                margin: Some(1.0),
             })
     };
     let koch = library("koch");
@@ -372,7 +372,7 @@ fn growth_goes_on_until_nothing_more_can_be_seen() {
     };
     says(
         &["grow", "koch", "--detail", "0.5"],
-        "koch.svg: koch to a detail of 0.5 pixels, 7 steps, 16,384 elements, 1024 x 298 pixels, ",
+        "koch.svg: koch to a detail of 0.5 pixels, 7 steps, 16,384 elements, 1024 x 356 pixels, ",
     );
     // A number of steps beyond all limits, cut by the detail.
     says(

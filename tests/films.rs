@@ -234,14 +234,7 @@ fn steps_grow_out_of_the_ones_before() {
     }
     // At the start, the Koch curve lies on the one before. Its strokes are shorter, and round off at their joins.
     let picture = |more: &[&str]| {
-        let options = [
-            "--size",
-            "300x100",
-            "--background",
-            "white",
-            "-o",
-            "one.png",
-        ];
+        let options = ["--size", "300x100", "--margin", "0", "-o", "one.png"];
         succeeds(folder, &[&["grow", "koch"], more, &options].concat());
         pixels(&folder.join("one.png"))
     };
@@ -422,11 +415,21 @@ fn lines_of_an_svg_move_through_the_pictures_of_all_frames() {
     let size = ["--size", "120x90", "--fit", "each", "-o"];
     succeeds(
         folder,
-        &[&film[..], &["--bounce"], &size, &["film.svg"]].concat(),
+        &[
+            &film[..],
+            &["--bounce", "--margin", "0"],
+            &size,
+            &["film.svg"],
+        ]
+        .concat(),
     );
     let sheet = style_sheet(&folder.join("film.svg"));
     let picture = ["grow", "pythagoras", "--set", "angle=30", "--steps", "3"];
-    let picture = [&picture[..], &["--size", "120x90", "-o", "one.svg"]].concat();
+    let picture = [
+        &picture[..],
+        &["--size", "120x90", "--margin", "0", "-o", "one.svg"],
+    ]
+    .concat();
     succeeds(folder, &picture);
     let one = fs::read_to_string(folder.join("one.svg")).unwrap();
     let paths: Vec<&str> = { one.split(" d=\"").skip(1) }

@@ -39,7 +39,8 @@ fn library() -> Vec<(String, Arc<ifs::System>)> {
 fn trunks_are_brown() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tree.png");
-    let arguments = "grow tree-libeskind-hadas --method chaos --points 300k --size 200 -q -o";
+    let arguments =
+        "grow tree-libeskind-hadas --method chaos --points 300k --size 200 --background none -q -o";
     let status = Command::new(env!("CARGO_BIN_EXE_kfrac"))
         .args(arguments.split(' '))
         .arg(&path)
@@ -147,7 +148,7 @@ fn random_and_deterministic_iteration_draw_one_set() {
     for (name, system) in library() {
         let view = View {
             window: Some(around(&Graph::of_system(&system))),
-            margin: 0.0,
+            margin: Some(0.0),
         };
         let (inked, hit) = (deterministic(&system, view), random(&system, view));
         let (strange, missed) = (lonely(&hit, &inked, 1), lonely(&inked, &hit, 2));

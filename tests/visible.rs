@@ -63,7 +63,7 @@ fn the_front_of_the_sponge_is_the_carpet() {
         let sides: f64 = (1..=steps)
             .map(|k| 8f64.powi(k.cast_signed() - 1) / 3f64.powi(k.cast_signed()))
             .sum();
-        let margin = 2.0 * Options::default().view.margin;
+        let margin = 2.0 * Options::default().view.margin.unwrap_or_default();
         let expected = 4.0 * (1.0 + sides) * (1024.0 - margin) * 25.4 / 96.0;
         assert!(
             (plotted.drawn / expected - 1.0).abs() < 1e-3,

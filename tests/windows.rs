@@ -24,7 +24,7 @@ fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
                 .format(Format::Png)
                 .view(View {
                     window: Some(place),
-                    margin: 0.0,
+                    margin: Some(0.0),
                 })
                 .size(Size::Exactly(side, side))
                 .detail(pixels.map(|pixels| Detail {

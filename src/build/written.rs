@@ -153,7 +153,7 @@ pub(crate) fn view(view: &View) -> Entries {
         let window = view.window.map(|window| sequence(window.map(number)));
         Entries::default()
             .set_some("window", window)
-            .set("margin", number(view.margin))
+            .set_some("margin", view.margin.map(number))
     };
     entries(view).without(&entries(&View::default()))
 }

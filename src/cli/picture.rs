@@ -39,10 +39,11 @@ pub(super) struct PictureArguments {
     /// Shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
-    /// Margin around the picture in pixels, or as a length (10mm, 0.5in)
+    /// Margin around the picture in pixels, or as a length (10mm, 0.5in) [default: 4 % of the long side; none around a
+    /// window and in plots]
     #[arg(long, value_name = "PX", value_parser = Length::parse)]
     margin: Option<Length>,
-    /// Background colour
+    /// Background colour, or none [default: white in PNG and PDF]
     #[arg(long, value_name = "COLOR", value_parser = ink)]
     background: Option<Ink>,
     /// Property that the colours of the palette distinguish
@@ -70,7 +71,10 @@ impl PictureArguments {
             cap: self.cap.unwrap_or(own.cap),
             join: self.join.unwrap_or(own.join),
             fill: self.fill.map_or(own.fill, Ink::colour),
-            background: self.background.map_or(own.background, Ink::colour),
+            background: match self.background {
+                Some(ink) => Some(ink.colour().unwrap_or(Colour::TRANSPARENT)),
+                None => own.background,
+            },
             color_by: match self.color_by {
                 Some(color_by) => color_by,
                 // An explicit colour takes precedence over a palette that is not explicit.
@@ -94,10 +98,10 @@ impl PictureArguments {
 
     /// Returns the view of the rule with the options applied, with the margin in `unit`.
     pub(super) fn view_in(&self, metadata: &Metadata, unit: Unit) -> View {
-        let margin = self.margin.unwrap_or(Length::Pixels(metadata.view.margin));
+        let margin = self.margin.or(metadata.view.margin.map(Length::Pixels));
         View {
             window: self.view.or(metadata.view.window),
-            margin: margin.count(unit),
+            margin: margin.map(|margin| margin.count(unit)),
         }
     }
 

@@ -16,7 +16,7 @@ use crate::geometry::Homothety;
 use crate::graph::Graph;
 use crate::grow::{Growth, Progress};
 use crate::render::{self, Size};
-use crate::style::{Named, Style, Width};
+use crate::style::{Named, Style, View, Width};
 
 use super::camera::SpaceArguments;
 use super::growth::GrowthArguments;
@@ -336,15 +336,21 @@ impl Arguments {
         options.push(("size", self.size.to_string()));
         options.extend(self.columns.map(|columns| ("columns", columns.to_string())));
         options.extend(self.picture.options());
+        let view = self.picture.view(loaded.model.metadata()).within(place);
         render::Options {
             format,
             style: self.style(loaded),
-            view: self.picture.view(loaded.model.metadata()).within(place),
+            // There are gaps between the pictures of a sheet.
+            view: View {
+                margin: Some(view.pad()),
+                ..view
+            },
             size: self.size,
             threads: self.growth.threads(),
             labels: labels(loaded, shown, "sheet", options),
             ..render::Options::default()
         }
+        .on_paper()
     }
 }
 

@@ -381,7 +381,7 @@ fn drawing(fractal: &Fractal, spec: &Spec, path: Path) -> Result<Plain, crate::E
             ..style
         })
         .view(View {
-            margin: 0.0,
+            margin: Some(0.0),
             ..fractal.model().metadata().view
         });
     if let Model::Ifs(_) = fractal.model()

@@ -13,7 +13,7 @@ pub(super) const STYLE: Shape = Shape {
     keys: &[&keys![
         stroke: Form::Colour, "The colour of lines, as CSS writes it, or `none`; black if left out.";
         fill: Form::Colour, "The colour of areas, as CSS writes it; `none` if left out.";
-        background: Form::Colour, "The colour behind everything, as CSS writes it; `none` if left out.";
+        background: Form::Colour, "The colour behind everything, as CSS writes it, or `transparent`; if left out, white in PNG and PDF.";
         width: Form::Either(&[Form::Positive, Form::Mapping(&WIDTH)]),
             "The width of lines in pixels, 1.5 if left out; or `{relative: 0.1}`, times the element's \
              length.";

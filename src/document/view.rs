@@ -39,7 +39,7 @@ pub(super) const VIEW: Shape = Shape {
             window: Form::List(&Form::Number, 4, Some(4)),
                 "[x, y, width, height] in the rule's units, from the lower left corner; everything, if \
                  left out.";
-            margin: Form::Positive, "Pixels that are left free around the picture; 0 if left out.";
+            margin: Form::Positive, "Pixels that are left free around the picture; if left out, 4 % of its long side, and 0 around a window and in plots.";
         ],
         &SPACE,
     ],
@@ -79,7 +79,7 @@ pub(super) fn read_view(reader: &mut Reader, node: &Node, in_space: bool) -> (Vi
     };
     let view = View {
         window: { fields.take("window") }.and_then(|node| window(reader, node)),
-        margin: fields.read(reader, "margin").unwrap_or_default(),
+        margin: fields.optional(reader, "margin"),
     };
     let is_of_space = |name: &str| SPACE.iter().any(|member| member.name == name);
     if !in_space {

@@ -192,7 +192,7 @@ impl Drawing for Sheet<'_> {
     }
 
     fn background(&self) -> Option<Colour> {
-        self.style.background
+        self.style.ground()
     }
 
     fn pen(&self) -> Pen {

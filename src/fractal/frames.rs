@@ -118,7 +118,7 @@ impl<F: FnMut(&Fractal, f64) -> Result<Fractal, Error>> Frames<F> {
         self.size = Size::Exactly(width, height);
         self.view = Some(View {
             window: Some(canvas.window()),
-            margin: 0.0,
+            margin: Some(0.0),
         });
         Ok(())
     }

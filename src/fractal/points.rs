@@ -47,7 +47,7 @@ impl Fractal {
             .map_or_else(|| Arc::clone(source), Arc::new);
         let system = WeightedMaps::of(source.ifs())?;
         let own = View {
-            margin: 0.0,
+            margin: Some(0.0),
             ..source.metadata().view
         };
         let view = self.view.unwrap_or(own).within(&place);

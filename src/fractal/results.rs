@@ -48,7 +48,8 @@ impl Fractal {
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// Returns the approximant as the bytes of a PNG. `size` is the long side in pixels, or width and height.
+    /// Returns the approximant as the bytes of a PNG, on white paper unless the style has a background. `size` is the long
+    /// side in pixels, or width and height.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -68,7 +69,8 @@ impl Fractal {
         Ok(bytes)
     }
 
-    /// Returns the approximant as pixels in memory. `size` is the long side in pixels, or width and height.
+    /// Returns the approximant as pixels in memory, transparent unless the style has a background. `size` is the long side
+    /// in pixels, or width and height.
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -83,7 +85,7 @@ impl Fractal {
     ///
     /// If it cannot be drawn: it has too many elements, or none, or the picture is too large for memory.
     pub fn pixels(&self, size: impl Into<Size>) -> Result<Pixels, Error> {
-        let options = self.options(Format::Png, size.into())?;
+        let options = self.pixel_options(size.into())?;
         if let Some(set) = self.graph_to_draw_in_space(&options)? {
             let cancel = self.cancel.as_deref();
             let space = self.space_options();
@@ -393,7 +395,16 @@ impl Fractal {
                 provenance: String::new(),
             },
             ..Options::default()
-        })
+        }
+        .on_paper())
+    }
+
+    /// Returns the options of pixels, which have no background but that of the style.
+    pub(super) fn pixel_options(&self, size: Size) -> Result<Options, Error> {
+        let style = self.style.as_ref().unwrap_or(&self.model.metadata().style);
+        let mut options = self.options(Format::Png, size)?;
+        options.style.background = style.background;
+        Ok(options)
     }
 
     fn draw(&self, options: &Options, mut out: impl Write) -> Result<Picture, Error> {

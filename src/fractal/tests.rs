@@ -317,7 +317,7 @@ fn histograms_cover_the_attractor_or_the_window() -> Result<(), Error> {
     assert_eq!((whole.size(), whole.inside()), ([32, 32], 100_000));
     let window = View {
         window: Some([0.0, 0.0, 0.5, 0.5]),
-        margin: 0.0,
+        margin: Some(0.0),
     };
     let quarter = square.view(window).histogram(100_000, 32)?.inside();
     assert!(quarter.abs_diff(25_000) < 1_000, "{quarter}");

@@ -15,6 +15,29 @@ pub enum Size {
     Exactly(u32, u32),
 }
 
+impl Size {
+    /// Returns the long side.
+    #[must_use]
+    pub fn long_side(self) -> f64 {
+        match self {
+            Self::Long(side) => side.into(),
+            Self::Exactly(width, height) => width.max(height).into(),
+        }
+    }
+
+    /// Returns the margin that a picture has by default: 4 % of the long side, or of the shorter one of two that are
+    /// given.
+    #[must_use]
+    pub fn margin(self) -> f64 {
+        const SHARE: f64 = 0.04;
+        SHARE
+            * match self {
+                Self::Long(side) => f64::from(side),
+                Self::Exactly(width, height) => width.min(height).into(),
+            }
+    }
+}
+
 impl From<u32> for Size {
     fn from(side: u32) -> Self {
         Self::Long(side)
@@ -165,7 +188,7 @@ impl Canvas {
     ) -> Result<Self, NoRoom> {
         let corner = DVec2::new(x, y);
         let shown = Bounds::new(corner, corner + DVec2::new(width, height));
-        Self::fit_on(&shown, size, view.margin, false)
+        Self::fit_on(&shown, size, view.pad(), false)
     }
 
     /// Returns the part of the plane that is shown, extended by `pad` pixels on every side.

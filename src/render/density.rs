@@ -140,7 +140,7 @@ pub fn density_canvas(
             bounds.add(end);
         }
     }
-    Ok(Canvas::fit(&bounds, size, view.margin.max(EDGE))?)
+    Ok(Canvas::fit(&bounds, size, view.pad().max(EDGE))?)
 }
 
 /// Returns the corners of the bounding box of points without a number of them at each end of both axes.

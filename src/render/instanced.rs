@@ -70,7 +70,7 @@ pub(super) fn write(
     let page = Page {
         size: canvas.size(),
         unit: options.unit,
-        background: style.background,
+        background: style.ground(),
         pen: super::paint::pen(style),
         labels: &options.labels,
         has_layers: false,

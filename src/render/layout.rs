@@ -309,7 +309,7 @@ impl Canvas {
         let overhang = surveys.iter().map(Prepass::overhang).fold(0.0, f64::max);
         let canvas = match view.window {
             Some(window) => Self::of_window(window, view, size)?,
-            None => Self::fit(&all, size, view.margin + overhang)?,
+            None => Self::fit(&all, size, view.pad() + overhang)?,
         };
         if !all.is_empty() && !canvas.holds(&all) {
             return Err(NoRoom::TooClose);

@@ -4,7 +4,7 @@ use std::num::NonZero;
 
 use crate::metadata::Metadata;
 use crate::parallel::all_cores;
-use crate::style::{Named, Style, View};
+use crate::style::{Colour, Named, Style, View};
 
 use super::canvas::Size;
 use super::gcode::Machine;
@@ -185,6 +185,21 @@ impl Options {
     /// Returns whether a PNG is drawn in one piece.
     pub(super) fn draws_in_one_piece(&self, [width, height]: [u32; 2]) -> bool {
         u64::from(width) * u64::from(height) <= self.in_one_piece
+    }
+
+    /// Completes the options of a picture that is looked at. A margin that the view leaves open is that of the
+    /// [size](Size::margin); around a window it is 0, and in plots, whose size is that of the drawing. Without a background, PNG and PDF
+    /// have white paper; [`Colour::TRANSPARENT`] takes it away.
+    #[must_use]
+    pub fn on_paper(mut self) -> Self {
+        let is_plot = self.plot || self.format.is_plot();
+        if self.view.margin.is_none() && self.view.window.is_none() && !is_plot {
+            self.view.margin = Some(self.size.margin());
+        }
+        if matches!(self.format, Format::Png | Format::Pdf) && !is_plot {
+            self.style.background.get_or_insert(Colour::WHITE);
+        }
+        self
     }
 
     /// Returns options with the style and the view that a file proposes.

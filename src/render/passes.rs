@@ -24,7 +24,7 @@ impl Drawing for Scene<'_> {
     }
 
     fn background(&self) -> Option<Colour> {
-        self.style.background
+        self.style.ground()
     }
 
     fn pen(&self) -> Pen {

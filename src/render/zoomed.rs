@@ -154,7 +154,7 @@ impl Zoomed {
         let options = Options {
             view: View {
                 window: Some([-width / 2.0, -height / 2.0, width, height]),
-                margin: 0.0,
+                margin: None,
             },
             size: Size::Exactly(size[0], size[1]),
             detail: Some(options.detail.unwrap_or(Detail {
@@ -210,12 +210,12 @@ fn whole(graph: &Graph, growth: &Growth<'_>, options: &Options) -> Result<Canvas
         return Ok(Canvas::of_window(window, view, *size)?);
     }
     if let (Some(bounds), Width::Pixels(width)) = (graph.limit_bounds(), style.width) {
-        let pad = view.margin + width * overhang(style);
+        let pad = view.pad() + width * overhang(style);
         return Ok(Canvas::fit(&bounds, *size, pad)?);
     }
     let rough = Options {
         detail: Some(Detail {
-            pixels: ROUGH * longest(*size),
+            pixels: ROUGH * size.long_side(),
             decides_steps: true,
         }),
         ..options.clone()
@@ -225,13 +225,6 @@ fn whole(graph: &Graph, growth: &Growth<'_>, options: &Options) -> Result<Canvas
 
 /// Detail of that approximant, as a fraction of the picture's longer side.
 const ROUGH: f64 = 1.0 / 256.0;
-
-fn longest(size: Size) -> f64 {
-    match size {
-        Size::Long(side) => side.into(),
-        Size::Exactly(width, height) => width.max(height).into(),
-    }
-}
 
 fn check(style: &Style) -> Result<(), RenderError> {
     if matches!(style.color_by, ColorBy::Index | ColorBy::Fractal) {

@@ -175,7 +175,10 @@ impl Tween {
             style: style::tween(self, [&a.style, &b.style]),
             view: View {
                 window,
-                margin: self.between([a.view.margin, b.view.margin]),
+                margin: match (a.view.margin, b.view.margin) {
+                    (Some(a), Some(b)) => Some(self.between([a, b])),
+                    (a, b) => a.or(b),
+                },
             },
             numbers: Vec::new(),
             dimension: None,

@@ -202,7 +202,7 @@ fn windows_are_those_of_the_file() {
     let place = Homothety::new(-40, DVec2::new(0.5, -0.25));
     let view = kfrac::style::View {
         window: Some([0.5, -0.25, 2f64.powi(-40), 2f64.powi(-41)]),
-        margin: 3.0,
+        margin: Some(3.0),
     };
     assert_eq!(view.within(&place).window, Some([0.0, 0.0, 1.0, 0.5]));
 }

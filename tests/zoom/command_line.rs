@@ -140,7 +140,7 @@ fn a_window_beside_the_set_is_said_to_be_empty() {
         assert_eq!(code, Some(0), "{text}");
         let (first, _) = text.split_once('\n').unwrap();
         // From the nearest corners, which lie at (4/9, √3/9) and its mirror image.
-        let nearest = "; the nearest part is about 0.11 from the centre, and --zoom 1.3 shows it";
+        let nearest = "; the nearest part is about 0.11 from the centre, and --zoom 1.7 shows it";
         assert_eq!(first, format!("{note}{nearest}"), "{text}");
         let (_, text) = said(&[&beside[..], &[file, "--quiet"]].concat());
         assert_eq!(text, "");

@@ -143,7 +143,7 @@ fn large_infertile_elements_are_clipped() {
 fn within(options: &Options, [x, y, side]: [f64; 3]) -> Options {
     options.clone().view(View {
         window: Some([x - side / 2.0, y - side / 2.0, side, side]),
-        margin: 0.0,
+        margin: Some(0.0),
     })
 }
 

@@ -281,7 +281,7 @@ impl<'a> Drawing<'a> {
         let canvas = match view.window {
             Some(window) => Canvas::of_window(window, view, options.size).ok(),
             None => growth::rough_bounds(graph, self.goal.steps())
-                .and_then(|bounds| Canvas::fit(&bounds, options.size, view.margin).ok()),
+                .and_then(|bounds| Canvas::fit(&bounds, options.size, view.pad()).ok()),
         };
         let Some([width, height]) = canvas.map(|canvas| canvas.size()) else {
             return;
@@ -346,6 +346,7 @@ impl<'a> Drawing<'a> {
             },
             ..render::Options::default()
         }
+        .on_paper()
     }
 }
 

@@ -71,7 +71,8 @@ pub(super) fn write(
         threads: growth.threads(),
         labels: labels(loaded, &format!("Step {steps}"), "grow", all),
         ..render::Options::default()
-    };
+    }
+    .on_paper();
     let takes_length = format == SceneFormat::Nested(render::SceneFormat::ThreeMf)
         && matches!(arguments.size.size, Size::Long(_));
     if arguments.size.unit != Unit::Pixel && !takes_length {

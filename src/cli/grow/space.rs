@@ -60,7 +60,8 @@ pub(super) fn draw(
             options(arguments, game.as_ref()),
         ),
         ..render::Options::default()
-    };
+    }
+    .on_paper();
     let mut space = arguments.space.to_options(&loaded.model.space_view())?;
     space.camera.zoom = arguments.zoom.in_space();
     let space = space.keeps_depths(arguments.depth.is_some());

@@ -85,7 +85,8 @@ pub(super) fn draw(
         threads: growth.threads(),
         labels: labels(loaded, &format!("Step {steps}"), "grow", all),
         ..render::Options::default()
-    };
+    }
+    .on_paper();
     let default = arguments.rule.file("", format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let (drawn, bytes) = growth.write(path, |mut out, progress| {

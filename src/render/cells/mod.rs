@@ -385,7 +385,7 @@ impl Drawing for Cells<'_> {
     }
 
     fn background(&self) -> Option<Colour> {
-        self.style.background
+        self.style.ground()
     }
 
     fn pen(&self) -> Pen {

@@ -41,7 +41,7 @@ impl LimitStyle {
         let Options { view, size, .. } = options;
         let canvas = match view.window {
             Some(window) => Canvas::of_window(window, view, *size)?,
-            None => Canvas::fit(bounds, *size, view.margin + self.pen.width / 2.0)?,
+            None => Canvas::fit(bounds, *size, view.pad() + self.pen.width / 2.0)?,
         };
         if !canvas.holds(bounds) {
             return Err(NoRoom::TooClose.into());

@@ -161,7 +161,7 @@ fn compare(
         size: Size::Exactly(SIDE, SIDE),
         view: View {
             window: Some(window),
-            margin: 0.0,
+            margin: Some(0.0),
         },
         style: style.clone(),
         detail: detail
@@ -363,7 +363,7 @@ fn ranks_may_be_larger_than_any_walk_counts() {
                 size: Size::Exactly(SIDE, SIDE),
                 view: View {
                     window: Some([x, y, 2e-10, 2e-10]),
-                    margin: 0.0,
+                    margin: Some(0.0),
                 },
                 style: style.clone(),
                 detail: detail.map(|pixels| Detail {

@@ -40,7 +40,7 @@ impl Eye {
             start: &scene::start(graph),
             steps: Some(steps),
         };
-        let margin = options.view.margin;
+        let margin = options.view.pad();
         let placement = place::place(graph, &search, &space.camera, &[], options.size, margin)?;
         let inverse: DAffine3 = placement.map.inverse();
         let linear = inverse.matrix3;

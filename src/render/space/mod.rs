@@ -230,7 +230,7 @@ fn draw(
         // A section has the depths of its plane.
         &space.within(0.0),
         options.size,
-        options.view.margin,
+        options.view.pad(),
     )?;
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let cuts = space.within(SAMPLES as f64 / placement.scale());
@@ -372,7 +372,7 @@ fn seen_by_light(
     let mut options = options
         .clone()
         .size(Size::Long(LIGHT_SIDE.max(side.min(2 * LIGHT_SIDE))));
-    options.view.margin = 0.0;
+    options.view.margin = None;
     options.style.color_by = ColorBy::None;
     let space = SpaceOptions::default()
         .camera(Camera::default().from(space.light.from))

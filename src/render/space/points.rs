@@ -142,7 +142,7 @@ fn draw_with(
         // A section has the depths of its plane.
         &space.within(0.0),
         options.size,
-        options.view.margin,
+        options.view.pad(),
     )?;
     let size @ [width, height] = placement.size;
     let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
@@ -321,7 +321,7 @@ mod tests {
         options.style.background = Some(Colour::BLACK);
         options.style.fill = Some(Colour::grey(255));
         options.style.color_by = color_by;
-        options.view.margin = 0.0;
+        options.view.margin = None;
         options
     }
 

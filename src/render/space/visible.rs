@@ -124,7 +124,7 @@ impl<'a> Visible<'a> {
             // A section has the depths of its plane.
             &space.within(0.0),
             options.size,
-            options.view.margin,
+            options.view.pad(),
         )?;
         let is_section = |slice: &&Slice| slice.thickness.is_none();
         let section = space.slice.as_ref().filter(is_section);
@@ -327,7 +327,7 @@ impl Drawing for Visible<'_> {
     }
 
     fn background(&self) -> Option<Colour> {
-        self.options.style.background
+        self.options.style.ground()
     }
 
     fn pen(&self) -> Pen {

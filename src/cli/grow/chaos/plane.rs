@@ -12,6 +12,7 @@ use crate::geometry::DAffine2;
 use crate::grow::Progress;
 use crate::ifs::System;
 use crate::model::Model;
+use crate::render;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, density_canvas, write_density};
 use crate::style::{ColorBy, Colour, Style};
 
@@ -69,13 +70,25 @@ impl<'a> PlaneGame<'a> {
 
     /// Returns the canvas that shows the attractor and the ways to it, or the window.
     fn canvas(&self, size: Size) -> Result<Canvas, RenderError> {
+        let Iteration { system, start, .. } = &self.iteration;
+        let render::Options { view, .. } = self.picture_options(size);
+        density_canvas(&self.source, system, start, &view, size)
+    }
+
+    /// Returns style and view of the picture.
+    fn picture_options(&self, size: Size) -> render::Options {
         let Iteration {
             arguments, place, ..
         } = &self.iteration;
-        let view = arguments.picture.view(self.source.metadata());
-        let view = view.within(place);
-        let Iteration { system, start, .. } = &self.iteration;
-        density_canvas(&self.source, system, start, &view, size)
+        let (picture, metadata) = (&arguments.picture, self.source.metadata());
+        let options = render::Options {
+            format: render::Format::Png,
+            style: picture.style(metadata),
+            view: picture.view(metadata).within(place),
+            size,
+            ..render::Options::default()
+        };
+        options.on_paper()
     }
 
     /// Plays the game, draws it and returns a summary.
@@ -113,11 +126,11 @@ impl<'a> PlaneGame<'a> {
                 other => anyhow::Error::new(other),
             }
         })?;
-        let style = picture.style(self.source.metadata());
+        let render::Options { style, .. } = self.picture_options(size);
         let density = Density {
             tone: chaos.tone.unwrap_or_default(),
             shades: self.shades(&style, picture.ink(self.source.metadata())),
-            background: style.background,
+            background: style.ground(),
             png: arguments.growth.png_encoding(),
         };
         let described = self.iteration.described();
