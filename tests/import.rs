@@ -1,5 +1,6 @@
 //! Import of files of other programs, through the command-line program.
 
+mod aifs;
 mod tables;
 
 use std::fs;
@@ -139,7 +140,7 @@ fn files_that_hold_nothing_are_refused() {
         (
             "curves.txt",
             b"",
-            "the format of 'curves.txt' is not known: --from is one of l, ifs, csv",
+            "the format of 'curves.txt' is not known: --from is one of l, ifs, csv, aifs",
         ),
         ("missing.l", b"", "there is no file 'missing.l'"),
     ];

@@ -56,6 +56,8 @@ Examples:
       Converts every L-system of a file, and reports the entries that are not supported
   kfrac import *.ifs
       Converts several files of systems of maps, into the current folder
+  kfrac import tiles.aifs -o tiles
+      Converts every set of IFStile's format: a system, or a structure where sets refer to each other
   kfrac import maple.txt --from csv --columns abecdfp
       Reads a row of a table as the coefficients of x', those of y', and a probability
 ";

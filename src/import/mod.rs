@@ -3,6 +3,7 @@
 //! [`read`] converts the entries of a text to documents. Each entry becomes a document of its own; what would not be
 //! the same set is refused at its place in the text, and the other entries are read regardless.
 
+mod aifs;
 mod csv;
 mod document;
 mod fractint;
@@ -38,6 +39,8 @@ pub enum Format {
     /// Table of affine maps, one in a row, with commas, semicolons, tabs or blanks between the columns; a text is one
     /// entry.
     Csv,
+    /// Systems of maps of IFStile and ifsdb, in the plane or in space: `@` with lines such as `A=(f|g)*A`.
+    Aifs,
 }
 
 impl Named for Format {
@@ -45,6 +48,7 @@ impl Named for Format {
         ("l", Self::LSystems),
         ("ifs", Self::Ifs),
         ("csv", Self::Csv),
+        ("aifs", Self::Aifs),
     ];
 }
 
@@ -66,6 +70,7 @@ impl Format {
             Self::LSystems => "L-systems of Fractint",
             Self::Ifs => "systems of maps of Fractint",
             Self::Csv => "tables of maps, a map in each row",
+            Self::Aifs => "systems of maps of IFStile (AIFS)",
         }
     }
 
@@ -75,6 +80,7 @@ impl Format {
         match self {
             Self::LSystems | Self::Ifs => "Name { ... }",
             Self::Csv => "a row of the numbers a b c d e f p",
+            Self::Aifs => "a block @ with a set A=(f|g)*A",
         }
     }
 }
@@ -119,5 +125,6 @@ pub fn read(
         Format::LSystems => fractint::read(source, fractint::lsystem::write),
         Format::Ifs => fractint::read(source, fractint::maps::write),
         Format::Csv => csv::read(source, options.columns.as_ref()),
+        Format::Aifs => aifs::read(source),
     }
 }
