@@ -47,12 +47,14 @@ fn examples_work() {
     let curve = "Koch { Angle 6 Axiom F F=F+F--F+F }";
     let maps = "Dust { .5 0 0 .5 0 0 1 .3 0 0 .3 1 0 1 }";
     let tiles = "@\n$dim=2\nA=2^-1*([1, 0]|[0, 1]|[0, 0])*A\n";
+    let curves = "[{\"name\": \"Dragon\", \"gene\": \"G 1 0 0 0 0 1 1 0\"}]";
     let table = ".5 0 0 0 .5 0 1\n.5 0 .5 0 .5 .5 1\n";
     for (name, text) in [
         ("fractint.l", curve),
         ("other.ifs", maps),
         ("maple.txt", table),
         ("tiles.aifs", tiles),
+        ("curves.json", curves),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }

@@ -58,6 +58,8 @@ Examples:
       Converts several files of systems of maps, into the current folder
   kfrac import tiles.aifs -o tiles
       Converts every set of IFStile's format: a system, or a structure where sets refer to each other
+  kfrac import curves.json --from genes
+      Converts genes of plane-filling curves on square and triangular lattices to rules
   kfrac import maple.txt --from csv --columns abecdfp
       Reads a row of a table as the coefficients of x', those of y', and a probability
 ";
@@ -93,6 +95,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let format = format_of(path, arguments)?;
         let source = open(path)?;
         let (entries, stray) = read(&source, format, &options);
+        if stray.has_errors() && entries.is_empty() {
+            return Err(stray.into());
+        }
         if entries.is_empty() {
             let message = format!("'{}' has no entries", source.name());
             let hint = format!("an entry is {}", format.example());

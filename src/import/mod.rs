@@ -7,6 +7,8 @@ mod aifs;
 mod csv;
 mod document;
 mod fractint;
+mod genes;
+mod lattice;
 mod maps;
 mod picture;
 #[cfg(feature = "tables")]
@@ -41,6 +43,9 @@ pub enum Format {
     Csv,
     /// Systems of maps of IFStile and ifsdb, in the plane or in space: `@` with lines such as `A=(f|g)*A`.
     Aifs,
+    /// Curves by edge replacement on the Gaussian and the Eisenstein integers: `Dragon: G 1 0 0 0 0 1 1 0` in each line, or
+    /// a JSON list of objects with `name` and `gene`.
+    Genes,
 }
 
 impl Named for Format {
@@ -49,6 +54,7 @@ impl Named for Format {
         ("ifs", Self::Ifs),
         ("csv", Self::Csv),
         ("aifs", Self::Aifs),
+        ("genes", Self::Genes),
     ];
 }
 
@@ -71,6 +77,7 @@ impl Format {
             Self::Ifs => "systems of maps of Fractint",
             Self::Csv => "tables of maps, a map in each row",
             Self::Aifs => "systems of maps of IFStile (AIFS)",
+            Self::Genes => "genes of curves, a gene in each line or a JSON list",
         }
     }
 
@@ -81,6 +88,7 @@ impl Format {
             Self::LSystems | Self::Ifs => "Name { ... }",
             Self::Csv => "a row of the numbers a b c d e f p",
             Self::Aifs => "a block @ with a set A=(f|g)*A",
+            Self::Genes => "a line such as Dragon: G 1 0 0 0 0 1 1 0",
         }
     }
 }
@@ -126,5 +134,6 @@ pub fn read(
         Format::Ifs => fractint::read(source, fractint::maps::write),
         Format::Csv => csv::read(source, options.columns.as_ref()),
         Format::Aifs => aifs::read(source),
+        Format::Genes => genes::read(source),
     }
 }
