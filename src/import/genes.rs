@@ -9,24 +9,22 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::build::NumberText;
-use crate::build::written::{Entries, sequence};
+use crate::build::written::Entries;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 use crate::document::node::{Node, Value};
 use crate::geometry::Direction;
 
 use super::Imported;
+use super::curve::{self, Element};
 use super::document::{Heading, file_of};
 use super::lattice::Lattice;
+use super::words::words;
 
 /// Largest number of segments.
 const MAX_SEGMENTS: usize = 1000;
 
 /// Largest component of the vector of a segment: products of sums of them are exact.
 const MAX_SIZE: i64 = 1000;
-
-/// Number of elements up to which steps are drawn by default.
-const DRAWN: usize = 5000;
 
 /// Numbers of a segment.
 const SEGMENT: &str =
@@ -147,27 +145,13 @@ fn converted(place: &Place, found: &mut Diagnostics) -> Option<(String, Entries)
             found.push(Diagnostic::error(message).at(&segment.place));
         }
     }
-    let points = segments.iter().zip(ends).map(|(segment, at)| {
-        let point = lattice.point(lattice.times_conjugate(at, end), norm);
-        match segment.direction {
-            Direction::Normal => point,
-            direction => Entries::default()
-                .set("to", point)
-                .set(
-                    "direction",
-                    NumberText::from(i32::from(direction.number())).0,
-                )
-                .value(),
-        }
+    let elements = segments.iter().zip(ends).map(|(segment, at)| Element {
+        to: lattice.point(lattice.times_conjugate(at, end), norm),
+        direction: segment.direction,
+        is_fertile: true,
+        is_visible: true,
     });
-    let origin = || lattice.point([0, 0], 1);
-    let generator = sequence([origin()].into_iter().chain(points));
-    let unit = sequence([origin(), lattice.point([1, 0], 1)]);
-    let steps = drawn_steps(segments.len());
-    let own = Entries::default()
-        .set("initiator", unit)
-        .set("generator", generator)
-        .set("steps", Value::Number(f64::from(steps)));
+    let own = curve::rule(elements.collect());
     let about = format!(
         "Family {name}({a}, {b}) of norm {norm}, gene {}.",
         place.text().trim()
@@ -177,7 +161,7 @@ fn converted(place: &Place, found: &mut Diagnostics) -> Option<(String, Entries)
 
 /// Returns the lattice and the segments of a gene; `None` if it is not read.
 fn segments(place: &Place, found: &mut Diagnostics) -> Option<(Lattice, Vec<Segment>)> {
-    let words = words(place);
+    let words = words(place, |c| c.is_whitespace() || ",;()".contains(c));
     let lattice = words.first().and_then(|word| match word.text() {
         "G" | "g" => Some(Lattice::Gaussian),
         "E" | "e" => Some(Lattice::Eisenstein),
@@ -241,32 +225,6 @@ fn segments(place: &Place, found: &mut Diagnostics) -> Option<(Lattice, Vec<Segm
         .collect();
     let segments: Option<Vec<Segment>> = segments.into_iter().collect();
     Some((lattice, segments?))
-}
-
-/// Returns the words of a gene: blanks, commas, semicolons and parentheses separate them.
-fn words(gene: &Place) -> Vec<Place> {
-    let text = gene.text();
-    let is_between = |c: char| c.is_whitespace() || ",;()".contains(c);
-    let mut words = Vec::new();
-    let mut start = 0;
-    for word in text.split(is_between) {
-        if !word.is_empty() {
-            words.push(gene.within(start..start + word.len()));
-        }
-        let end = start + word.len();
-        start = end + text[end..].chars().next().map_or(0, char::len_utf8);
-    }
-    words
-}
-
-/// Returns the largest number of steps from 1 to 12 with up to a number of elements.
-fn drawn_steps(segments: usize) -> u32 {
-    let is_drawn = |steps: &u32| {
-        segments
-            .checked_pow(*steps)
-            .is_some_and(|count| count <= DRAWN)
-    };
-    (2..=12).take_while(is_drawn).last().unwrap_or(1)
 }
 
 #[cfg(test)]

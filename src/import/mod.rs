@@ -5,7 +5,9 @@
 
 mod aifs;
 mod csv;
+mod curve;
 mod document;
+mod fractasketch;
 mod fractint;
 mod genes;
 mod lattice;
@@ -15,6 +17,7 @@ mod picture;
 mod ply;
 #[cfg(feature = "tables")]
 mod table;
+mod words;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -46,6 +49,8 @@ pub enum Format {
     /// Curves by edge replacement on the Gaussian and the Eisenstein integers: `Dragon: G 1 0 0 0 0 1 1 0` in each line, or
     /// a JSON list of objects with `name` and `gene`.
     Genes,
+    /// Template of the program FractaSketch in its version of D. Loehr: a point, and lines of six types to further points.
+    FractaSketch,
 }
 
 impl Named for Format {
@@ -55,6 +60,7 @@ impl Named for Format {
         ("csv", Self::Csv),
         ("aifs", Self::Aifs),
         ("genes", Self::Genes),
+        ("fsk", Self::FractaSketch),
     ];
 }
 
@@ -78,6 +84,7 @@ impl Format {
             Self::Csv => "tables of maps, a map in each row",
             Self::Aifs => "systems of maps of IFStile (AIFS)",
             Self::Genes => "genes of curves, a gene in each line or a JSON list",
+            Self::FractaSketch => "templates of FractaSketch",
         }
     }
 
@@ -89,6 +96,7 @@ impl Format {
             Self::Csv => "a row of the numbers a b c d e f p",
             Self::Aifs => "a block @ with a set A=(f|g)*A",
             Self::Genes => "a line such as Dragon: G 1 0 0 0 0 1 1 0",
+            Self::FractaSketch => "a template of a point x y and lines t x y",
         }
     }
 }
@@ -135,5 +143,6 @@ pub fn read(
         Format::Csv => csv::read(source, options.columns.as_ref()),
         Format::Aifs => aifs::read(source),
         Format::Genes => genes::read(source),
+        Format::FractaSketch => fractasketch::read(source),
     }
 }
