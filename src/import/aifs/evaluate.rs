@@ -9,7 +9,7 @@ use super::affine::{Affine, MAX_DIMENSION};
 use super::blocks::{Block, Definition};
 use super::functions;
 use super::syntax::{Expression, Kind, Operator, Parsed};
-use super::value::{Term, Value, composed, united, wrong, wrong_with};
+use super::value::{NO_DIMENSION, Term, Value, composed, united, wrong, wrong_with};
 
 /// Largest depth of expressions within each other, through the names of variables too.
 const MAX_DEPTH: usize = 200;
@@ -22,7 +22,7 @@ pub(super) struct Scope<'a> {
     pub(super) names: Vec<&'a str>,
     /// Names of sets: definitions that refer to themselves, and those that depend on them.
     pub(super) sets: BTreeSet<&'a str>,
-    /// Dimension of the maps.
+    /// Dimension of the maps; 0 until it is known.
     pub(super) dimension: usize,
     known: BTreeMap<&'a str, Value<'a>>,
     depth: usize,
@@ -172,6 +172,7 @@ impl<'a> Scope<'a> {
             Ok(Value::Number(number)) if !number.is_finite() => {
                 wrong("this number is not finite", place)
             }
+            Ok(Value::Union(_)) if self.dimension == 0 => wrong(NO_DIMENSION, place),
             Ok(Value::Union(terms)) if !terms.iter().all(|term| term.map.is_finite()) => {
                 wrong("this map is not finite", place)
             }

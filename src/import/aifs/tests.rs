@@ -294,6 +294,11 @@ fn refusals_have_their_places() {
             .any(|found| found.1 == place && found.2.starts_with(message));
         assert!(is_found, "{text}: {found:?}");
     }
+    for dimension in ["2*A", "[]*[]", "$exchange()", "$e"] {
+        let imported = only(&format!("@\n$dim={dimension}\nA=1/2*A\n"));
+        let message = "a map where the number of dimensions is expected";
+        assert_eq!(errors(&imported)[0].2, message, "{dimension}");
+    }
     let (imported, stray) = read(
         "x\nexport const a = 1;\n@@\n@@import b.aifs\n@P\n$dim=2\n@:Q\n@:P\nA=1/2*A|[1,0]*2^-1*A\n@\nA=A\n",
     );

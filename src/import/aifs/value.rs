@@ -8,6 +8,9 @@ use super::syntax::Parsed;
 /// Largest number of maps in a union.
 const MAX_TERMS: usize = 20_000;
 
+/// Message about a map in the definition of the dimension.
+pub(super) const NO_DIMENSION: &str = "a map where the number of dimensions is expected";
+
 /// Value of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value<'a> {
@@ -79,6 +82,7 @@ impl<'a> Value<'a> {
     pub(super) fn terms(self, dimension: usize, place: &Place) -> Parsed<Vec<Term<'a>>> {
         let map = match self {
             Self::Union(terms) => return Ok(terms),
+            _ if dimension == 0 => return wrong(NO_DIMENSION, place),
             Self::Number(factor) => Affine::scaling(dimension, factor),
             Self::List(_) => {
                 let numbers = self.numbers(place)?;
