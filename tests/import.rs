@@ -1,4 +1,9 @@
-//! Import of Fractint's files, through the command-line program.
+//! Import of files of other programs, through the command-line program.
+
+mod aifs;
+mod fractasketch;
+mod genes;
+mod tables;
 
 use std::fs;
 use std::path::Path;
@@ -16,6 +21,30 @@ fn kfrac(folder: &Path) -> Command {
 fn said(output: &std::process::Output) -> (String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (text(&output.stdout), text(&output.stderr))
+}
+
+/// Writes a file, imports it with further arguments, and returns the folder and what was said.
+fn imported(name: &str, text: &str, arguments: &[&str]) -> (TempDir, String) {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join(name), text).unwrap();
+    let output = kfrac(folder.path())
+        .args(["import", name])
+        .args(arguments)
+        .output()
+        .unwrap();
+    let (_, errors) = said(&output);
+    assert!(output.status.success(), "{errors}");
+    (folder, errors)
+}
+
+/// Asserts that an imported file has the limit set of a fractal of the library, within a tolerance.
+fn assert_same(folder: &Path, file: &str, known: &str, tolerance: &str) {
+    let arguments = ["compare", file, known, "--json", "--tolerance", tolerance];
+    let output = kfrac(folder).args(arguments).output().unwrap();
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|_| panic!("{file}: {:?}", said(&output)));
+    assert_eq!(found["same"], true, "{file} is not {known}: {found}");
+    assert_eq!(found["reached"], true, "{file}: {found}");
 }
 
 const CURVES: &str = "\
@@ -113,7 +142,7 @@ fn files_that_hold_nothing_are_refused() {
         (
             "curves.txt",
             b"",
-            "'curves.txt' is neither a .l nor a .ifs file",
+            "the format of 'curves.txt' is not known: --from is one of l, ifs, csv, aifs, genes, fsk",
         ),
         ("missing.l", b"", "there is no file 'missing.l'"),
     ];

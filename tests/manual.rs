@@ -46,7 +46,16 @@ fn examples_work() {
     fs::write(folder.path().join("set.yaml"), set).unwrap();
     let curve = "Koch { Angle 6 Axiom F F=F+F--F+F }";
     let maps = "Dust { .5 0 0 .5 0 0 1 .3 0 0 .3 1 0 1 }";
-    for (name, text) in [("fractint.l", curve), ("other.ifs", maps)] {
+    let tiles = "@\n$dim=2\nA=2^-1*([1, 0]|[0, 1]|[0, 0])*A\n";
+    let curves = "[{\"name\": \"Dragon\", \"gene\": \"G 1 0 0 0 0 1 1 0\"}]";
+    let table = ".5 0 0 0 .5 0 1\n.5 0 .5 0 .5 .5 1\n";
+    for (name, text) in [
+        ("fractint.l", curve),
+        ("other.ifs", maps),
+        ("maple.txt", table),
+        ("tiles.aifs", tiles),
+        ("curves.json", curves),
+    ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
     for picture in ["leaf.png", "gasket.png"] {

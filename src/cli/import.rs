@@ -1,31 +1,44 @@
-//! `kfrac import`: converts files of Fractint.
+//! `kfrac import`: converts files of other programs.
 
 use std::collections::BTreeSet;
-use std::io::Read as _;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ValueHint;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 
 use crate::catalogue::{cannot_be_read, open_file};
-use crate::diagnostic::{Diagnostic, Diagnostics, Source};
-use crate::import::{Fractint, Imported, read_fractint};
+use crate::diagnostic::{Diagnostic, Diagnostics, Source, listed};
+use crate::import::{Columns, Format, ImportOptions, Imported, read};
+use crate::style::Named as _;
 
 use super::check::{DiagnosticRow, row};
-use super::{Failure, help, output, text};
+use super::{Failure, help, input, output, text};
 
-/// Converts the entries of Fractint files to files that kfrac can grow
+/// Converts files of other programs to files that kfrac can grow
 ///
-/// An L-system file (.l) or a file of systems of maps, of the plane or (3D) of space (.ifs), has many entries, each of which
-/// becomes a YAML file of the same name. Unsupported constructs are reported for each entry, and an entry
-/// that cannot be converted faithfully is not written. The exit status is 1 if an entry is not written.
+/// Each entry of a file becomes a YAML file of the same name; a table of maps is one entry with the name of its file.
+/// Constructs without a counterpart are reported for each entry with their lines, and an entry that cannot be converted to
+/// the same set is not written. The exit status is 1 if an entry is not written.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
-    /// Fractint files, with the extension .l or .ifs
+    /// Files to convert, or - for standard input
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     sources: Vec<PathBuf>,
+    /// Format of the files, by default that of the extension of each
+    #[arg(long, value_name = "FORMAT", value_parser = format())]
+    from: Option<Format>,
+    /// Columns of tables of maps, by letters, such as abcdefp
+    ///
+    /// Each letter stands for a number of a map: x' = a x + b y + e, y' = c x + d y + f, in space x' = a x + b y + c z + j,
+    /// y' = d x + e y + f z + k, z' = g x + h y + i z + l, and p for its probability; - is a column that is left out. acbdef
+    /// is the order of SVG and flam3, abecdf that of x' before y'. By default the header of a table names its columns, in any
+    /// order.
+    #[arg(long, value_name = "LETTERS", allow_hyphen_values = true)]
+    columns: Option<Columns>,
     /// Output folder, which is created if necessary
     #[arg(long, short, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
@@ -43,7 +56,19 @@ Examples:
       Converts every L-system of a file, and reports the entries that are not supported
   kfrac import *.ifs
       Converts several files of systems of maps, into the current folder
+  kfrac import tiles.aifs -o tiles
+      Converts every set of IFStile's format: a system, or a structure where sets refer to each other
+  kfrac import curves.json --from genes
+      Converts genes of plane-filling curves on square and triangular lattices to rules
+  kfrac import maple.txt --from csv --columns abecdfp
+      Reads a row of a table as the coefficients of x', those of y', and a probability
 ";
+
+fn format() -> impl TypedValueParser<Value = Format> {
+    let formats = Format::NAMES.iter();
+    let formats = formats.map(|(name, format)| PossibleValue::new(*name).help(format.described()));
+    PossibleValuesParser::new(formats).try_map(|name| Format::from_name(&name).ok_or("unknown"))
+}
 
 /// Result for an entry, or for the text between entries.
 #[derive(Serialize)]
@@ -59,16 +84,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         force: arguments.force,
         names: BTreeSet::new(),
     };
+    let options = ImportOptions::default();
+    let options = match &arguments.columns {
+        Some(columns) => options.columns(columns.clone()),
+        None => options,
+    };
     let mut all_written = true;
     let mut rows = Vec::new();
     for path in &arguments.sources {
-        let (source, kind) = open(path)?;
-        let (entries, stray) = read_fractint(&source, kind);
+        let format = format_of(path, arguments)?;
+        let source = open(path)?;
+        let (entries, stray) = read(&source, format, &options);
+        if stray.has_errors() && entries.is_empty() {
+            return Err(stray.into());
+        }
         if entries.is_empty() {
-            let message = format!("'{}' has no entries", path.display());
-            return Err(Diagnostic::error(message)
-                .hint("an entry is Name { ... }")
-                .into());
+            let message = format!("'{}' has no entries", source.name());
+            let hint = format!("an entry is {}", format.example());
+            return Err(Diagnostic::error(message).hint(hint).into());
         }
         let mut reports = vec![(None, None, stray)];
         for Imported {
@@ -87,7 +120,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if arguments.json {
             rows.extend(reports);
         } else {
-            report(path, &reports, &arguments.output);
+            report(source.name(), &reports, &arguments.output);
         }
     }
     if arguments.json {
@@ -111,7 +144,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 type Entry = (Option<String>, Option<PathBuf>, Diagnostics);
 
 /// Prints the diagnostics of a file and the number of entries that were written.
-fn report(path: &Path, reports: &[Entry], folder: &Path) {
+fn report(name: &str, reports: &[Entry], folder: &Path) {
     // Each entry is reported separately, because a list of diagnostics is abbreviated after its first ones.
     for (_, _, found) in reports.iter().filter(|(_, _, found)| !found.is_empty()) {
         text::print_diagnostics(found);
@@ -123,9 +156,9 @@ fn report(path: &Path, reports: &[Entry], folder: &Path) {
         0 => String::new(),
         _ => format!(" of {}", written.len() + left.len()),
     };
-    let (path, folder) = (path.display(), folder.display());
+    let folder = folder.display();
     text::print_message(&format!(
-        "{path}: {}{of} written to {folder}",
+        "{name}: {}{of} written to {folder}",
         written.len()
     ));
     if !left.is_empty() {
@@ -137,23 +170,43 @@ fn report(path: &Path, reports: &[Entry], folder: &Path) {
     }
 }
 
-/// Returns the text of a file, and its kind by its extension.
-fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
-    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let kind = match extension.to_str() {
-        Some("l") => Fractint::LSystems,
-        Some("ifs") => Fractint::Ifs,
-        _ => {
-            let message = format!("'{}' is neither a .l nor a .ifs file", path.display());
-            return Err(Failure::Usage(message));
-        }
+/// Returns the format of a file: that of the arguments, or that of its extension.
+fn format_of(path: &Path, arguments: &Arguments) -> Result<Format, Failure> {
+    let format = arguments.from.or_else(|| Format::of_path(path));
+    let format = format.ok_or_else(|| {
+        let name = match path == Path::new("-") {
+            true => "standard input".into(),
+            false => format!("'{}'", path.display()),
+        };
+        let names = listed(Format::NAMES.iter().map(|(name, _)| *name));
+        Failure::Usage(format!(
+            "the format of {name} is not known: --from is one of {names}"
+        ))
+    })?;
+    if arguments.columns.is_some() && format != Format::Csv {
+        let message = format!(
+            "--columns is for tables of maps, not for {}",
+            format.described()
+        );
+        return Err(Failure::Usage(message));
+    }
+    Ok(format)
+}
+
+/// Returns the text of a file, or of standard input.
+fn open(path: &Path) -> Result<Arc<Source>, Failure> {
+    input::note(path);
+    let is_standard_input = path == Path::new("-");
+    let input: Box<dyn io::Read> = match is_standard_input {
+        true => Box::new(io::stdin().lock()),
+        false => Box::new(open_file(path)?),
     };
     let mut bytes = Vec::new();
-    let read = open_file(path)?
+    let read = input
         .take(Source::MAX_BYTES as u64 + 1)
         .read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;
-    // Files of Fractint may be older than UTF-8: other bytes are read as Latin-1.
+    // Files may be older than UTF-8: other bytes are read as Latin-1.
     if std::str::from_utf8(&bytes).is_err()
         && !bytes.contains(&0)
         && bytes.len() <= Source::MAX_BYTES
@@ -164,7 +217,10 @@ fn open(path: &Path) -> Result<(Arc<Source>, Fractint), Failure> {
             .collect::<String>()
             .into_bytes();
     }
-    Ok((Source::read_file(path, bytes)?, kind))
+    Ok(match is_standard_input {
+        true => Source::read("<stdin>", bytes)?,
+        false => Source::read_file(path, bytes)?,
+    })
 }
 
 /// Files that have been written.

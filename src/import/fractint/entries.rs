@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
 
 /// An entry: `Name { words }`.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(in crate::import) struct Entry {
     pub(super) name: String,
     /// Place of the name.
     pub(super) place: Place,

@@ -26,7 +26,7 @@ struct LSystemEntry<'e> {
     rules: Vec<(char, Vec<&'e Word>)>,
 }
 
-pub(super) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
+pub(in crate::import) fn write(entry: &Entry, found: &mut Diagnostics) -> Option<Entries> {
     let system = LSystemEntry::read(entry, found);
     let missing =
         |what: &str| Diagnostic::error(format!("{} has no {what}", entry.name)).at(&entry.place);

@@ -8,7 +8,11 @@ use crate::model::Model;
 
 use super::commands::{self, Command, Heading};
 use super::entries::{self, Entry};
-use super::{Fractint, read};
+use crate::import::{Format, ImportOptions, Imported};
+
+fn read(source: &Arc<Source>, format: Format) -> (Vec<Imported>, Diagnostics) {
+    crate::import::read(source, format, &ImportOptions::default())
+}
 
 fn source(text: &str) -> Arc<Source> {
     Source::new("some/test.ifs", text)
@@ -150,7 +154,7 @@ fn scales_without_their_numbers_are_told() {
 fn systems_of_maps_are_read() {
     let (imported, stray) = read(
         &source("fern { ; Barnsley\n 0 0 0 .16 0 0 .01\n .85 .04 -.04 .85 0 1.6 .85 }"),
-        Fractint::Ifs,
+        Format::Ifs,
     );
     assert!(
         stray.is_empty() && imported[0].found.is_empty(),
@@ -192,7 +196,7 @@ few (3d) {
 }
 flat { .5 0 0 0 .5 0 0 0 .5 0 0 0 1 }
 ";
-    let (imported, stray) = read(&source(text), Fractint::Ifs);
+    let (imported, stray) = read(&source(text), Format::Ifs);
     let [fern, few, flat] = &imported[..] else {
         panic!("{imported:?}");
     };
@@ -229,7 +233,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
             "space (3D) { 1 }\nodd (4D) { 1 }\nword { 1 two 3 4 5 6 7 }\nshort { .5 0 0 .5 0 0 1 .5 0 }\n\
              grows { 2 0 0 2 0 0 1 }\nnone { }\nnever { .5 0 0 .5 0 0 1 .5 0 0 .5 1 0 0 }\ninf { .5 0 0 .5 inf 1e999 1 }",
         ),
-        Fractint::Ifs,
+        Format::Ifs,
     );
     let read: Vec<_> = imported
         .iter()
@@ -285,7 +289,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
 
 /// Returns the only entry of an L-system file as YAML, from `angle` on.
 fn lsystem(text: &str) -> String {
-    let (imported, stray) = read(&Source::new("test.l", text), Fractint::LSystems);
+    let (imported, stray) = read(&Source::new("test.l", text), Format::LSystems);
     assert!(stray.is_empty(), "{stray}");
     let [entry] = &imported[..] else {
         panic!("{imported:?}");
@@ -397,7 +401,7 @@ fn the_step_that_is_taken_draws_something() {
         ("X F=FF X=+", 20_000, 12),
     ] {
         let text = format!("a {{ angle 4 axiom {entry} }}");
-        let (imported, _) = read(&Source::new("test.l", text), Fractint::LSystems);
+        let (imported, _) = read(&Source::new("test.l", text), Format::LSystems);
         let document = imported[0].document.as_ref().expect("it is right");
         let (Model::LSystem(system), _) = document.resolve(&[]).expect("it is right") else {
             panic!("it is an L-system");
@@ -411,7 +415,7 @@ fn the_step_that_is_taken_draws_something() {
 fn the_turtle_has_two_headings() {
     let (imported, _) = read(
         &Source::new("test.l", "a { angle 4 axiom F+\\45D[+F\\45D]FD!+\\45FD|F }"),
-        Fractint::LSystems,
+        Format::LSystems,
     );
     assert!(imported[0].found.is_empty(), "{}", imported[0].found);
     let document = imported[0].document.as_ref().expect("it is right");
@@ -441,7 +445,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
                 bracket { angle 4 axiom F]F F=F[[F }\n\
                 good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }\n\
                 quote { angle 4 axiom F'F }\ntwo { angle 4 axiom FD }\nback { angle 5 axiom F|!F }";
-    let (imported, _) = read(&Source::new("test.l", text), Fractint::LSystems);
+    let (imported, _) = read(&Source::new("test.l", text), Format::LSystems);
     let read = imported.iter().map(|entry| {
         (
             &entry.name[..],

@@ -1,0 +1,10 @@
+//! Fuzzing of AIFS.
+
+#![no_main]
+
+mod imported;
+
+use kfrac::import::{Format, ImportOptions};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| imported::check(text, Format::Aifs, &ImportOptions::default()));

@@ -1,0 +1,18 @@
+//! Fuzzing of tables of maps, with the columns of their header, and with those of the other orders.
+
+#![no_main]
+
+mod imported;
+
+use kfrac::import::{Format, ImportOptions};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    let stated = ["acbdefp", "-abecdf", "jklabcdefghip"].map(|columns| {
+        ImportOptions::default().columns(columns.parse().expect("these are columns"))
+    });
+    imported::check(text, Format::Csv, &ImportOptions::default());
+    for options in stated {
+        imported::check(text, Format::Csv, &options);
+    }
+});

@@ -1,0 +1,14 @@
+//! Fuzzing of files of Fractint, as L-systems and as systems of maps.
+
+#![no_main]
+
+mod imported;
+
+use kfrac::import::{Format, ImportOptions};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    for format in [Format::LSystems, Format::Ifs] {
+        imported::check(text, format, &ImportOptions::default());
+    }
+});

@@ -1,0 +1,10 @@
+//! Fuzzing of genes of curves.
+
+#![no_main]
+
+mod imported;
+
+use kfrac::import::{Format, ImportOptions};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| imported::check(text, Format::Genes, &ImportOptions::default()));
