@@ -19,6 +19,7 @@ mod dimensions;
 mod edits;
 mod estimates;
 mod exact;
+mod exchanged;
 mod figures;
 mod films;
 mod fit;

@@ -187,7 +187,7 @@ fn the_command_line_says_how_long_bands_take() {
         "wide.png",
     ];
     let (_, said) = common::said(folder.path(), &arguments);
-    let note = "note: 67200 x 1000 pixels are drawn in bands, in about 1 s, to about 90 kB\nwide.png: step 3 of koch, ";
+    let note = "note: 67200 x 1000 pixels are drawn in bands, in about 1 s, to about 88 kB\nwide.png: step 3 of koch, ";
     assert!(said.starts_with(note), "{said}");
     let bytes = std::fs::read(folder.path().join("wide.png")).unwrap();
     // Width and height in the first chunk of a PNG.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::fractal::Fractal;
 use crate::import::{Channel, Raster};
 use crate::saturating::whole;
-use crate::style::{Style, View, Width};
+use crate::style::{Colour, Style, View, Width};
 
 use super::super::Failure;
 use super::super::rule::Loaded;
@@ -30,7 +30,7 @@ pub(super) fn measure(
     let metadata = loaded.model.metadata();
     let own = &metadata.style;
     let style = Style {
-        background: None,
+        background: Some(Colour::TRANSPARENT),
         width: match own.width {
             Width::Pixels(width) => Width::Pixels(width.min(1.0)),
             relative @ Width::Relative(_) => relative,
