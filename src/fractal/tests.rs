@@ -11,7 +11,7 @@ use crate::grow::WalkError;
 use crate::measure::Precision;
 use crate::render::space::{Camera, Light, Shade, SpaceOptions};
 use crate::render::{self, Options, RenderError, ZoomTarget};
-use crate::style::View;
+use crate::style::{Colour, View};
 
 use super::{Error, Fractal};
 
@@ -23,6 +23,13 @@ fn named(name: &str) -> Fractal {
     }
 }
 
+/// Returns the fractal without paper in PNG.
+fn without_paper(fractal: Fractal) -> Fractal {
+    let mut style = fractal.model().metadata().style.clone();
+    style.background.get_or_insert(Colour::TRANSPARENT);
+    fractal.style(style)
+}
+
 #[test]
 fn every_file_of_the_library_has_pixels_like_its_png() {
     let catalogue = Catalogue::embedded();
@@ -31,7 +38,7 @@ fn every_file_of_the_library_has_pixels_like_its_png() {
     let mut drawn = 0;
     for entry in entries.iter().filter(|entry| grown(entry.shelf)) {
         let steps = if entry.name == "plus-sign" { 1 } else { 3 };
-        let fractal = named(&entry.name).steps(steps);
+        let fractal = without_paper(named(&entry.name).steps(steps));
         // Some draw nothing yet.
         let (Ok(pixels), Ok(png)) = (fractal.pixels(64), fractal.png(64)) else {
             continue;
@@ -62,7 +69,8 @@ fn results_are_those_of_the_rooms() -> Result<(), Error> {
             ..render::Labels::default()
         },
         ..Options::of(dragon.model().metadata())
-    };
+    }
+    .on_paper();
     render::write(&graph, &crate::grow::Growth::steps(6), &options, &mut svg)?;
     assert!(dragon.svg()?.as_bytes() == svg);
     assert_eq!(dragon.elements()?.count(), 64);
@@ -292,10 +300,12 @@ fn the_file_has_the_values_that_are_set() -> Result<(), Error> {
 #[test]
 fn a_zoom_has_pixels_like_its_png() -> Result<(), Error> {
     let target = ZoomTarget::new("3^30".parse().unwrap(), "0.(1)".parse().unwrap());
-    let koch = named("koch").zoom(Some(target.clone()));
+    let koch = without_paper(named("koch").zoom(Some(target.clone())));
     let decoded = tiny_skia::Pixmap::decode_png(&koch.png(64)?).expect("it is a PNG");
     let pixels = koch.pixels(64)?;
     assert_eq!(pixels.size(), [decoded.width(), decoded.height()]);
+    let paper = tiny_skia::Pixmap::decode_png(&named("koch").png(64)?).expect("it is a PNG");
+    assert!(paper.pixels().iter().all(|pixel| pixel.alpha() == 255));
     let covered = |bytes: &[u8]| {
         bytes
             .chunks_exact(4)
