@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::fractal::Fractal;
 use crate::import::{Channel, Raster};
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 use crate::style::{Colour, Style, View, Width};
 
 use super::super::Failure;
@@ -56,10 +56,10 @@ pub(super) fn measure(
             .push("nothing is measured: a single point has no sizes to be measured at".into());
         return Ok(measured);
     }
-    // Strokes reach beyond the outlines.
+    // Strokes reach beyond the outlines; an excess of less than 10⁻⁶ pixels is rounding.
     let [width, height] = (bounds.size() / pixel)
         .to_array()
-        .map(|side| side.ceil() + 4.0);
+        .map(|side| (side - 1e-6).ceil() + 4.0);
     let middle = bounds.min().midpoint(bounds.max());
     let window = [
         middle.x - width * pixel / 2.0,
@@ -106,19 +106,24 @@ fn typical_length(fractal: &Fractal) -> Result<f64, Failure> {
                 reason = "logarithms of doubles are small"
             )]
             let class = class as i32;
-            *lengths[usize::from(!element.fertile)]
+            let (count, sum) = lengths[usize::from(!element.fertile)]
                 .entry(class)
-                .or_insert(0u64) += 1;
+                .or_insert((0, 0.0));
+            *count += 1;
+            *sum += length;
         }
     }
-    let median = |classes: &BTreeMap<i32, u64>| {
-        let half = classes.values().sum::<u64>().div_ceil(2);
+    // The mean of the class in which the median lies.
+    let median = |classes: &BTreeMap<i32, (u64, f64)>| {
+        let half = { classes.values() }.map(|(count, _)| count).sum::<u64>();
+        let half = half.div_ceil(2);
         let mut below = 0;
-        let class = classes.iter().find(|(_, count)| {
-            below += **count;
+        let mut classes = classes.values();
+        let (count, sum) = classes.find(|(count, _)| {
+            below += count;
             below >= half
-        });
-        class.map(|(&class, _)| libm::exp2(f64::from(class) / CLASSES))
+        })?;
+        Some(sum / real(usize::try_from(*count).ok()?))
     };
     let [fertile, others] = &lengths;
     Ok(median(fertile)
