@@ -184,7 +184,7 @@ impl Fractal {
     ///
     /// let encoding = PngEncoding::default().fast(true).grey(true);
     /// let frame = kfrac::Fractal::named("dragon")?.steps(10).png_encoding(encoding).png(400)?;
-    /// assert_eq!(frame[24..26], [8, 4]); // 8 bits each for grey and opacity
+    /// assert_eq!(frame[24..26], [8, 0]); // 8 bits of grey
     /// # Ok(())
     /// # }
     /// ```
