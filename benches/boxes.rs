@@ -1,4 +1,4 @@
-//! Benchmarks of box counting: `cargo bench --bench boxes`.
+//! Benchmarks of box counting: `cargo bench --locked --bench boxes`.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(

@@ -4,7 +4,7 @@
 On a fresh Debian:
 
     apt-get install --no-install-recommends netpbm jbigkit-bin python3
-    cargo build --release
+    cargo build --locked --release
     python3 benches/compression.py            # about ten minutes
     python3 benches/compression.py maple-leaf dragon
     python3 benches/compression.py --pictures leaf.pbm scan.png

@@ -5,7 +5,7 @@ On a fresh Debian:
 
     apt-get install --no-install-recommends fonts-symbola python3
     python3 -m pip install pillow numpy scikit-learn    # for digits and glyphs, which are left out without them
-    cargo build --release --bin kfrac --example fits
+    cargo build --locked --release --bin kfrac --example fits
     python3 benches/fit.py                   # about half an hour
     python3 benches/fit.py library speed     # some of: library, free, random, fern, island, digits, glyphs, speed
 

@@ -1,4 +1,4 @@
-//! Benchmarks of growing and writing: `cargo bench`, or `cargo bench -- walk` for some of them.
+//! Benchmarks of growing and writing: `cargo bench --locked`, or `cargo bench --locked -- walk` for some of them.
 
 #![allow(missing_docs, reason = "a program of its own")]
 #![allow(

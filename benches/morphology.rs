@@ -1,4 +1,4 @@
-//! Benchmarks of morphology: `cargo bench --bench morphology`.
+//! Benchmarks of morphology: `cargo bench --locked --bench morphology`.
 //!
 //! The picture is a Koch island that fills it. Targets, on a quiet machine: the skeleton in 0.03 s at 1024² and 0.5 s
 //! at 4096², the opening by a disk of radius 64 in 0.4 s at 4096².

@@ -5,13 +5,13 @@ targets.
 On a fresh Debian:
 
     apt-get install --no-install-recommends contextfree flam3-utils python3
-    cargo build --release
+    cargo build --locked --release
     python3 benches/peers.py            # about ten minutes; cfdg takes up to 7 GB of memory
     python3 benches/peers.py --quick    # a minute; small cases only
     python3 benches/peers.py --films    # films only; half a minute
     python3 -m pip install numba        # to compare the chaos game with numba, and boxes with numpy
     python3 -m pip install trimesh scipy    # to compare voxels with trimesh
-    cargo install l-system-fractals     # for the Koch curve as an L-system
+    cargo install --locked l-system-fractals     # for the Koch curve as an L-system
     apt-get install --no-install-recommends povray    # for the sponge in space; 4 GB of memory
 
 Whole commands run alternately, and their medians are compared: on a machine with other load only the
@@ -449,7 +449,7 @@ def main():
     arguments = parser.parse_args()
     kfrac = Path(arguments.kfrac).resolve()
     if not kfrac.is_file():
-        sys.exit(f"there is no {kfrac}: run cargo build --release")
+        sys.exit(f"there is no {kfrac}: run cargo build --locked --release")
     if shutil.which("cfdg") is None:
         sys.exit("there is no cfdg: run apt-get install contextfree")
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-//! Benchmark of pictures for programs: `cargo bench --bench pixels`.
+//! Benchmark of pictures for programs: `cargo bench --locked --bench pixels`.
 //!
 //! Draws by the entry functions of [`kfrac::Fractal`], 1024 pixels on the long side: pixels without an encoder, PNG
 //! with each encoding, and an encoding in 8-bit grey where the picture is black on white.

@@ -1,4 +1,4 @@
-//! Benchmark of the short cuts of PNG pictures: `cargo bench --bench short_cuts`.
+//! Benchmark of the short cuts of PNG pictures: `cargo bench --locked --bench short_cuts`.
 //!
 //! Draws ten rules of the library to half a pixel, 2048 pixels wide or high, and a tree of one colour to a number
 //! of steps, with all short cuts and without one each. Rows are named by the rule and by the short cut left out.

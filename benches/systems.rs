@@ -1,4 +1,4 @@
-//! Benchmarks of pictures of random systems: `cargo bench --bench systems`.
+//! Benchmarks of pictures of random systems: `cargo bench --locked --bench systems`.
 //!
 //! Every sample is a different one of 1,000 affine systems, in a picture of 1024 × 1024 pixels on two
 //! threads; median and slowest sample are the figures of interest. A system that is refused ends the

@@ -1,7 +1,7 @@
 //! Builds a rule in code and writes it as SVG to standard output: regular polygons of regular
 //! polygons, one in every corner, as large as possible without overlap.
 //!
-//!     cargo run --example build_rule -- 7 > heptagons.svg
+//!     cargo run --locked --example build_rule -- 7 > heptagons.svg
 
 use std::error::Error;
 use std::io::{self, Write};

@@ -1,7 +1,7 @@
 //! Measures the limit sets of the whole library by box counting and compares the results with their known
 //! dimensions.
 //!
-//!     cargo run --release --example dimensions
+//!     cargo run --locked --release --example dimensions
 //!
 //! The table is Markdown: the exact dimension, or else the one that the file states, the measured one with
 //! its standard error, the deviation in standard errors, and whether local slopes drift. Sets with equal box

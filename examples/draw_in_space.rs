@@ -1,6 +1,6 @@
 //! Draws a set in space from several directions, one PNG each, and prints its box.
 //!
-//!     cargo run --release --example draw_in_space -- icosahedron-flake
+//!     cargo run --locked --release --example draw_in_space -- icosahedron-flake
 
 #![allow(clippy::print_stdout, reason = "the result is printed")]
 

@@ -1,7 +1,7 @@
 //! Draws the systems of the library, fits systems to their pictures, and compares.
 //!
-//!     cargo run --release --example fits -- [--size 128] [--free] [--method auto] [--effort 20000] [--save FOLDER] [NAME ...]
-//!     cargo run --release --example fits -- --random 35
+//!     cargo run --locked --release --example fits -- [--size 128] [--free] [--method auto] [--effort 20000] [--save FOLDER] [NAME ...]
+//!     cargo run --locked --release --example fits -- --random 35
 //!
 //! The table is Markdown: the number of maps of the library and of the fit, intersection over union, along the
 //! boundaries too, the share of the fit within 2 pixels of the picture, Hausdorff distance in per cent of the longer side,

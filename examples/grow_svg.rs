@@ -1,6 +1,6 @@
 //! Grows a rule of the library and writes it as SVG to standard output.
 //!
-//!     cargo run --example grow_svg -- dragon 10 > dragon.svg
+//!     cargo run --locked --example grow_svg -- dragon 10 > dragon.svg
 
 use std::error::Error;
 use std::io::{self, Write};

@@ -1,6 +1,6 @@
 //! Measures the spectra D_q of the whole library and compares them with the exact ones where these are known.
 //!
-//!     cargo run --release --example spectra
+//!     cargo run --locked --release --example spectra
 //!
 //! The table is Markdown: the exact dimension, which is that of all orders of a natural measure, and for
 //! every order the deviation of the measured value with its standard error. A star marks deviations of more

@@ -1,6 +1,6 @@
 //! Iterates over the elements of an approximant in order, without holding them: the turns of a curve.
 //!
-//!     cargo run --example visit_elements
+//!     cargo run --locked --example visit_elements
 
 #![allow(clippy::print_stdout, reason = "the result is printed")]
 

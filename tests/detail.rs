@@ -115,7 +115,7 @@ fn assert_joined(fractals: &[(FractalInfo, Vec<Element>, bool)]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(common::cases(200))]
 
     /// A detail finer than the elements of a walk changes nothing.
     #[test]

@@ -3,6 +3,7 @@
 mod extremes;
 mod laws;
 mod library;
+mod measured;
 mod spectrum;
 mod systems;
 

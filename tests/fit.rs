@@ -286,7 +286,7 @@ fn files_are_grown_in_place() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(crate::common::cases(48))]
 
     #[test]
     fn the_bound_holds_for_any_candidate(

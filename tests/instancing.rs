@@ -213,7 +213,7 @@ fn structures() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(64))]
 
     #[test]
     fn random_structures_grow_as_they_are_expanded(text in structures(), steps in 0..4u32) {

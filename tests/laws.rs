@@ -81,7 +81,7 @@ fn close(a: DVec2, b: DVec2) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(400))]
 
     /// Two engines agree: the walk over the graph, and Kaandorp's algorithm on lists.
     #[test]
@@ -378,7 +378,7 @@ fn blocks_of_the_library_are_the_elements_one_by_one() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(200))]
 
     #[test]
     fn blocks_are_the_elements_one_by_one(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {

@@ -131,7 +131,7 @@ fn the_rules_of_the_reference_are_valid() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(crate::common::cases(64))]
 
     #[test]
     fn random_rules_are_valid(text in rules::rule(rules::Features::ALL)) {

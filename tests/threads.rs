@@ -387,7 +387,7 @@ fn pictures_of_many_elements_do_not_depend_on_the_number_of_threads() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(200))]
 
     #[test]
     fn spans_are_the_whole_walk(text in rules::rule(Features::ALL), steps in 0..5u32, seed in 0..3u64) {

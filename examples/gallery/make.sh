@@ -2,7 +2,7 @@
 # Regenerates the pictures of this folder.
 set -eu
 cd "$(dirname "$0")"
-kfrac() { cargo run --quiet --release --manifest-path ../../Cargo.toml -- "$@" --quiet; }
+kfrac() { cargo run --locked --quiet --release --manifest-path ../../Cargo.toml -- "$@" --quiet; }
 
 kfrac grow dahlia --size 480 -o dahlia.svg
 kfrac grow meadow --size 640 -o meadow.svg

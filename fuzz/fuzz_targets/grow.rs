@@ -8,19 +8,20 @@
 #![no_main]
 
 mod mutate;
+mod random;
 
 use std::fmt::Debug;
 use std::num::NonZero;
 use std::sync::Arc;
 
+use kfrac::Count;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
 use kfrac::export::{self, TableFormat};
-use kfrac::geometry::{Bounds, Frame, Frame3, Point};
-use kfrac::Count;
-use kfrac::graph::{Graph, Level};
 use kfrac::extent::bounding_box;
+use kfrac::geometry::{Bounds, Frame, Frame3, Point};
+use kfrac::graph::{Graph, Level};
 use kfrac::grow::{Elements, Growth, WalkError, Walked};
 use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
@@ -29,7 +30,8 @@ use kfrac::render::{self, Format, Labels, Options, SceneFormat, Size, write_scen
 use kfrac::rule::Rule;
 use kfrac::style::Named;
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
-use mutate::{Random, mutated};
+use mutate::mutated;
+use random::Random;
 
 /// Maximum number of elements, small enough for milliseconds per input.
 const MAX_ELEMENTS: u64 = 1_000;
@@ -128,7 +130,14 @@ fn grow_in_space(model: &Model, graph: &Graph<Frame3>) -> Result<[Vec<u8>; 2], S
         .threads(NonZero::<usize>::MIN);
     let mut png = Vec::new();
     // The limit of maps that hardly contract has very many elements of a pixel.
-    let drawn = write_space(graph, Some(steps.min(4)), &options, &SpaceOptions::default(), None, &mut png);
+    let drawn = write_space(
+        graph,
+        Some(steps.min(4)),
+        &options,
+        &SpaceOptions::default(),
+        None,
+        &mut png,
+    );
     drawn.map_err(|error| error.to_string())?;
     assert!(png.starts_with(b"\x89PNG") && png.ends_with(b"IEND\xaeB`\x82"));
     // Scenes may be refused, but are whole where they are not.
@@ -162,7 +171,13 @@ fn grow_rule(rule: &Arc<Rule>) -> Result<[String; 2], String> {
     let allowed = graph.check_size(steps, MAX_ELEMENTS).is_ok();
     let growth = Growth::steps(steps).max_elements(MAX_ELEMENTS);
     let mut table = Vec::new();
-    let walked = export::write(&graph, &growth, TableFormat::Csv, NonZero::<usize>::MIN, &mut table);
+    let walked = export::write(
+        &graph,
+        &growth,
+        TableFormat::Csv,
+        NonZero::<usize>::MIN,
+        &mut table,
+    );
     if let Ok(walked) = walked {
         assert!(allowed, "refused, but grown");
         if let Some(level) = level {
@@ -207,11 +222,14 @@ fn text<E: Debug>(bytes: Result<Vec<u8>, E>) -> Result<String, String> {
 
 fn picture(rule: &Rule, graph: &Graph, growth: &Growth<'_>) -> Result<Vec<u8>, String> {
     let description = rule.description();
-    let mut options = Options::of(rule.metadata()).size(Size::Long(300)).labels(Labels {
+    let mut options = Options::of(rule.metadata())
+        .size(Size::Long(300))
+        .labels(Labels {
             title: description.title.clone().unwrap_or_default(),
             description: description.about.clone().unwrap_or_default(),
             provenance: String::new(),
-        }).threads(NonZero::<usize>::MIN);
+        })
+        .threads(NonZero::<usize>::MIN);
     let mut svg = Vec::new();
     render::write(graph, growth, &options, &mut svg).map_err(|error| error.to_string())?;
     check_xml(&svg);

@@ -3,25 +3,7 @@
 
 use std::ops::Range;
 
-/// Generator of choices (Marsaglia's xorshift, 2003).
-pub struct Random(u32);
-
-impl Random {
-    pub fn new(seed: u32) -> Self {
-        Self(seed.max(1))
-    }
-
-    pub fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 as usize % bound.max(1)
-    }
-
-    fn of<T: Clone>(&mut self, choices: &[T]) -> Option<T> {
-        choices.get(self.below(choices.len())).cloned()
-    }
-}
+use crate::random::Random;
 
 /// Returns the text with up to three mutations.
 pub fn mutated(text: &str, random: &mut Random) -> String {
@@ -32,7 +14,7 @@ pub fn mutated(text: &str, random: &mut Random) -> String {
             1 => groups(&text),
             _ => words(&text),
         };
-        let (Some(at), Some(other)) = (random.of(&stretches), random.of(&stretches)) else {
+        let (Some(at), Some(other)) = (random.one_of(&stretches), random.one_of(&stretches)) else {
             continue;
         };
         let other = text[other].to_owned();
@@ -98,6 +80,6 @@ fn piece(random: &mut Random) -> String {
         .lines()
         .filter_map(|line| line.strip_prefix('"')?.strip_suffix('"'))
         .collect();
-    let piece = random.of(&pieces).unwrap_or_default();
+    let piece = random.one_of(&pieces).unwrap_or_default();
     piece.replace("\\x0a", "\n").replace("\\x22", "\"")
 }

@@ -14,7 +14,7 @@
 //!
 //! The D_q of a limit set are those of a measure on it, a [`Cascade`]: the measure that the weights define,
 //! or the natural one. For every entry of the library whose dimension is decided, the measured D_q lie within
-//! 0.03 and three standard errors of it for q from −2 to 5 (`cargo run --release --example spectra`), and
+//! 0.03 and three standard errors of it for q from −2 to 5 (`cargo run --locked --release --example spectra`), and
 //! within 0.01 except for sets whose rim has nearly their own dimension, as the Lévy curve's of 1.934.
 //!
 //! The axes are those of the sets: x to the right and y up. Rows of pictures run from the top down.

@@ -191,7 +191,7 @@ fn digest(text: &str) -> Result<(), Diagnostics> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(400))]
 
     #[test]
     fn no_mistake_panics_or_hangs(

@@ -135,7 +135,7 @@ fn rule() -> impl Strategy<Value = RuleBuilder> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(common::cases(512))]
 
     /// A rule that builds can be saved and compiled; any other is refused with errors.
     #[test]

@@ -12,6 +12,18 @@ use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
 use kfrac::rule::Rule;
+use proptest::test_runner::Config as ProptestConfig;
+
+/// Returns the configuration of a property that is tested on `cases` inputs, or on `KFRAC_CASES` times as many.
+pub(crate) fn cases(cases: u32) -> ProptestConfig {
+    let times = std::env::var("KFRAC_CASES")
+        .map(|times| times.parse().expect("KFRAC_CASES is a whole number"));
+    ProptestConfig {
+        cases: cases.saturating_mul(times.unwrap_or(1)),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
 
 /// Runs the program in a folder; returns its status and its standard error.
 pub(crate) fn said(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {

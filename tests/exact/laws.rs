@@ -23,7 +23,7 @@ fn distinct_sums(digits: &BTreeSet<i64>, generations: usize) -> Vec<usize> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(crate::common::cases(40))]
 
     /// Pieces of (x + d)/3 with integers d lie on a lattice, where distinct ones can be counted.
     #[test]
@@ -84,7 +84,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(crate::common::cases(12))]
 
     /// The computation neither panics nor runs forever for any maps, and its bounds hold.
     #[test]

@@ -188,7 +188,7 @@ fn norm(matrix: DMat2) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(crate::common::cases(64))]
 
     #[test]
     fn bounds_hold_for_all_words(

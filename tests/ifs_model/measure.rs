@@ -245,7 +245,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig { failure_persistence: ProptestConfig::default().failure_persistence, ..crate::common::cases(32) })]
 
     #[test]
     fn moments_are_those_of_all_words(system in shrinking()) {

@@ -134,7 +134,7 @@ fn close(a: DVec3, b: DVec3) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(200))]
 
     /// A rule of the plane has the same elements in space.
     #[test]

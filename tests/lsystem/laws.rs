@@ -104,7 +104,7 @@ fn step(system: &LSystem) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(crate::common::cases(300))]
 
     #[test]
     fn contexts_fit_as_on_trees(word in tree("abc+-"), left in "[ab]{0,2}", right in tree("ab")) {

@@ -37,7 +37,7 @@ fn adorned(word: &str, looks: &[&str]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(crate::common::cases(48))]
 
     #[test]
     fn limit_sets_have_no_looks(
