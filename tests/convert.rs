@@ -1,5 +1,7 @@
 //! Conversions between kinds, against the originals.
 
+mod random;
+
 use std::collections::BTreeMap;
 
 use crate::common::{document, document_of};

@@ -13,15 +13,15 @@ pub(super) fn write<M: Convertible>(
     structure: &Structure<M>,
     keeps: Keeps,
 ) -> Result<Entries, Refusal> {
+    if keeps == Keeps::Approximants && structure.objects.is_empty() {
+        let what = "nothing is replaced, and an object draws its shapes after a step";
+        return Err(Refusal::Steps(what));
+    }
     let has_shapes = structure.instances().any(|placed| placed.object.is_none());
     let initial = match structure.initial() {
         Some(Some(shape)) => Some(M::set(&structure.shapes[shape], &M::IDENTITY)),
         // Where there are shapes, objects that are not replaced draw nothing.
-        Some(None) | None
-            if keeps == Keeps::Limit || has_shapes && structure.objects.is_empty() =>
-        {
-            None
-        }
+        Some(None) | None if keeps == Keeps::Limit => None,
         Some(None) if has_shapes => None,
         _ => {
             let what = "what is replaced does not all look the same, as an initial set does";
