@@ -201,7 +201,7 @@ fn counts_agree(graph: &Graph, growth: &Growth<'_>) {
 
 /// Iterates over all fractals of the library with their graphs, at the deepest step within a limit of
 /// elements.
-fn library(max_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
+pub(crate) fn library(max_elements: u64) -> impl Iterator<Item = (String, Model, Graph, u32)> {
     let catalogue = Catalogue::embedded();
     let mut entries = catalogue.entries();
     entries.retain(|entry| Shelf::grown().contains(&entry.shelf));

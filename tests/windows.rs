@@ -1,6 +1,8 @@
 //! Windows are details of the whole picture.
 
 use crate::common::{compiled, document, resolved};
+use crate::threads::library;
+use kfrac::geometry::DVec2;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Detail, Format, Options, Size};
 use kfrac::style::{ColorBy, View};
@@ -50,4 +52,56 @@ fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
             }
         }
     }
+}
+
+/// A window of any picture of the library is the crop of the whole, or of the doubled picture, but for the rounding of
+/// places: edges lie on hundredths of a pixel and on 64 samples of it.
+#[test]
+fn windows_of_the_library_are_crops_within_rounding() {
+    const WHOLE: usize = 160;
+    const PART: usize = 80;
+    let mut checked = 0;
+    for (name, model, graph, steps) in library(3_000) {
+        let growth = Growth::steps(steps);
+        let Ok(Some(bounds)) = kfrac::extent::bounding_box(&graph, &growth).map(Some) else {
+            continue;
+        };
+        let side = 1.1 * bounds.size().max_element();
+        if !(side > 0.0 && side.is_finite()) {
+            continue;
+        }
+        let corner = ((bounds.min() + bounds.max()) / 2.0) - DVec2::splat(side / 2.0);
+        let draw = |corner: DVec2, side: f64, pixels: usize| {
+            let options = Options::of(model.metadata())
+                .view(View {
+                    window: Some([corner.x, corner.y, side, side]),
+                    margin: Some(0.0),
+                })
+                .size(Size::Long(pixels as u32));
+            let drawn = render::pixels(&graph, &growth, &options);
+            drawn.unwrap_or_else(|error| panic!("{name}: {error}"))
+        };
+        let whole = draw(corner, side, WHOLE);
+        for [column, row] in [[40, 40], [17, 66]] {
+            // Rows are counted from the top.
+            let below = WHOLE - PART - row;
+            let shift = DVec2::new(column as f64, below as f64) * (side / WHOLE as f64);
+            let part = draw(corner + shift, side * PART as f64 / WHOLE as f64, PART);
+            let mut differences = Vec::with_capacity(4 * PART * PART);
+            for (line, bytes) in part.premultiplied().chunks_exact(4 * PART).enumerate() {
+                let start = 4 * ((row + line) * WHOLE + column);
+                let crop = &whole.premultiplied()[start..start + 4 * PART];
+                differences.extend(crop.iter().zip(bytes).map(|(a, b)| a.abs_diff(*b)));
+            }
+            let most = differences.iter().max().copied().unwrap_or(0);
+            let total: u64 = differences.iter().map(|it| u64::from(*it)).sum();
+            let mean = total as f64 / differences.len() as f64;
+            assert!(
+                most <= 64 && mean <= 0.2,
+                "{name} at step {steps}: {most}, {mean} in the mean"
+            );
+        }
+        checked += 1;
+    }
+    assert!(checked > 120, "{checked}");
 }
