@@ -48,6 +48,7 @@ mod snapshots;
 mod steadiness;
 mod studio;
 mod surroundings;
+mod symmetry;
 mod systems;
 mod terminal;
 mod threads;

@@ -51,7 +51,10 @@ impl<'a> PlaneGame<'a> {
             .within(&place)
             .map_or_else(|| source.clone(), Arc::new);
         let start = chaos.start(|start| place.origin_of(start.place.truncate()));
-        let iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        let mut iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        if let Some(group) = &source.metadata().symmetry {
+            iteration.system = iteration.system.with_images(group.isometries());
+        }
         if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {
             return Err(Failure::Usage(format!(
                 "--start {start} lies in space, and {} in the plane: a point is X,Y",
