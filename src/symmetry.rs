@@ -1,9 +1,16 @@
-//! Symmetry groups under which a picture is repeated: the cyclic groups C_n and the dihedral groups D_n about a centre.
+//! Symmetry groups under which a picture is repeated: the cyclic groups C_n and the dihedral groups D_n about a centre, and,
+//! as [tilings](Tiling), the wallpaper and frieze groups.
 //!
 //! The picture of a model with a symmetry is the union of the images of its set under the isometries of the group
 //! (Field & Golubitsky, *Symmetry in Chaos*, 2nd edition 2009). The set itself, its similarity
 //! dimension and its numbers of steps are those of the model without it. Every image starts a fractal of its own, in
 //! which indices count from 1 and the draws are those of the first. Images may coincide.
+
+mod groups;
+mod tiling;
+
+pub use groups::TilingGroup;
+pub use tiling::{Tiling, TooManyCopies};
 
 use std::fmt;
 

@@ -52,6 +52,7 @@ mod symmetry;
 mod systems;
 mod terminal;
 mod threads;
+mod tilings;
 mod tints;
 mod turns;
 mod tweens;
