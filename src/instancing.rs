@@ -162,6 +162,7 @@ impl Instancing {
     /// if a shape has no extent there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         let mut within = self.clone();
+        within.metadata = self.metadata.within(place);
         let back = place.backwards();
         let objects = within.objects.iter_mut();
         let instances = objects.flat_map(|object| {

@@ -177,6 +177,7 @@ mod saturating;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod style;
+mod symmetry;
 pub mod tween;
 mod written;
 pub mod zoom;
@@ -192,6 +193,7 @@ pub use metadata::{Description, Metadata, Parameter};
 pub use output_file::WriteError;
 pub use render::{Pixels, PngEncoding, Size};
 pub use style::{Style, View};
+pub use symmetry::{Symmetry, Tiling, TilingGroup, TooManyCopies};
 pub use written::{Written, WrittenNumber, WrittenPoint};
 
 /// Random rules for the tests of several modules.

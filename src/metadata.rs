@@ -1,7 +1,9 @@
 //! Metadata that files of all kinds have beside their mathematics.
 
 use crate::expression::Program;
+use crate::geometry::Homothety;
 use crate::style::{SpaceView, Style, View};
+use crate::symmetry::Symmetry;
 
 /// Maximum number of steps that a file may propose.
 pub(crate) const MAX_STEPS: u32 = 1_000_000;
@@ -63,10 +65,23 @@ pub struct Metadata {
     pub dimension: Option<f64>,
     /// Published Hausdorff dimension, where it differs from the similarity dimension.
     pub hausdorff_dimension: Option<f64>,
+    /// Group under whose isometries the picture is repeated.
+    pub symmetry: Option<Symmetry>,
     /// Style of drawings.
     pub style: Style,
     /// Part of the plane that is drawn, and the margin.
     pub view: View,
     /// View of a set in space.
     pub space: SpaceView,
+}
+
+impl Metadata {
+    /// Returns the metadata in the coordinates that a homothety maps to the present ones.
+    pub(crate) fn within(&self, place: &Homothety) -> Self {
+        let symmetry = self.symmetry.as_ref();
+        Self {
+            symmetry: symmetry.map(|group| group.within(place)),
+            ..self.clone()
+        }
+    }
 }

@@ -241,14 +241,43 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// As for [`Graph::compile`] and [`Graph::of_lsystem`].
+    /// As for [`Graph::compile`] and [`Graph::of_lsystem`], and if the initiator and its images under a symmetry have more
+    /// than `max_elements` elements.
     pub fn compile_for(
         &self,
         steps: u32,
         seed: u64,
         max_elements: u64,
     ) -> Result<Graph, CompileError> {
+        let graph = self.compile_listed(steps, seed, max_elements)?;
+        self.with_images(graph, max_elements)
+    }
+
+    /// Compiles the model as [`compile_for`](Self::compile_for) does, without the images under its symmetry.
+    pub(crate) fn compile_listed(
+        &self,
+        steps: u32,
+        seed: u64,
+        max_elements: u64,
+    ) -> Result<Graph, CompileError> {
         self.as_kind().compile(steps, seed, max_elements)
+    }
+
+    /// Joins a graph of the model with its images under the model's [symmetry](Symmetry), if it has one.
+    fn with_images(&self, graph: Graph, max_elements: u64) -> Result<Graph, CompileError> {
+        let Some(group) = &self.metadata().symmetry else {
+            return Ok(graph);
+        };
+        let most = max_elements.clamp(1, Self::MAX_LISTED);
+        let listed = graph
+            .initiators
+            .iter()
+            .map(|chain| chain.instances.len() as u64);
+        if listed.sum::<u64>().saturating_mul(group.order().into()) > most {
+            let group = group.to_string();
+            return Err(CompileError::TooManyImages { group, most });
+        }
+        Ok(graph.with_images(&group.isometries()))
     }
 
     /// Returns the model whose graph has the limit set: the model itself, except for an L-system that does not

@@ -50,6 +50,11 @@ macro_rules! of_all_kinds {
             self.set("style", written::style(style).value())
         }
 
+        /// Sets the group under whose isometries the picture is repeated, in the plane.
+        pub fn symmetry(self, symmetry: &crate::Symmetry) -> Self {
+            self.set("symmetry", written::symmetry(symmetry))
+        }
+
         /// Sets the view: the window and the margin.
         pub fn view(self, view: &View) -> Self {
             self.set("view", written::view(view).value())

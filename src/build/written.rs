@@ -1,9 +1,11 @@
 //! Conversion of validated values to the nodes of a file.
 
 use crate::document::node::{Key, Node, Value};
+use crate::geometry::DVec2;
 use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
 use crate::style::{Colour, Named, Palette, Style, Tube, View, Width};
+use crate::symmetry::Symmetry;
 
 use super::{NumberText, PointText};
 
@@ -102,6 +104,19 @@ pub(crate) fn description(entries: Entries, description: &Description) -> Entrie
         .set_some("about", about.as_ref().map(text))
         .set_some("source", source.as_ref().map(text))
         .set_some("tags", tags)
+}
+
+/// Returns the entries of a symmetry that differ from the defaults.
+pub(crate) fn symmetry(symmetry: &Symmetry) -> Value {
+    let number = |value: f64| NumberText::from(value).0;
+    let axis = Some(symmetry.axis).filter(|&axis| symmetry.mirror && axis != 90.0);
+    let centre = Some(symmetry.centre).filter(|&centre| centre != DVec2::ZERO);
+    Entries::default()
+        .set("rotate", number(symmetry.rotate.into()))
+        .set_some("mirror", symmetry.mirror.then_some(Value::Bool(true)))
+        .set_some("centre", centre.map(|centre| PointText::from(centre).0))
+        .set_some("axis", axis.map(number))
+        .value()
 }
 
 /// Returns the entries of a style that differ from the defaults.

@@ -119,6 +119,9 @@ pub fn play_in_space(
         keys: vec![DepthPicture::EMPTY; bins],
         hits: if counts { vec![0; bins] } else { Vec::new() },
     };
+    if let Some(progress) = game.progress {
+        progress.expect(game.points);
+    }
     let nearest = count(&course, game, bins, &fresh, |wave, tally| {
         if course.is_double {
             walk_double(&course, window, wave, tally)

@@ -37,7 +37,7 @@ use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::geometry::{DVec2, Point};
+use crate::geometry::{DAffine2, DVec2, Point};
 use crate::grow::Progress;
 use crate::ifs::PointOf;
 use crate::parallel::{all_cores, map};
@@ -194,16 +194,32 @@ pub fn play(
     if pixels.saturating_mul(classes as u64) > MAX_BINS {
         return Err(GameError::TooManyBins { size, classes });
     }
-    let course = Course::new(system, window.to_pixels, 1.0, game);
+    if let Some(progress) = game.progress {
+        progress.expect(game.points);
+    }
     // Every class has a bin for points outside.
     let bins = (width as usize * height as usize + 1) * classes;
-    let counts = count(
-        &course,
-        game,
-        bins,
-        &|| Counts(vec![0; bins]),
-        |wave, tally| raster::walk(&course, size, wave, tally),
-    )?;
+    let play = |isometry: DAffine2, game: &Game<'_>| {
+        let course = Course::new(system, window.to_pixels * isometry, 1.0, game);
+        let fresh = || Counts(vec![0; bins]);
+        count(&course, game, bins, &fresh, |wave, tally| {
+            raster::walk(&course, size, wave, tally)
+        })
+    };
+    let (first, others) = match system.images() {
+        [] => (DAffine2::IDENTITY, &[][..]),
+        [first, others @ ..] => (*first, others),
+    };
+    let order = others.len() as u64 + 1;
+    // The first images have the points that are left over.
+    let share = |image: u64| Game {
+        points: game.points / order + u64::from(image < game.points % order),
+        ..game.clone()
+    };
+    let mut counts = play(first, &share(0))?;
+    for (&isometry, image) in others.iter().zip(1..) {
+        counts.merge(play(isometry, &share(image))?);
+    }
     Ok(Histogram::new(size, classes, game.points, counts.0))
 }
 
@@ -215,9 +231,6 @@ fn count<M: Walked, C: Counter>(
     fresh: &(dyn Fn() -> C + Sync),
     walk: impl Fn(u64, &mut Tally<'_, C>) -> Result<(), Cancelled> + Sync,
 ) -> Result<C, GameError> {
-    if let Some(progress) = game.progress {
-        progress.expect(game.points);
-    }
     let all = Mutex::new(None);
     let next = AtomicU64::new(0);
     let walk = || {
@@ -294,7 +307,7 @@ pub fn points_of_text(text: &str) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{DAffine2, DMat2};
+    use crate::geometry::DMat2;
     use crate::ifs::{Definition, Ifs, Map};
 
     /// The fern: steep, slow to contract, and with maps of all kinds.

@@ -33,6 +33,8 @@ pub struct RandomPoints<'a, M: Walked = DAffine2> {
     at: RandomPoint<PointOf<M>>,
     /// Number of steps taken, over all walks.
     taken: u64,
+    /// Number of the image that is next.
+    image: usize,
 }
 
 impl<'a, M: Walked> RandomPoints<'a, M> {
@@ -50,6 +52,7 @@ impl<'a, M: Walked> RandomPoints<'a, M> {
                 map: first.last,
             },
             taken: 0,
+            image: 0,
         };
         if start.walk(0).is_none() {
             for _ in 0..WARM_UP {
@@ -74,6 +77,22 @@ impl<M: Walked> Iterator for RandomPoints<'_, M> {
     type Item = RandomPoint<PointOf<M>>;
 
     fn next(&mut self) -> Option<Self::Item> {
+        if self.image == 0 {
+            self.step();
+        }
+        let images = self.system.images();
+        let place = match images.get(self.image) {
+            Some(isometry) => isometry.apply(self.at.place),
+            None => self.at.place,
+        };
+        self.image = (self.image + 1) % images.len().max(1);
+        Some(RandomPoint { place, ..self.at })
+    }
+}
+
+impl<M: Walked> RandomPoints<'_, M> {
+    /// Takes a step, of a walk that begins where the last one has ended.
+    fn step(&mut self) {
         if let Start::Points { steps, .. } = self.start
             && self.taken.is_multiple_of(steps.get().into())
             && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))
@@ -83,6 +102,5 @@ impl<M: Walked> Iterator for RandomPoints<'_, M> {
         }
         self.taken += 1;
         self.advance();
-        Some(self.at)
     }
 }

@@ -29,6 +29,8 @@ pub struct WeightedMaps<M: Walked = DAffine2> {
     /// Probability of every map, one row per state of the walk.
     rows: Vec<Vec<f64>>,
     start: Start<PointOf<M>>,
+    /// Isometries whose images of every point are counted as well, the identity first; empty for none.
+    images: Vec<M>,
 }
 
 /// A point of the attractor.
@@ -126,7 +128,24 @@ impl<M: Walked> WeightedMaps<M> {
         }
         let start =
             start(ifs, &maps, &targets_of_maps(&rows, affine)).ok_or(SystemError::Expands)?;
-        Ok(Self { maps, rows, start })
+        Ok(Self {
+            maps,
+            rows,
+            start,
+            images: Vec::new(),
+        })
+    }
+
+    /// Replaces the points of the walk by their images under isometries, of which the first is the identity: an equal
+    /// share of all points for each image, which is that of the same walk.
+    #[must_use]
+    pub fn with_images(self, images: Vec<M>) -> Self {
+        Self { images, ..self }
+    }
+
+    /// Returns the isometries whose images of the walk are counted; empty for the walk alone.
+    pub(super) fn images(&self) -> &[M] {
+        &self.images
     }
 
     /// Returns the maps, followed by the condensation sets.

@@ -8,6 +8,7 @@ mod plot;
 mod scene;
 mod space;
 mod svg;
+mod tile;
 mod visible;
 mod watching;
 mod zoom;
@@ -25,8 +26,9 @@ use crate::document::Document;
 use crate::export;
 use crate::fractal::Goal;
 use crate::graph::Graph;
+use crate::metadata::Metadata;
 use crate::render::{self, RenderError};
-use crate::style::Named;
+use crate::style::{Named, View};
 
 use super::camera::{self, SpaceArguments};
 use super::growth::GrowthArguments;
@@ -43,6 +45,7 @@ use plan::{Format, Plan};
 use plot::PlotArguments;
 use scene::SceneArguments;
 use svg::SvgArguments;
+use tile::{TileArguments, Tiled};
 use zoom::ZoomArguments;
 
 /// Grows a rule and draws it, or lists its elements
@@ -117,6 +120,8 @@ pub(super) struct Arguments {
     #[arg(help_heading = "Picture")]
     turn: Option<f64>,
     #[command(flatten)]
+    tile: TileArguments,
+    #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
     space: SpaceArguments,
@@ -177,6 +182,8 @@ Examples:
       Draws an iterated function system by random iteration, into barnsley-fern.png
   kfrac grow maple-leaf --method chaos --morph close:2,open:3 -o leaf.png
       Fills gaps between the points of a picture, and removes what is thin
+  kfrac grow dragon --tile p4g -o tile.png
+      Repeats a set by the wallpaper group p4g, and draws one period, which continues itself at its edges
   kfrac grow menger --from 35,20 --perspective 40 -o menger.png
       Draws a set in space, to the pixel
   kfrac grow menger --method chaos --points 20M -o menger.png
@@ -330,6 +337,7 @@ impl Arguments {
             })?;
         }
         if loaded.model.is_in_space() {
+            self.tile.refuse_in_space(&loaded)?;
             let loaded = loaded.grown(&self.growth);
             return match *plan {
                 Plan::Scene(format) => scene::write(self, &loaded, format),
@@ -359,7 +367,7 @@ impl Arguments {
         match plan {
             Plan::Table(format) => {
                 let loaded = loaded.grown(&self.growth).turned(self.turn);
-                self.list(&loaded, *format, path)
+                self.list(loaded, *format, path)
             }
             Plan::Picture {
                 format,
@@ -409,6 +417,7 @@ impl Arguments {
         let given = all.into_iter();
         given
             .filter_map(|(name, value)| Some((name, value?.to_string())))
+            .chain(self.tile.options())
             .collect()
     }
 
@@ -424,16 +433,41 @@ impl Arguments {
         }
     }
 
+    /// Returns the copies of a set in the picture, if they are asked for.
+    fn tiled(&self, loaded: &Loaded, goal: Goal) -> Result<Option<Tiled>, Failure> {
+        if !self.tile.is_asked() {
+            return Ok(None);
+        }
+        let steps = match goal {
+            Goal::Steps(steps, _) => Some(steps),
+            Goal::Detail(_) => None,
+        };
+        let graph = loaded.compile(goal.steps())?;
+        let view = self.view(loaded.model.metadata());
+        let growth = (steps, self.growth.seed);
+        self.tile.tiled(&graph, growth, &view, self.size.size)
+    }
+
+    /// Returns the view of the picture. That of a file shows its set, and none of the copies.
+    fn view(&self, metadata: &Metadata) -> View {
+        match self.tile.is_asked() {
+            true => self.picture.view_in(&Metadata::default(), self.size.unit),
+            false => self.picture.view_in(metadata, self.size.unit),
+        }
+    }
+
     /// Lists the elements of a step; returns a summary and the number of bytes.
     fn list(
         &self,
-        loaded: &Loaded,
+        loaded: Loaded,
         format: export::TableFormat,
         path: &Path,
     ) -> Result<(String, u64), Failure> {
-        let goal = Goal::asked(self.steps, None, loaded)?;
+        let goal = Goal::asked(self.steps, None, &loaded)?;
         let steps = goal.steps();
         let color_by = self.picture.style(loaded.model.metadata()).color_by;
+        let tiled = self.tiled(&loaded, goal)?;
+        let loaded = &loaded.with_images(tiled.map(|tiled| tiled.images));
         let graph = loaded.compile_for(steps, color_by)?;
         if let Goal::Steps(..) = goal {
             self.growth.check(steps, &graph, loaded)?;

@@ -79,6 +79,9 @@ struct Info<'a> {
     space: u32,
     title: Option<&'a str>,
     params: serde_json::Map<String, serde_json::Value>,
+    /// Name of the group under which the picture is repeated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    symmetry: Option<String>,
     random: bool,
     regular: bool,
     steps: u32,
@@ -292,6 +295,7 @@ fn info<'a, F: Bounded>(
         params: params
             .map(|parameter| (parameter.name.clone(), number(parameter.value)))
             .collect(),
+        symmetry: metadata.symmetry.as_ref().map(ToString::to_string),
         random: graph.draws(),
         regular: graph.is_regular(),
         steps,

@@ -11,7 +11,7 @@ use etcetera::BaseStrategy;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Severity, Source};
 use crate::document::{Document, Setting};
-use crate::geometry::{Frame3, Homothety};
+use crate::geometry::{DAffine2, Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::grow::Growth;
 use crate::ifs::{AffineMap, System};
@@ -86,6 +86,8 @@ pub(super) struct Loaded {
     place: Option<Homothety>,
     /// Degrees by which graphs are turned about the origin of the file.
     turn: f64,
+    /// Isometries by whose images the turned set is replaced.
+    images: Option<Vec<DAffine2>>,
 }
 
 impl Loaded {
@@ -147,6 +149,22 @@ impl Loaded {
         }
     }
 
+    /// Sets isometries, in the coordinates of the file, by whose images the turned set is replaced in graphs.
+    pub(super) fn with_images(self, images: Option<Vec<DAffine2>>) -> Self {
+        Self { images, ..self }
+    }
+
+    /// Returns a graph in the coordinates of this rule as it is grown: turned, and with its images.
+    fn placed(&self, graph: Graph) -> Graph {
+        let graph = graph.turned(self.turn);
+        let Some(images) = &self.images else {
+            return graph;
+        };
+        let place = *graph.place();
+        let images: Vec<_> = images.iter().map(|image| place.within(image)).collect();
+        graph.with_images(&images)
+    }
+
     /// Returns [`Model::place`]; an error is reported as an error in the file.
     pub(super) fn place(&self) -> Result<Homothety, Failure> {
         let place = self.model.place().map_err(CompileError::from);
@@ -161,7 +179,7 @@ impl Loaded {
 
     fn graph_of(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
         let graph = self.graph_as_written(model, steps)?;
-        Ok(graph.turned(self.turn))
+        Ok(self.placed(graph))
     }
 
     fn graph_as_written(&self, model: &Model, steps: u32) -> Result<Graph, CompileError> {
@@ -263,8 +281,8 @@ impl Loaded {
         let model = &self.model;
         let graph = model.compile_coloured(color_by, || self.graph_as_written(model, steps));
         let graph = graph.map_err(|error| self.failure(&error))?;
-        let turned = graph.map(|graph| graph.turned(self.turn));
-        turned.ok_or_else(|| {
+        let placed = graph.map(|graph| self.placed(graph));
+        placed.ok_or_else(|| {
             let name = &self.name;
             let message = "too many maps and sets to distinguish the map that is applied last";
             anyhow::anyhow!("{name} has {message}").into()
@@ -416,6 +434,7 @@ impl RuleArguments {
             most_listed: None,
             place: None,
             turn: 0.0,
+            images: None,
         })
     }
 

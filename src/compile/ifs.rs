@@ -297,8 +297,8 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         }
         let meets_frame = [self.chained; 2];
         let body = Chain {
-            instances,
             meets_frame,
+            ..Chain::loose(instances)
         };
         body.into()
     }

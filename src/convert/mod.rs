@@ -111,7 +111,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         Some(deepest) => model.metadata().steps.unwrap_or(deepest),
         None => STEPS,
     };
-    let graph = model.compile(steps)?;
+    let graph = model.compile_listed(steps, 0, Model::MAX_LISTED)?;
     // A time-indexed structure has no limit set, but is finite after its steps.
     let ends = graph.is_time_indexed() && graph.is_plain() && to == Kind::Instancing;
     if !ends {
@@ -226,6 +226,10 @@ fn headed(metadata: &Metadata, kind: Kind, own: Entries) -> Entries {
     );
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     entries
+        .set_some(
+            "symmetry",
+            metadata.symmetry.as_ref().map(written::symmetry),
+        )
         .set_some("style", some(style))
         .set_some("view", some(view))
 }

@@ -5,6 +5,7 @@ use crate::expression::PARTS;
 use crate::metadata::Description;
 use crate::style::{SpaceView, Style, View};
 
+use super::symmetry::SymmetryDocument;
 use super::{FilmOption, Written, WrittenNumber};
 
 /// Metadata of a file as written.
@@ -20,6 +21,8 @@ pub struct MetadataDocument {
     pub dimension: Option<WrittenNumber>,
     /// Published Hausdorff dimension, where overlaps make it smaller than the similarity dimension.
     pub hausdorff_dimension: Option<WrittenNumber>,
+    /// Group under whose isometries the picture is repeated.
+    pub symmetry: Option<SymmetryDocument>,
     /// Style of the picture.
     pub style: Style,
     /// Whether the style sets `color_by`.

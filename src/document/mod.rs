@@ -26,6 +26,7 @@ mod rule;
 mod schema;
 mod shape;
 mod style;
+mod symmetry;
 mod view;
 mod yaml;
 
@@ -59,6 +60,7 @@ pub use rule::{
 };
 
 pub use schema::{schema, schema_of_all};
+pub use symmetry::SymmetryDocument;
 
 pub use crate::written::{Written, WrittenNumber, WrittenPoint};
 

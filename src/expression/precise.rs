@@ -34,6 +34,11 @@ impl Precise {
     }
 
     /// Returns the number times 2^`bits`, rounded to an integer.
+    #[cfg(test)]
+    pub(crate) fn near(&self) -> f64 {
+        self.near
+    }
+
     pub(crate) fn fixed(&self, bits: usize) -> IBig {
         let shift = isize::try_from(bits).unwrap_or(isize::MAX);
         (self.exact.clone() << shift).to_int().value()

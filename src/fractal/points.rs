@@ -8,6 +8,7 @@ use crate::graph::CompileError;
 use crate::model::Model;
 use crate::render::{Size, density_canvas};
 use crate::style::View;
+use crate::symmetry::Symmetry;
 
 use super::{Error, Fractal};
 
@@ -46,6 +47,8 @@ impl Fractal {
             .within(&place)
             .map_or_else(|| Arc::clone(source), Arc::new);
         let system = WeightedMaps::of(source.ifs())?;
+        let images = source.metadata().symmetry.iter().map(Symmetry::isometries);
+        let system = system.with_images(images.flatten().collect());
         let own = View {
             margin: Some(0.0),
             ..source.metadata().view

@@ -131,6 +131,19 @@ impl Frame2 {
         }
     }
 
+    /// Returns the image under an isometry. The direction of the image of a similarity is that of its map, unless
+    /// `keeps_direction`.
+    #[must_use]
+    pub(crate) fn image(&self, isometry: &DAffine2, keeps_direction: bool) -> Self {
+        let is_mirrored = isometry.matrix2.determinant() < 0.0 && !keeps_direction;
+        let across = match is_mirrored {
+            true => Direction::YReflected,
+            false => Direction::Normal,
+        };
+        self.mapped(isometry)
+            .with_direction(self.direction * across)
+    }
+
     /// Returns the first and the last point of traversal, p0 and p1.
     #[inline]
     #[must_use]

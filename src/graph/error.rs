@@ -2,6 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::lsystem::RewriteError;
+use crate::readable::grouped;
 use crate::rule::{ElementContext, Rule, RuleFrame};
 
 /// Error: a model cannot be compiled or grown.
@@ -31,6 +32,14 @@ pub enum CompileError {
     /// The word of an L-system cannot be derived.
     #[error(transparent)]
     Word(#[from] RewriteError),
+    /// The initiator and its images under a symmetry have too many elements to be listed.
+    #[error("the initiator and its images under {group} have more than {} elements", grouped(&(*most).into()))]
+    TooManyImages {
+        /// Name of the group.
+        group: String,
+        /// Limit of their number.
+        most: u64,
+    },
     /// A coordinate of the turtle is beyond the range of doubles.
     #[error("the turtle goes too far: a coordinate is not finite")]
     TooFar,

@@ -204,10 +204,10 @@ fn side(direction: Direction) -> f64 {
     }
 }
 
-/// Returns the signed area between a chain of elements, as straight lines, and the line back to its
+/// Returns the signed area between a sequence of elements, as straight lines, and the line back to its
 /// start; 0 in space.
-fn area_under<F: Frame>(chain: &Chain<F>) -> f64 {
-    let ends = chain.instances.iter().map(|instance| instance.frame.ends());
+fn area_under<F: Frame>(instances: &[Instance<F>]) -> f64 {
+    let ends = instances.iter().map(|instance| instance.frame.ends());
     let areas = ends.map(|[from, to]| from.triangle(to).unwrap_or(0.0));
     areas.sum()
 }
@@ -219,7 +219,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
             is_plain: graph.is_plain(),
             is_similar: graph.is_similar(),
             population: BTreeMap::new(),
-            fractals: Count::from(1u64),
+            fractals: Count::from(graph.initiator(0).count() as u64),
             step: 0,
             new_lengths: [0.0; 2],
             work: 0,
@@ -233,10 +233,17 @@ impl<'g, F: Frame> Forecast<'g, F> {
             volumes: { graph.base_elements().iter() }
                 .map(Outline::volume)
                 .collect(),
-            path_area: area_under(graph.initiator(0)).abs(),
+            path_area: { graph.initiator(0).fractals() }
+                .map(|fractal| area_under(fractal).abs())
+                .sum(),
         };
-        let orientation = area_under(graph.initiator(0)).signum();
-        for (number, instance) in graph.initiator(0).instances.iter().enumerate() {
+        let fractals = graph.initiator(0).fractals();
+        let instances = fractals.flat_map(|fractal| {
+            let orientation = area_under(fractal).signum();
+            let numbered = fractal.iter().enumerate();
+            numbered.map(move |(number, instance)| (number, instance, orientation))
+        });
+        for (number, instance, orientation) in instances {
             let square = forecast.square(instance);
             let cube = forecast.cube(instance);
             forecast.add(
@@ -424,7 +431,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
             tally.sums.parted += std::mem::take(&mut tally.sums.beside);
             match &graph.objects[number].replacement {
                 Replacement::Fixed(successor) => {
-                    self.path_area += tally.sums.signed * area_under(&successor.body);
+                    self.path_area += tally.sums.signed * area_under(&successor.body.instances);
                     let count = tally.count.to_f64();
                     let mut parent = tally.sums;
                     if successor.body.meets_frame != [true; 2] {
@@ -434,7 +441,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
                     self.add_chain(&tally.count, parent, &successor.body);
                     for seed in &successor.seeds {
                         self.fractals += &tally.count;
-                        let area = area_under(&seed.chain);
+                        let area = area_under(&seed.chain.instances);
                         let orientation = if area < 0.0 { -1.0 } else { 1.0 };
                         let mut parent = tally.sums;
                         if seed.placement == Placement::SeedsAsInitiator {

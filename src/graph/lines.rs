@@ -3,22 +3,25 @@
 use crate::geometry::{Frame, Outline};
 use crate::rule::Part;
 
-use super::{Chain, Graph, Replacement};
+use super::{Chain, Graph, Instance, Replacement};
 
 impl<F: Frame> Chain<F> {
-    /// Returns whether every instance but the first joins the one before it.
+    /// Returns whether every instance but the first of a fractal joins the one before it.
     pub(crate) fn is_joined(&self) -> bool {
-        let mut later = self.instances.iter().skip(1);
+        let mut later = self.fractals().flat_map(|fractal| fractal.iter().skip(1));
         later.all(|instance| instance.joined)
     }
 
-    /// Returns whether the last instance joins the first one.
+    /// Returns whether the last instance joins the first one, in any of the fractals that the chain starts.
     #[must_use]
     pub fn is_ring(&self) -> bool {
-        self.instances
-            .first()
-            .is_some_and(|instance| instance.joined)
+        self.fractals().any(is_ring)
     }
+}
+
+/// Returns whether the last of the instances of a fractal joins the first one.
+pub(crate) fn is_ring<F: Frame>(fractal: &[Instance<F>]) -> bool {
+    fractal.first().is_some_and(|instance| instance.joined)
 }
 
 impl<F: Frame> Graph<F> {

@@ -33,10 +33,12 @@ pub use check_size::TooLarge;
 pub use error::{CompileError, OutOfRange};
 pub(crate) use error::{EXTENTS, FARTHEST};
 pub use forecast::{Forecast, Level, Population};
+pub(crate) use lines::is_ring;
 pub use object::{Alternative, Chain, Instance, Object, Replacement, Seed, Successor};
 pub(crate) use roots::{Root, Roots, SeededFractal};
 pub(crate) use source::{Buffers, Source};
 
+use std::num::NonZero;
 use std::sync::Arc;
 
 use crate::expression::degrees;
@@ -60,6 +62,8 @@ pub struct Graph<F: Frame = Frame2> {
     /// Initiators, by the number of steps that are grown from them; the last is that of all larger
     /// numbers. Never empty.
     pub(crate) initiators: Vec<Chain<F>>,
+    /// Number of positions in the initiators as listed; `None` if they have no images.
+    pub(crate) listed: Option<NonZero<u32>>,
     /// Ancestry of the initiator's elements, and fractals seeded before; empty if growth begins with the
     /// initiator.
     pub(crate) roots: Arc<Roots<F>>,
@@ -98,6 +102,7 @@ impl<F: Frame> Graph<F> {
             origins: 0,
             objects,
             initiators,
+            listed: None,
             roots: Arc::default(),
             depth: None,
             no_limit: None,
@@ -141,11 +146,25 @@ impl<F: Frame> Graph<F> {
     }
 
     /// Returns the chain from which a number of steps is grown: approximant 0, unless the graph [is
-    /// time-indexed](Graph::is_time_indexed).
+    /// time-indexed](Graph::is_time_indexed). Images under a [symmetry](crate::Symmetry) follow the elements as listed.
     #[must_use]
     pub fn initiator(&self, steps: u32) -> &Chain<F> {
         let last = self.initiators.len() - 1;
         &self.initiators[(steps as usize).min(last)]
+    }
+
+    /// Returns the position in the initiator as listed of an element of the initiator or of an image of it.
+    pub(crate) fn listed_position(&self, position: u32) -> u32 {
+        self.split_position(position)[1]
+    }
+
+    /// Returns the number of the image to which an element of the initiator belongs, and the element's position in the
+    /// initiator as listed.
+    pub(crate) fn split_position(&self, position: u32) -> [u32; 2] {
+        match self.listed {
+            Some(listed) => [position / listed, position % listed],
+            None => [0, position],
+        }
     }
 
     /// Iterates over all chains from which growth starts: initiators, and fractals seeded before.
@@ -198,6 +217,11 @@ impl<F: Frame> Graph<F> {
     #[must_use]
     pub fn draws(&self) -> bool {
         self.draws
+    }
+
+    /// Returns whether approximants may have several fractals: images of the initiator under a symmetry, or seeds.
+    pub(crate) fn has_fractals(&self) -> bool {
+        self.seeds || self.starts().any(|start| start.count() > 1)
     }
 
     /// Returns whether an object may be replaced, unlike one that is [kept](Replacement::Kept).
@@ -332,6 +356,36 @@ impl Graph {
             self.place.exponent() + place.exponent(),
             self.place.point(place.point(DVec2::ZERO)),
         );
+        self
+    }
+
+    /// Replaces what is grown by its images under isometries, in the graph's coordinates. Each image is a fractal, or several,
+    /// of its own: it has the indices and the draws of the set. The positions of its elements in the initiator come after
+    /// those of the images before.
+    #[must_use]
+    pub fn with_images(mut self, isometries: &[DAffine2]) -> Self {
+        if *isometries == [DAffine2::IDENTITY] {
+            return self;
+        }
+        let keeps_directions = self.affine;
+        let instances = self.initiators.iter().flat_map(|chain| &chain.instances);
+        let stride = instances.map(|it| it.position + 1).max().unwrap_or(1);
+        self.listed = self.listed.or(NonZero::new(stride));
+        for chain in &mut self.initiators {
+            let breaks = std::mem::take(&mut chain.breaks);
+            let listed = std::mem::take(&mut chain.instances);
+            for (image, isometry) in (0..).zip(isometries) {
+                let before = chain.instances.len();
+                let first = Some(before).filter(|_| image > 0);
+                chain.breaks.extend(first);
+                chain.breaks.extend(breaks.iter().map(|at| before + at));
+                chain.instances.extend(listed.iter().map(|it| Instance {
+                    frame: it.frame.image(isometry, keeps_directions),
+                    position: it.position + image * stride,
+                    ..it.clone()
+                }));
+            }
+        }
         self
     }
 

@@ -83,6 +83,9 @@ pub struct Chain<F: Frame = Frame2> {
     /// Whether the first instance starts, and whether the last one ends, at the end points of the
     /// replaced element.
     pub meets_frame: [bool; 2],
+    /// Indices of the instances with which further fractals start, in ascending order; empty unless the chain is an
+    /// initiator with images under a [symmetry](crate::Symmetry).
+    pub(crate) breaks: Vec<usize>,
 }
 
 /// Chain that starts a new fractal.
@@ -108,8 +111,27 @@ impl<F: Frame> Chain<F> {
     pub(crate) fn loose(instances: Vec<Instance<F>>) -> Self {
         Self {
             instances,
-            meets_frame: [false; 2],
+            ..Self::default()
         }
+    }
+
+    /// Returns the number of fractals that the chain starts: 1, unless it is an initiator with images.
+    pub(crate) fn count(&self) -> usize {
+        self.breaks.len() + 1
+    }
+
+    /// Returns the instances with which a fractal starts, by its number from 0.
+    pub(crate) fn fractal(&self, number: usize) -> &[Instance<F>] {
+        let from = number
+            .checked_sub(1)
+            .map_or(0, |before| self.breaks[before]);
+        let to = self.breaks.get(number).copied();
+        &self.instances[from..to.unwrap_or(self.instances.len())]
+    }
+
+    /// Iterates over the fractals that the chain starts.
+    pub(crate) fn fractals(&self) -> impl Iterator<Item = &[Instance<F>]> {
+        (0..self.count()).map(|number| self.fractal(number))
     }
 }
 

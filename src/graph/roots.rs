@@ -33,7 +33,8 @@ pub(crate) struct Root {
 /// Fractal that was seeded before.
 #[derive(Clone, Debug)]
 pub(crate) struct SeededFractal<F: Frame = Frame2> {
-    /// Fractal that seeded it: 0 for the initiator, otherwise its number in the list, from 1.
+    /// Number of the fractal that seeded it: that of an image of the initiator, which come first, or its number in the
+    /// list after them.
     pub(crate) by: usize,
     /// Position of the first root whose descendants come after the element that seeded it.
     pub(crate) before: u32,

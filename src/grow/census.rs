@@ -139,9 +139,9 @@ impl Census {
                 kind.becomes = match (replacement, below.first()) {
                     (Replacement::Fixed(successor), Some(below)) if kind.is_replaced => {
                         for seed in &successor.seeds {
-                            largest = largest.max(sum(below, kind, &seed.chain));
+                            largest = largest.max(sum(below, kind, &seed.chain.instances));
                         }
-                        sum(below, kind, &successor.body)
+                        sum(below, kind, &successor.body.instances)
                     }
                     // The replacement has no instances.
                     _ if kind.is_replaced => 0,
@@ -150,8 +150,9 @@ impl Census {
             }
         }
         let first = self.steps.first();
-        let first = first.map_or(0, |first| sum(first, &self.whole(), start));
-        largest.max(first)
+        let whole = self.whole();
+        let of = |fractal: &[Instance<F>]| first.map_or(0, |first| sum(first, &whole, fractal));
+        start.fractals().map(of).fold(largest, u128::max)
     }
 
     /// Iterates over the kinds of elements born in each step.
@@ -224,9 +225,9 @@ fn add<F: Frame>(cohorts: &mut Cohorts, parent: &Cohort, instance: &Instance<F>)
     kind.count = kind.count.saturating_add(parent.count);
 }
 
-/// Returns the number of descendants of a chain in the place of an element of a kind.
-fn sum<F: Frame>(cohorts: &Cohorts, parent: &Cohort, chain: &Chain<F>) -> u128 {
-    let children = chain.instances.iter().map(|instance| {
+/// Returns the number of descendants of instances in the place of an element of a kind.
+fn sum<F: Frame>(cohorts: &Cohorts, parent: &Cohort, instances: &[Instance<F>]) -> u128 {
+    let children = instances.iter().map(|instance| {
         let (key, _) = child(parent, instance);
         cohorts.get(&key).map_or(0, |kind| kind.becomes)
     });

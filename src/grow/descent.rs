@@ -1,7 +1,7 @@
 //! Depth-first traversal of one fractal at one step.
 
 use crate::geometry::{Direction, Frame, Frame2, Outline};
-use crate::graph::{Chain, CompileError, Graph, Replacement, Seed, Successor};
+use crate::graph::{Chain, CompileError, Graph, Replacement, Seed, Successor, is_ring};
 
 use super::block::{Blocks, Run};
 use super::census::Census;
@@ -87,7 +87,6 @@ impl Ranks {
 
 impl<'g, F: Frame> Descent<'g, F> {
     pub(super) fn new(graph: &'g Graph<F>, start: &Start<'g, F>, target: u32) -> Self {
-        let chain = start.chain();
         let levels = if graph.counts_index() {
             (target - start.born) as usize + 1
         } else {
@@ -105,7 +104,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                 meets_end: true,
                 level: start.born,
             }],
-            joined: chain.is_ring(),
+            joined: is_ring(start.instances()),
             ranks: Ranks {
                 counts: vec![0; levels],
                 pending: vec![0; levels],
@@ -249,12 +248,12 @@ impl<'g, F: Frame> Descent<'g, F> {
             let Some(entry) = self.stack.last_mut() else {
                 return Ok(Next::End);
             };
-            let chain = match entry.source {
-                Source::Start => start.chain(),
-                Source::Fixed(chain) => chain,
-                Source::Pooled(number) => &self.pool[number].body,
+            let instances = match entry.source {
+                Source::Start => start.instances(),
+                Source::Fixed(chain) => &chain.instances,
+                Source::Pooled(number) => &self.pool[number].body.instances,
             };
-            let count = chain.instances.len();
+            let count = instances.len();
             if entry.next == count {
                 // An empty chain is the only one still on the stack when it is exhausted.
                 self.joined = false;
@@ -266,10 +265,10 @@ impl<'g, F: Frame> Descent<'g, F> {
             } else {
                 entry.next
             };
-            let instance = &chain.instances[listed];
+            let instance = &instances[listed];
             if entry.next > 0 {
                 let link = if entry.reversed { listed + 1 } else { listed };
-                self.joined &= chain.instances[link].joined;
+                self.joined &= instances[link].joined;
             }
             entry.next += 1;
             let is_root = matches!(entry.source, Source::Start)

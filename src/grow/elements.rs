@@ -57,10 +57,10 @@ impl<'g, F: Frame> Elements<'g, F> {
     ///
     /// If the graph was compiled for fewer steps.
     pub fn of(graph: &'g Graph<F>, growth: &Growth<'g>) -> Self {
-        let first = Start::initiator(graph, growth.steps, growth.seed);
+        let firsts = Start::all(graph, growth.steps, growth.seed);
         Self {
             graph,
-            fractals: Fractals::new(graph, growth.steps, 0..=u32::MAX, first),
+            fractals: Fractals::new(graph, growth.steps, 0..=u32::MAX, firsts),
             steps: growth.steps,
             current: None,
             counts: Counts(Tally::new(growth)),

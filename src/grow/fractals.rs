@@ -1,9 +1,10 @@
 //! The fractals of an approximant, depth-first, and the search for the seeds from which they grow.
 
 use std::ops::RangeInclusive;
+use std::vec;
 
 use crate::geometry::Frame;
-use crate::graph::{Graph, Instance, Object, Replacement};
+use crate::graph::{Graph, Instance, Object, Replacement, is_ring};
 
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
@@ -78,6 +79,8 @@ pub(super) struct Fractals<'g, F: Frame> {
     goes_on: Vec<bool>,
     /// The next fractal, if it is known.
     next: Option<Start<'g, F>>,
+    /// The fractals that none of the others seeds, which are still to be visited.
+    firsts: vec::IntoIter<Start<'g, F>>,
     /// The fractals whose seeds are being looked for, the innermost one last.
     parents: Vec<Parent<'g, F>>,
     count: u64,
@@ -88,7 +91,7 @@ impl<'g, F: Frame> Fractals<'g, F> {
         graph: &'g Graph<F>,
         steps: u32,
         ages: RangeInclusive<u32>,
-        first: Start<'g, F>,
+        firsts: Vec<Start<'g, F>>,
     ) -> Self {
         assert!(
             graph.depth().is_none_or(|depth| depth >= steps),
@@ -111,7 +114,8 @@ impl<'g, F: Frame> Fractals<'g, F> {
             ages,
             goes_on: objects.map(goes_on).collect(),
             leads_to_seeds,
-            next: Some(first),
+            next: None,
+            firsts: firsts.into_iter(),
             parents: Vec::new(),
             count: 0,
         }
@@ -135,7 +139,11 @@ impl<'g, F: Frame> Fractals<'g, F> {
             }
             let last_birth = self.last_birth();
             let Some(parent) = self.parents.last_mut() else {
-                return Ok(None);
+                self.next = self.firsts.next();
+                if self.next.is_none() {
+                    return Ok(None);
+                }
+                continue;
             };
             self.next = parent.queue.pop();
             if self.next.is_some() {
@@ -200,7 +208,7 @@ impl<'g, F: Frame> Fractals<'g, F> {
         FractalInfo {
             number,
             age: self.age(start),
-            is_ring: start.chain().is_ring(),
+            is_ring: is_ring(start.instances()),
         }
     }
 

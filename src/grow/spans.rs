@@ -166,9 +166,9 @@ where
         fresh,
         has_failed: false,
     };
-    let first = (Start::initiator(graph, growth.steps, growth.seed), true);
+    let firsts = (Start::all(graph, growth.steps, growth.seed), true);
     let stop = Stop::AtSubtrees(&sizes);
-    let sent = send(graph, growth.steps, first, stop, census, &mut spans);
+    let sent = send(graph, growth.steps, firsts, stop, census, &mut spans);
     if !spans.has_failed {
         // Spans submitted before a failure may have failed earlier in the order of the walk.
         spans.finish()?;

@@ -39,7 +39,7 @@ impl<F: Frame> TraversalState<F> {
         let child = Self {
             length: 1.0,
             root: instance.position,
-            ..self.child(graph, instance)
+            ..self.placed(graph, instance, graph.listed_position(instance.position))
         };
         match graph.roots.elements.get(instance.position as usize) {
             None => child,
@@ -60,12 +60,18 @@ impl<F: Frame> TraversalState<F> {
     /// Returns the placement of an instance that replaces part of this element.
     #[inline]
     pub(crate) fn child(&self, graph: &Graph<F>, instance: &Instance<F>) -> Self {
+        self.placed(graph, instance, instance.position)
+    }
+
+    /// Returns the placement of an instance in this element; draws see it at a position.
+    #[inline]
+    fn placed(&self, graph: &Graph<F>, instance: &Instance<F>, position: u32) -> Self {
         Self {
             frame: self.frame.compose(&instance.frame),
             length: self.length * instance.length,
             root: self.root,
             path: if graph.draws() {
-                let path = self.path.child(instance.position);
+                let path = self.path.child(position);
                 match &instance.corners {
                     Some(corners) => path.with_corners(self.path, corners),
                     None => path,
@@ -95,8 +101,8 @@ pub(super) struct Start<'g, F: Frame = Frame2> {
 
 #[derive(Clone, Debug)]
 pub(super) enum StartChain<'g, F: Frame = Frame2> {
-    /// Initiator, or a fractal seeded before: its instances are roots.
-    Initiator(&'g Chain<F>),
+    /// Initiator, an image of it, or a fractal seeded before: its instances are roots.
+    Initiator(&'g [Instance<F>]),
     /// Seed of a fixed successor, with the indices of the object and of the seed.
     Fixed {
         chain: &'g Chain<F>,
@@ -108,11 +114,23 @@ pub(super) enum StartChain<'g, F: Frame = Frame2> {
 impl<'g, F: Frame> Start<'g, F> {
     /// Returns the start of growth by a number of steps.
     pub(super) fn initiator(graph: &'g Graph<F>, steps: u32, seed: u64) -> Self {
+        Self::image(graph, steps, seed, 0)
+    }
+
+    /// Returns the starts of growth by a number of steps: the initiator and its images.
+    pub(super) fn all(graph: &'g Graph<F>, steps: u32, seed: u64) -> Vec<Self> {
+        let images = 0..graph.initiator(steps).count();
+        images
+            .map(|image| Self::image(graph, steps, seed, image))
+            .collect()
+    }
+
+    fn image(graph: &'g Graph<F>, steps: u32, seed: u64, image: usize) -> Self {
         Self {
-            chain: StartChain::Initiator(graph.initiator(steps)),
+            chain: StartChain::Initiator(graph.initiator(steps).fractal(image)),
             state: TraversalState::whole(seed),
             born: 0,
-            seeded: graph.roots.seeded_by(0),
+            seeded: graph.roots.seeded_by(image),
         }
     }
 
@@ -120,30 +138,31 @@ impl<'g, F: Frame> Start<'g, F> {
     pub(super) fn seeded(graph: &'g Graph<F>, number: usize) -> Self {
         let seeded = &graph.roots.seeded[number];
         Self {
-            chain: StartChain::Initiator(&seeded.chain),
+            chain: StartChain::Initiator(&seeded.chain.instances),
             // Each root has its own path, so the seed is unused.
             state: TraversalState::whole(0),
             born: seeded.born,
-            seeded: graph.roots.seeded_by(number + 1),
+            seeded: graph.roots.seeded_by(graph.initiator(0).count() + number),
         }
     }
 
     /// Returns the first step after `step` in which roots are born, or in which elements that seeded
     /// fractals before were replaced.
     pub(super) fn next_after(&self, graph: &Graph<F>, step: u32) -> Option<u32> {
-        let StartChain::Initiator(chain) = self.chain else {
+        let StartChain::Initiator(roots) = self.chain else {
             return None;
         };
-        let roots = chain.instances.iter().filter_map(|it| birth(graph, it));
+        let roots = roots.iter().filter_map(|it| birth(graph, it));
         let seeded = graph.roots.seeded[self.seeded.clone()].iter();
         let all = roots.chain(seeded.map(|seeded| seeded.born - 1));
         all.filter(|&next| next > step).min()
     }
 
-    pub(super) fn chain(&self) -> &Chain<F> {
+    pub(super) fn instances(&self) -> &[Instance<F>] {
         match &self.chain {
-            StartChain::Initiator(chain) | StartChain::Fixed { chain, .. } => chain,
-            StartChain::Evaluated(chain) => chain,
+            StartChain::Initiator(instances) => instances,
+            StartChain::Fixed { chain, .. } => &chain.instances,
+            StartChain::Evaluated(chain) => &chain.instances,
         }
     }
 }

@@ -51,10 +51,7 @@ fn chain(cells: &[DVec3], object: usize) -> Chain<Frame3> {
         position,
         object,
     });
-    Chain {
-        instances: instances.collect(),
-        meets_frame: [false; 2],
-    }
+    Chain::loose(instances.collect())
 }
 
 /// Returns a graph that starts with object 0 in a frame, and whose only shape is the cube.
@@ -67,10 +64,7 @@ fn graph(objects: Vec<Object<Frame3>>, start: Frame3) -> Graph<Frame3> {
         position: 0,
         object: 0,
     };
-    let initiator = Chain {
-        instances: vec![root],
-        meets_frame: [false; 2],
-    };
+    let initiator = Chain::loose(vec![root]);
     Graph {
         middle: DVec3::splat(0.5),
         ..Graph::of(objects, [cube()], vec![initiator])

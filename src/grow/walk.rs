@@ -125,22 +125,22 @@ pub fn walk<F: Frame, V: Visitor<F>>(
         visiting: Visiting::new(graph, visitor),
         tally: Tally::new(growth),
     };
-    let first = Start::initiator(graph, growth.steps, growth.seed);
-    send(graph, growth.steps, (first, true), stop, None, &mut sink)?;
+    let firsts = Start::all(graph, growth.steps, growth.seed);
+    send(graph, growth.steps, (firsts, true), stop, None, &mut sink)?;
     Ok(sink.tally.finish())
 }
 
-/// Walks over a fractal, and over all that it seeds in turn if `is_whole`, and sends elements to a sink. With a
+/// Walks over fractals, each followed by all that it seeds in turn if `is_whole`, and sends elements to a sink. With a
 /// census, ranks count elements that are not visited.
 pub(super) fn send<'g: 's, 's, F: Frame, S: Sink<'g, F>>(
     graph: &'g Graph<F>,
     steps: u32,
-    (first, is_whole): (Start<'g, F>, bool),
+    (firsts, is_whole): (Vec<Start<'g, F>>, bool),
     stop: Stop<'s, F>,
     census: Option<&'g Census>,
     sink: &mut S,
 ) -> Result<(), S::Error> {
-    let mut fractals = Fractals::new(graph, steps, sink.ages(), first);
+    let mut fractals = Fractals::new(graph, steps, sink.ages(), firsts);
     while let Some(start) = fractals.next(sink)? {
         let fractal = fractals.number(&start);
         let descent = Descent::new(graph, &start, steps).counting(census);
@@ -168,7 +168,7 @@ pub(super) fn walk_over<F: Frame, V: Visitor<F>>(
     send(
         graph,
         steps,
-        (start, is_whole),
+        (vec![start], is_whole),
         Stop::Nowhere,
         None,
         &mut sink,

@@ -53,6 +53,7 @@ impl System {
     /// there.
     pub(crate) fn within(&self, place: &Homothety) -> Option<Self> {
         Some(Self {
+            metadata: self.metadata.within(place),
             ifs: self.ifs.within(place)?,
             ..self.clone()
         })

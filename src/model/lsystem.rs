@@ -41,7 +41,8 @@ impl OfKind for Arc<LSystem> {
     }
 
     fn deepest(&self, max_steps: u32, max_elements: u64) -> Option<u32> {
-        Some(LSystem::deepest(self, max_steps, max_elements))
+        let images = { self.metadata.symmetry.as_ref() }.map_or(1, |group| group.order().into());
+        Some(LSystem::deepest(self, max_steps, max_elements / images))
     }
 }
 

@@ -177,7 +177,7 @@ impl Model {
         compile: impl FnOnce() -> Result<Graph, CompileError>,
     ) -> Result<Option<Graph>, CompileError> {
         match (self, color_by) {
-            (Self::Ifs(_), ColorBy::LastMap) => Ok(self.with_last_maps_normalised()?),
+            (Self::Ifs(_), ColorBy::LastMap) => self.with_last_maps_normalised(),
             _ => compile().map(Some),
         }
     }
@@ -188,7 +188,7 @@ impl Model {
     /// # Errors
     ///
     /// As for [`Model::place`].
-    fn with_last_maps_normalised(&self) -> Result<Option<Graph>, OutOfRange> {
+    fn with_last_maps_normalised(&self) -> Result<Option<Graph>, CompileError> {
         let place = self.place()?;
         let (model, place) = match self.moved(&place) {
             Some(moved) => (moved, place),
@@ -197,7 +197,10 @@ impl Model {
         let Self::Ifs(system) = &model else {
             return Ok(None);
         };
-        let graph = Graph::with_last_maps(system);
-        Ok(graph.map(|graph| Graph { place, ..graph }))
+        let Some(graph) = Graph::with_last_maps(system) else {
+            return Ok(None);
+        };
+        let graph = model.with_images(graph, Self::MAX_LISTED)?;
+        Ok(Some(Graph { place, ..graph }))
     }
 }

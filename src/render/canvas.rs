@@ -15,6 +15,13 @@ pub enum Size {
     Exactly(u32, u32),
 }
 
+impl Default for Size {
+    /// A long side of 1024 pixels.
+    fn default() -> Self {
+        Self::Long(1024)
+    }
+}
+
 impl Size {
     /// Returns the long side.
     #[must_use]

@@ -191,7 +191,7 @@ impl Classes {
     pub(super) fn come_in_order(&self, graph: &Graph) -> bool {
         match self.by {
             ColorBy::Fractal => true,
-            ColorBy::Index => !graph.seeds,
+            ColorBy::Index => !graph.has_fractals(),
             _ => false,
         }
     }

@@ -127,7 +127,11 @@ pub fn density_canvas(
     if let Some(window) = view.window {
         return Ok(Canvas::of_window(window, view, size)?);
     }
-    let limit = Graph::of_system(source).limit_bounds();
+    let graph = Graph::of_system(source);
+    let limit = match &source.metadata().symmetry {
+        Some(group) => graph.with_images(&group.isometries()).limit_bounds(),
+        None => graph.limit_bounds(),
+    };
     let mut bounds = limit.unwrap_or(Bounds::EMPTY);
     if limit.is_none() || *start != Start::Attractor {
         let points = RandomPoints::new(system, start, 0).take(PILOT);

@@ -162,7 +162,7 @@ impl Default for Options {
             format: Format::Svg,
             style: Style::default(),
             view: View::default(),
-            size: Size::Long(1024),
+            size: Size::default(),
             unit: Unit::Pixel,
             plot: false,
             pens: Pens::default(),

@@ -18,13 +18,14 @@ const SHARE: f64 = 0.05;
 const MOST: usize = 400;
 
 /// Keys whose values are no geometry.
-const FIXED: [&str; 22] = [
+const FIXED: [&str; 23] = [
     "title",
     "about",
     "source",
     "tags",
     "params",
     "steps",
+    "symmetry",
     "style",
     "view",
     "dimension",

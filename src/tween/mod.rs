@@ -19,6 +19,7 @@ use crate::kind::Kind;
 use crate::metadata::Metadata;
 use crate::model::Model;
 use crate::style::{Named, View};
+use crate::symmetry::Symmetry;
 
 /// Course of linear maps and of chains of elements in a tween.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -170,7 +171,20 @@ impl Tween {
             [Some(a), Some(b)] => Some(std::array::from_fn(|at| self.between([a[at], b[at]]))),
             _ => None,
         };
+        let symmetry = match [a, b].map(|it| it.symmetry.as_ref()) {
+            [Some(a), Some(b)] if (a.rotate, a.mirror) == (b.rotate, b.mirror) => {
+                let axis = a.mirror.then(|| self.between([a.axis, b.axis]));
+                Some(Symmetry::new(
+                    a.rotate,
+                    axis,
+                    self.between([a.centre, b.centre]),
+                ))
+            }
+            // A group changes at once.
+            both => self.pick(both).map(Symmetry::in_doubles),
+        };
         Metadata {
+            symmetry,
             steps: a.steps.into_iter().chain(b.steps).min(),
             style: style::tween(self, [&a.style, &b.style]),
             view: View {

@@ -13,6 +13,7 @@ use crate::ifs::System;
 use crate::instancing::Instancing;
 use crate::model::Model;
 use crate::rule::{ListedElement, Rule};
+use crate::symmetry::Symmetry;
 
 use super::ZoomError;
 use super::fixed::{Fixed, Vector};
@@ -35,6 +36,8 @@ pub(super) struct Constants<'a> {
     graph: &'a Graph,
     precision: Precision,
     kind: Kind<'a>,
+    /// Isometries of the images of the initiator, if it has any.
+    images: Vec<Fixed>,
     /// Cached maps of fixed instances, by the behaviour of their parent and their position.
     known: HashMap<(usize, u32), Arc<Fixed>>,
 }
@@ -100,10 +103,21 @@ impl<'a> Constants<'a> {
                 Kind::Turtle(Chords::of(system, bits).ok_or(ZoomError::StartsAnew)?)
             }
         };
+        let group = model.metadata().symmetry.as_ref();
+        let group = group.filter(|_| graph.initiator(0).count() > 1);
+        let isometry = |(group, number): (&Symmetry, u32)| {
+            let isometry = group.precise(&mut precision, number)?;
+            Some(Fixed::of(&isometry, bits))
+        };
+        let numbered = group
+            .into_iter()
+            .flat_map(|group| (0..).map(move |it| (group, it)));
+        let images = numbered.map_while(isometry).collect();
         Ok(Self {
             graph,
             precision,
             kind,
+            images,
             known: HashMap::new(),
         })
     }
@@ -122,14 +136,30 @@ impl<'a> Constants<'a> {
         self.precision.digits(text).fixed(self.bits())
     }
 
-    /// Returns the map of an instance in the initiator.
+    /// Returns the map of an instance in the initiator or in an image of it.
     pub(super) fn root(&mut self, instance: &Instance) -> Arc<Fixed> {
+        let [image, position] = self.graph.split_position(instance.position);
+        let listed = self.listed(instance, position as usize);
+        match self.images.get(image as usize) {
+            // An affine composition, for the isometry's axes may be more precise than those of the element.
+            Some(isometry) if image > 0 => {
+                Arc::new(isometry.after(&listed, self.precision.bits(), false))
+            }
+            _ => listed,
+        }
+    }
+
+    /// Returns the map of an instance in the initiator, at a position there.
+    fn listed(&mut self, instance: &Instance, position: usize) -> Arc<Fixed> {
         if let Kind::Rule(OfRule { rule, points, .. }) = &self.kind {
-            let element = &rule.initiator().elements[instance.position as usize];
+            let element = &rule.initiator().elements[position];
             let [from, to] = [element.from, element.to].map(|point| &points[point]);
             return Arc::new(Fixed::between(from, to, element.direction));
         }
-        self.child(None, instance)
+        // The initiator comes first, and its images have the directions and objects of its elements.
+        let first = self.graph.initiator(0).fractal(0);
+        let first = first.iter().find(|it| it.position as usize == position);
+        self.child(None, first.unwrap_or(instance))
     }
 
     /// Returns the maps of instances in the replacement of an element.

@@ -1,7 +1,7 @@
 //! Descent from the initiator to the roots of a window.
 
 use crate::geometry::{DAffine2, DVec2, Frame2, stretch};
-use crate::graph::{Chain, Graph, Instance, Seed, Successor};
+use crate::graph::{Chain, Graph, Instance, Seed, Successor, is_ring};
 use crate::grow::{Evaluator, ReplacementContext, TraversalState};
 use crate::parallel::is_cancelled;
 
@@ -73,28 +73,30 @@ impl<'a, 'c> Descent<'a, 'c> {
         let whole = TraversalState::whole(self.growth.seed);
         let scaled = |[x, y]: &Vector| [x, y].map(|it| (it * &scale) >> bits);
         let initiator = self.graph.initiator(0);
-        let mut items = Vec::new();
-        for instance in &initiator.instances {
-            let map = self.constants.root(instance);
-            let [x, y] = &map.origin;
-            let map = Fixed {
-                axes: [scaled(&map.axes[0]), scaled(&map.axes[1])],
-                origin: scaled(&[x - &centre[0], y - &centre[1]]),
-            };
-            items.push(FractalItem::Node(Box::new(Node {
-                state: whole.root(self.graph, instance),
-                object: instance.object,
-                level: 0,
+        for fractal in initiator.fractals() {
+            let mut items = Vec::new();
+            for instance in fractal {
+                let map = self.constants.root(instance);
+                let [x, y] = &map.origin;
+                let map = Fixed {
+                    axes: [scaled(&map.axes[0]), scaled(&map.axes[1])],
+                    origin: scaled(&[x - &centre[0], y - &centre[1]]),
+                };
+                items.push(FractalItem::Node(Box::new(Node {
+                    state: whole.root(self.graph, instance),
+                    object: instance.object,
+                    level: 0,
+                    born: 0,
+                    map,
+                    joined: instance.joined,
+                })));
+            }
+            self.lines.push(FractalPart {
                 born: 0,
-                map,
-                joined: instance.joined,
-            })));
+                is_ring: is_ring(fractal),
+                items,
+            });
         }
-        self.lines.push(FractalPart {
-            born: 0,
-            is_ring: initiator.is_ring(),
-            items,
-        });
         // Every round is a step: nodes that are no roots were created in the previous round.
         for round in 0.. {
             check(self.growth, round)?;

@@ -42,8 +42,10 @@ pub(super) fn zoom(
     }
     let mut chains = Vec::new();
     // Queue of fractals, each with the number of the one that seeded it and the number of roots before
-    // it.
-    let mut open = VecDeque::from([(0, 0, 0)]);
+    // it. The initiator is the first; images of it come next, of which some do not show.
+    let images = (0..graph.initiator(0).count()).filter(|&image| image == 0 || shows[image]);
+    let mut open: VecDeque<_> = images.map(|image| (image, 0, 0)).collect();
+    let images = open.len();
     while let Some((number, by, before)) = open.pop_front() {
         let FractalPart { born, items, .. } = &mut lines[number];
         let mut chain = Chain::default();
@@ -74,8 +76,16 @@ pub(super) fn zoom(
     }
     let mut graph = rooted.graph;
     graph.base_elements = rooted.base_elements.into();
-    graph.initiators = vec![chains.remove(0).chain];
-    rooted.roots.seeded = chains;
+    rooted.roots.seeded = chains.split_off(images);
+    let mut initiator = Chain::default();
+    for (image, fractal) in chains.into_iter().enumerate() {
+        if image > 0 {
+            initiator.breaks.push(initiator.instances.len());
+        }
+        initiator.instances.extend(fractal.chain.instances);
+    }
+    graph.initiators = vec![initiator];
+    graph.listed = None;
     graph.roots = rooted.roots.into();
     Ok(Zoom {
         graph,

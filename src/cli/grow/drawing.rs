@@ -17,6 +17,7 @@ use super::super::length::Paper;
 use super::super::rule::Loaded;
 use super::super::{Failure, growth, length, light, output, readable};
 use super::plan::ShownPart;
+use super::tile::Tiled;
 use super::{Arguments, plot, svg, zoom};
 
 /// Seconds that one core of 2026 takes to draw a pixel in a band, within a factor of about 3.
@@ -30,6 +31,7 @@ pub(super) struct Drawing<'a> {
     shown: &'a ShownPart,
     goal: Goal,
     path: &'a Path,
+    tiled: Option<Tiled>,
 }
 
 impl<'a> Drawing<'a> {
@@ -68,6 +70,8 @@ impl<'a> Drawing<'a> {
                 (loaded, goal)
             }
         };
+        let tiled = arguments.tiled(&loaded, goal)?;
+        let loaded = loaded.with_images(tiled.as_ref().map(|tiled| tiled.images.clone()));
         Ok(Self {
             arguments,
             loaded,
@@ -75,6 +79,7 @@ impl<'a> Drawing<'a> {
             shown,
             goal,
             path,
+            tiled,
         })
     }
 
@@ -322,8 +327,11 @@ impl<'a> Drawing<'a> {
         options.extend(zoom.options());
         options.extend(self.arguments.own_options());
         options.extend(picture.options());
-        let Paper { size, unit } = *size;
-        let view = picture.view_in(self.loaded.model.metadata(), unit);
+        let Paper { mut size, unit } = *size;
+        let mut view = self.arguments.view(self.loaded.model.metadata());
+        if let Some(tiled) = &self.tiled {
+            (view.window, size) = (Some(tiled.window), tiled.size);
+        }
         render::Options {
             format: self.format,
             style: self.style(),

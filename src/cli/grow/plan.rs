@@ -235,6 +235,10 @@ impl Plan {
             "--zoom and --at cannot be combined with --view: each selects what is shown",
         )?;
         refuse(
+            zoom.is_asked() && arguments.tile.is_asked(),
+            "--zoom draws the neighbourhood of a point, and --tile copies of the whole: give only one of them",
+        )?;
+        refuse(
             zoom.is_asked() && is_table,
             "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
         )?;

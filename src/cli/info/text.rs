@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::cli::readable;
+use crate::cli::readable::{self, counted};
 use crate::cli::rule::Loaded;
 use crate::cli::structure::StructureInfo;
 use crate::count::Count;
@@ -52,6 +52,10 @@ pub(super) fn described(loaded: &Loaded, info: &Info<'_>, unit: f64) -> String {
     }
     if let Some(turtle) = &info.turtle {
         line("turtle", &turtle.line());
+    }
+    if let Some(group) = &metadata.symmetry {
+        let images = counted(&u64::from(group.order()).into(), "image");
+        line("symmetry", &format!("{group}: {images}"));
     }
     line("random", if info.random { "yes" } else { "no" });
     line(

@@ -194,8 +194,8 @@ impl<F: TurtleFrame> Leveller<'_, F> {
             if is_exact {
                 let meets_frame = reader.meets();
                 let body = Chain {
-                    instances,
                     meets_frame,
+                    ..Chain::loose(instances)
                 };
                 return Ok(Made::Fixed(body.into()));
             }

@@ -75,8 +75,8 @@ impl Shape {
         };
         let instances: Option<Vec<_>> = self.links.iter().map(instance).collect();
         Ok(Chain {
-            instances: instances.ok_or(NotCompiled)?,
             meets_frame: self.meets,
+            ..Chain::loose(instances.ok_or(NotCompiled)?)
         })
     }
 }

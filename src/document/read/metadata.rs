@@ -7,6 +7,7 @@ use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::style::STYLE;
+use crate::document::symmetry::{SYMMETRY_OF, read_symmetry};
 use crate::document::view::{VIEW, read_view};
 use crate::metadata::Description;
 use crate::metadata::MAX_STEPS;
@@ -26,12 +27,15 @@ pub(in crate::document) const DESCRIPTION: [Member; 5] = keys![
 const FORMAT: u32 = 1;
 
 /// Keys for the defaults of growing and drawing, and for published properties.
-pub(super) const LIKING: [Member; 6] = keys![
+pub(super) const LIKING: [Member; 7] = keys![
     steps: Form::Whole(0, Some(MAX_STEPS)),
         "The number of steps, unless another is asked for.";
     dimension: Form::Number, "The published similarity dimension. It does not change the picture.";
     hausdorff_dimension: Form::Number,
         "The published dimension of the set itself, where it is smaller because copies overlap.";
+    symmetry: SYMMETRY_OF,
+        "The rotations and reflections under which the picture is repeated, in the plane. It does not change the \
+         similarity dimension; `none` takes back that of a parent.";
     style: Form::Mapping(&STYLE), "How it is drawn.";
     view: Form::Mapping(&VIEW), "Which part of the plane is drawn, or how a set in space is seen.";
     animation: Form::Mapping(&ANIMATION), "How `kfrac animate` makes a film of it, unless other options are given.";
@@ -56,6 +60,7 @@ pub(in crate::document) fn read_metadata(
         sets_colours: fields
             .take("style")
             .is_some_and(|style| style.get("color_by").is_some()),
+        symmetry: read_symmetry(reader, fields, in_space),
         style: fields.read(reader, "style").unwrap_or_default(),
         view,
         space,

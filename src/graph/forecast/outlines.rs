@@ -1,7 +1,7 @@
 //! Outlines that a graph draws: whether areas are enclosed.
 
 use crate::geometry::{Frame, Outline as _, Point as _};
-use crate::graph::{Chain, Graph, Object, Replacement};
+use crate::graph::{Chain, Graph, Object, Replacement, is_ring};
 
 /// Kind of the outlines that a graph draws.
 #[derive(Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl<F: Frame> Graph<F> {
         if visible.all(|object| self.base_elements()[object.base_element].is_closed()) {
             return Outlines::ClosedElements;
         }
-        let closed = |chain: &Chain<F>| chain.is_joined() && chain.is_ring();
+        let closed = |chain: &Chain<F>| chain.is_joined() && chain.fractals().all(is_ring);
         let seeds = |object: &Object<F>| match &object.replacement {
             Replacement::Fixed(successor) => successor.seeds.iter().all(|seed| closed(&seed.chain)),
             Replacement::Kept | Replacement::Unresolved => true,

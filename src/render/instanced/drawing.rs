@@ -5,7 +5,7 @@ use std::io::Write;
 use std::sync::atomic::Ordering::Relaxed;
 
 use crate::geometry::{DVec2, Direction};
-use crate::graph::{Chain, Graph};
+use crate::graph::{Graph, Instance};
 use crate::grow::{Growth, WalkError};
 use crate::instancing::Appearance;
 use crate::render::canvas::Canvas;
@@ -127,7 +127,9 @@ impl<'a> Drawing<'a> {
             for &layer in self.layers() {
                 text.clear();
                 for of in &aspects {
-                    expanded += self.chain(initiator, of, false, &ends, &mut text);
+                    for fractal in initiator.fractals() {
+                        expanded += self.chain(fractal, of, false, &ends, &mut text);
+                    }
                 }
                 if !text.is_empty() {
                     writeln!(out, "<g{}>\n{text}\n</g>", self.paint(class, layer))?;
@@ -184,9 +186,10 @@ impl<'a> Drawing<'a> {
         }
         let mut content = String::new();
         let of = &symbol.aspect;
-        let mut expanded = 1.0 + self.chain(&successor.body, of, false, ends, &mut content);
+        let mut expanded =
+            1.0 + self.chain(&successor.body.instances, of, false, ends, &mut content);
         for seed in &successor.seeds {
-            expanded += self.chain(&seed.chain, of, true, ends, &mut content);
+            expanded += self.chain(&seed.chain.instances, of, true, ends, &mut content);
         }
         if content.is_empty() {
             return;
@@ -245,11 +248,11 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Writes the instances of a chain and the lines that link them, and returns the number of elements and
+    /// Writes instances that follow each other and the lines that link them, and returns the number of elements and
     /// instances to which they expand.
     fn chain(
         &self,
-        chain: &Chain,
+        instances: &[Instance],
         of: &Aspect,
         seeded: bool,
         ends: &Ends<'_>,
@@ -261,8 +264,8 @@ impl<'a> Drawing<'a> {
         };
         let mut expanded = 0.0;
         // In a ring, the first instance is joined to the last.
-        let mut before = chain.instances.last();
-        for instance in &chain.instances {
+        let mut before = instances.last();
+        for instance in instances {
             if let (true, true, Some(before)) = (self.symbols.links, instance.joined, before)
                 && let (Some(from), Some(to)) = (ends.of(before)[1], ends.of(instance)[0])
                 && !(from.meets_frame && to.meets_frame)

@@ -79,7 +79,7 @@ pub(super) fn check<F: Frame>(
     }
     let distinguishes = match style.color_by {
         ColorBy::Index => true,
-        ColorBy::Fractal => graph.seeds,
+        ColorBy::Fractal => graph.has_fractals(),
         _ => false,
     };
     if distinguishes {

@@ -123,7 +123,7 @@ impl<'a> Sprites<'a> {
         let numbers_change = match style.color_by {
             // If classes occur in order, runs of one class are recognised.
             ColorBy::Index => pass != Pass::Along,
-            ColorBy::Fractal => graph.seeds,
+            ColorBy::Fractal => graph.has_fractals(),
             ColorBy::Tint => graph.tints(),
             _ => false,
         };

@@ -294,10 +294,7 @@ fn start_with(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
         position: 0,
         object,
     };
-    graph.initiators = vec![Chain {
-        instances: vec![root],
-        meets_frame: [false; 2],
-    }];
+    graph.initiators = vec![Chain::loose(vec![root])];
 }
 
 /// Returns the graph as it is seen under a map.

@@ -8,6 +8,7 @@ use anyhow::anyhow;
 
 use crate::chaos::{GameError, HistogramWindow, play};
 use crate::export;
+use crate::fractal::Goal;
 use crate::geometry::DAffine2;
 use crate::grow::Progress;
 use crate::ifs::System;
@@ -15,11 +16,13 @@ use crate::model::Model;
 use crate::render;
 use crate::render::{Canvas, Density, RenderError, Shades, Size, density_canvas, write_density};
 use crate::style::{ColorBy, Colour, Style};
+use crate::symmetry::Symmetry;
 
 use super::super::super::Failure;
 use super::super::super::labels::labels;
 use super::super::super::rule::Loaded;
 use super::super::Arguments;
+use super::super::tile::Tiled;
 use super::Iteration;
 
 /// Random iteration in the plane.
@@ -29,6 +32,15 @@ pub(in crate::cli::grow) struct PlaneGame<'a> {
     source: Arc<System>,
     /// Whether hits replace steps, for which the file has a palette.
     is_by_steps: bool,
+    tiled: Option<Tiled>,
+}
+
+/// Returns the products of isometries with others that are applied before.
+fn products(outer: &[DAffine2], inner: &[DAffine2]) -> Vec<DAffine2> {
+    let both = outer
+        .iter()
+        .flat_map(|a| inner.iter().map(move |b| *a * *b));
+    both.collect()
 }
 
 impl<'a> PlaneGame<'a> {
@@ -51,7 +63,22 @@ impl<'a> PlaneGame<'a> {
             .within(&place)
             .map_or_else(|| source.clone(), Arc::new);
         let start = chaos.start(|start| place.origin_of(start.place.truncate()));
-        let iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        let mut iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        let own = source
+            .metadata()
+            .symmetry
+            .as_ref()
+            .map(Symmetry::isometries);
+        let tiled = arguments.tiled(loaded, Goal::Detail(1.0))?;
+        let copies = tiled.as_ref().map(|tiled| {
+            let copies = tiled.images.iter().map(|copy| place.within(copy));
+            copies.collect::<Vec<_>>()
+        });
+        let images = match (copies, own) {
+            (Some(copies), Some(own)) => products(&copies, &own),
+            (copies, own) => copies.or(own).unwrap_or_default(),
+        };
+        iteration.system = iteration.system.with_images(images);
         if let Some(start) = chaos.start.iter().find(|start| !start.is_flat) {
             return Err(Failure::Usage(format!(
                 "--start {start} lies in space, and {} in the plane: a point is X,Y",
@@ -65,6 +92,7 @@ impl<'a> PlaneGame<'a> {
                 && source.metadata().style.color_by == ColorBy::Step,
             iteration,
             source,
+            tiled,
         })
     }
 
@@ -81,10 +109,16 @@ impl<'a> PlaneGame<'a> {
             arguments, place, ..
         } = &self.iteration;
         let (picture, metadata) = (&arguments.picture, self.source.metadata());
+        let mut view = arguments.view(metadata);
+        view.window = self
+            .tiled
+            .as_ref()
+            .map(|tiled| tiled.window)
+            .or(view.window);
         let options = render::Options {
             format: render::Format::Png,
             style: picture.style(metadata),
-            view: picture.view(metadata).within(place),
+            view: view.within(place),
             size,
             ..render::Options::default()
         };
@@ -102,7 +136,10 @@ impl<'a> PlaneGame<'a> {
             arguments, system, ..
         } = &self.iteration;
         let Arguments { chaos, picture, .. } = arguments;
-        let size = arguments.size.size;
+        let size = self
+            .tiled
+            .as_ref()
+            .map_or(arguments.size.size, |tiled| tiled.size);
         let explain = |error: RenderError| self.iteration.explain(error, path);
         let canvas = self.canvas(size).map_err(explain)?;
         let held = self.iteration.arguments.growth.held.as_ref();
@@ -137,6 +174,7 @@ impl<'a> PlaneGame<'a> {
         let mut options = self.iteration.options();
         options.push(("format", "png".into()));
         options.push(("size", size.to_string()));
+        options.extend(arguments.tile.options());
         options.extend(picture.options());
         let labels = labels(self.iteration.loaded, &described, "grow", options);
         write_density(&histogram, &density, &labels, out).map_err(explain)?;

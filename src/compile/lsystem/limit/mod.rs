@@ -142,7 +142,7 @@ impl Limit {
         }
         Chain {
             meets_frame: [starts, last.distance(DVec2::X) <= JOINED],
-            instances,
+            ..Chain::loose(instances)
         }
     }
 
