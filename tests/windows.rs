@@ -77,7 +77,7 @@ fn windows_of_the_library_are_crops_within_rounding() {
                     window: Some([corner.x, corner.y, side, side]),
                     margin: Some(0.0),
                 })
-                .size(Size::Long(pixels as u32));
+                .size(Size::Long(u32::try_from(pixels).unwrap()));
             let drawn = render::pixels(&graph, &growth, &options);
             drawn.unwrap_or_else(|error| panic!("{name}: {error}"))
         };
