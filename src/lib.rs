@@ -65,7 +65,7 @@
 //! | `tables` | with `cli` | tables of points in CSV that are measured |
 //! | `threemf` | with `cli` | scenes as 3MF files |
 //!
-//! With `default-features = false` the library draws, measures and converts, has fewer than 45 dependencies, none
+//! With `default-features = false` the library draws, measures and converts, has fewer than 50 dependencies, none
 //! of which concerns terminals, signals or temporary files, and compiles for `wasm32-unknown-unknown`. There, it
 //! runs in one thread, and files exist only in the embedded library.
 //!
@@ -99,8 +99,8 @@
 //! descent into depth buffers, or as polygons and lines of visible faces.
 //!
 //! The ground that all stages share are points and frames ([`geometry`]), [`expression`]s, values [as
-//! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s, [`Metadata`] and pictures of [`Bits`]. No
-//! room imports one above it.
+//! written](Written), random draws by [`Path`], [`Count`]s, [`Kind`]s, [`Metadata`], groups of isometries ([`symmetry`]) and
+//! pictures of [`Bits`]. No room imports one above it.
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction, its connectedness and fractal
 //! interpolation are worked out on it without a graph, and [`family`] makes maps of its parameters. A set that is
@@ -177,7 +177,7 @@ mod saturating;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod style;
-mod symmetry;
+pub mod symmetry;
 pub mod tween;
 mod written;
 pub mod zoom;
@@ -193,7 +193,7 @@ pub use metadata::{Description, Metadata, Parameter};
 pub use output_file::WriteError;
 pub use render::{Pixels, PngEncoding, Size};
 pub use style::{Style, View};
-pub use symmetry::{Symmetry, Tiling, TilingGroup, TooManyCopies};
+pub use symmetry::Symmetry;
 pub use written::{Written, WrittenNumber, WrittenPoint};
 
 /// Random rules for the tests of several modules.

@@ -269,11 +269,7 @@ impl Model {
             return Ok(graph);
         };
         let most = max_elements.clamp(1, Self::MAX_LISTED);
-        let listed = graph
-            .initiators
-            .iter()
-            .map(|chain| chain.instances.len() as u64);
-        if listed.sum::<u64>().saturating_mul(group.order().into()) > most {
+        if !graph.has_room_for_images(group.order().into(), most) {
             let group = group.to_string();
             return Err(CompileError::TooManyImages { group, most });
         }

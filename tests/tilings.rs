@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use kfrac::TilingGroup;
 use kfrac::style::Named;
+use kfrac::symmetry::TilingGroup;
 use resvg::tiny_skia::Pixmap;
 
 use crate::common::said;

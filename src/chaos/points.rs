@@ -62,6 +62,19 @@ impl<'a, M: Walked> RandomPoints<'a, M> {
         points
     }
 
+    /// Takes a step, of a walk that begins where the last one has ended.
+    fn step(&mut self) {
+        if let Start::Points { steps, .. } = self.start
+            && self.taken.is_multiple_of(steps.get().into())
+            && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))
+        {
+            let map = self.system.maps().len();
+            self.at = RandomPoint { place, map };
+        }
+        self.taken += 1;
+        self.advance();
+    }
+
     fn advance(&mut self) {
         let state = self.system.state_after(self.at.map);
         let map = self.choice.choose(state, self.random.word());
@@ -87,20 +100,5 @@ impl<M: Walked> Iterator for RandomPoints<'_, M> {
         };
         self.image = (self.image + 1) % images.len().max(1);
         Some(RandomPoint { place, ..self.at })
-    }
-}
-
-impl<M: Walked> RandomPoints<'_, M> {
-    /// Takes a step, of a walk that begins where the last one has ended.
-    fn step(&mut self) {
-        if let Start::Points { steps, .. } = self.start
-            && self.taken.is_multiple_of(steps.get().into())
-            && let Some(place) = self.start.walk(self.taken / u64::from(steps.get()))
-        {
-            let map = self.system.maps().len();
-            self.at = RandomPoint { place, map };
-        }
-        self.taken += 1;
-        self.advance();
     }
 }

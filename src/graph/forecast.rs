@@ -4,7 +4,6 @@
 //! they are computed step by step in natural numbers of any size.
 
 use std::collections::BTreeMap;
-use std::ops::AddAssign;
 
 use crate::count::Count;
 use crate::geometry::{Direction, Frame, Frame2, Outline, Point};
@@ -14,9 +13,11 @@ use super::{Alternative, Chain, Graph, Instance, Replacement};
 
 mod levels;
 mod outlines;
+mod sums;
 
 use levels::Totals;
 use outlines::Outlines;
+use sums::{Sums, Tally};
 
 /// Size of an approximant.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,60 +84,6 @@ pub struct Population {
     /// Approximate number of the other elements: those that a stroke continues from an element created in
     /// another step.
     pub parted: f64,
-}
-
-/// Count of the elements of an object, with sums over them.
-#[derive(Default)]
-struct Tally {
-    count: Count,
-    sums: Sums,
-}
-
-/// Sums over elements.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    /// Approximate number of elements that do not join the element before; the effects of reversed
-    /// traversal and of vanishing elements are neglected.
-    apart: f64,
-    /// Approximate number of the others that join an element of different fertility: one step later, the
-    /// two were created in different steps.
-    beside: f64,
-    /// Approximate number of the others that join an element created in another step.
-    parted: f64,
-    length: f64,
-    /// Sum of squares of lengths.
-    square: f64,
-    /// Sum of squares of lengths, negative where the left side of the element is outside its outline.
-    signed: f64,
-    /// Sum of the lengths of the initiator elements from which the elements descend.
-    root_length: f64,
-    /// Sum of the squares of these lengths.
-    root_square: f64,
-    /// Sum of the areas of the closed base elements.
-    area: f64,
-    /// Sum of cubes of lengths.
-    cube: f64,
-    /// Sum of the cubes of the lengths of the initiator elements from which the elements descend.
-    root_cube: f64,
-    /// Sum of the volumes of the base elements.
-    volume: f64,
-}
-
-impl AddAssign for Sums {
-    fn add_assign(&mut self, other: Self) {
-        self.apart += other.apart;
-        self.beside += other.beside;
-        self.parted += other.parted;
-        self.length += other.length;
-        self.square += other.square;
-        self.signed += other.signed;
-        self.root_length += other.root_length;
-        self.root_square += other.root_square;
-        self.area += other.area;
-        self.cube += other.cube;
-        self.root_cube += other.root_cube;
-        self.volume += other.volume;
-    }
 }
 
 /// Limit of the work of a forecast: about a second.

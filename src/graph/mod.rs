@@ -153,6 +153,15 @@ impl<F: Frame> Graph<F> {
         &self.initiators[(steps as usize).min(last)]
     }
 
+    /// Returns whether the initiators and as many images of them in all as `order` have at most `most` elements.
+    pub(crate) fn has_room_for_images(&self, order: u64, most: u64) -> bool {
+        let listed = self
+            .initiators
+            .iter()
+            .map(|chain| chain.instances.len() as u64);
+        listed.sum::<u64>().saturating_mul(order) <= most
+    }
+
     /// Returns the position in the initiator as listed of an element of the initiator or of an image of it.
     pub(crate) fn listed_position(&self, position: u32) -> u32 {
         self.split_position(position)[1]

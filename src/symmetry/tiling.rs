@@ -80,37 +80,20 @@ impl Tiling {
     }
 
     /// Returns a window of `count` periods along both axes: its lower left corner, its width and its height. A frieze
-    /// has periods along the x axis only, and is shown from its lower to its upper edge.
+    /// has periods along the x axis only, and is shown from its lower to its upper edge, in whole pixels of
+    /// [`size`](Self::size).
     #[must_use]
     pub fn window(&self, count: u32) -> [f64; 4] {
         let [a, b] = self.vectors();
-        let width = a.x * f64::from(count);
-        if !self.is_frieze {
-            let period = if self.is_hexagonal { 2.0 * b.y } else { b.y };
-            return [
-                self.origin.x,
-                self.origin.y,
-                width,
-                period * f64::from(count),
-            ];
+        let count = f64::from(count);
+        let DVec2 { x, y } = self.origin;
+        if self.is_frieze {
+            let (middle, height) = self.across();
+            let height = (height / self.pixel()).ceil() * self.pixel();
+            return [x, middle - height / 2.0, a.x * count, height];
         }
-        let reach = |isometry: DAffine2| image(&isometry, &self.motif);
-        let all = self
-            .positions
-            .iter()
-            .map(|position| reach(self.isometry(position, DVec2::ZERO)));
-        let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), image| {
-            (low.min(image.min().y), high.max(image.max().y))
-        });
-        let height = (high - low).max(a.x / 64.0) * (1.0 + 2.0 * EDGE);
-        let pixel = a.x / (PARTS * (a.x / height).min(1.0)).floor().max(1.0);
-        let height = (height / pixel).ceil() * pixel;
-        [
-            self.origin.x,
-            f64::midpoint(low, high) - height / 2.0,
-            width,
-            height,
-        ]
+        let rows = if self.is_hexagonal { 2.0 } else { 1.0 };
+        [x, y, a.x * count, rows * b.y * count]
     }
 
     /// Returns the size, in pixels, of a picture of [one period](Self::window) whose opposite edges continue each other. Its
@@ -121,11 +104,10 @@ impl Tiling {
             return HEXAGONAL;
         }
         let [_, _, width, height] = self.window(1);
-        let pixels_along = match self.is_frieze {
-            true => (PARTS * (width / height).min(1.0)).floor().max(1.0),
-            false => PARTS * (width / height).min(1.0),
+        let pixel = match self.is_frieze {
+            true => self.pixel(),
+            false => width.max(height) / PARTS,
         };
-        let pixel = width / pixels_along;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -133,6 +115,28 @@ impl Tiling {
         )]
         let pixels = |side: f64| (side / pixel).round().max(1.0) as u32;
         [pixels(width), pixels(height)]
+    }
+
+    /// Returns the side of a pixel, of which a frieze has a whole number along a period and about 1024 along its longer side.
+    fn pixel(&self) -> f64 {
+        let (_, height) = self.across();
+        let period = self.vectors.x_axis.x;
+        period / (PARTS * (period / height).min(1.0)).floor().max(1.0)
+    }
+
+    /// Returns the middle of a frieze and its height with the space above and below.
+    fn across(&self) -> (f64, f64) {
+        let isometries = self
+            .positions
+            .iter()
+            .map(|position| self.isometry(position, DVec2::ZERO));
+        let mut all = Bounds::EMPTY;
+        for image in isometries.map(|isometry| image(&isometry, &self.motif)) {
+            all.add(image.min());
+            all.add(image.max());
+        }
+        let height = all.size().y.max(self.vectors.x_axis.x / 64.0);
+        (all.centre().y, height * (1.0 + 2.0 * EDGE))
     }
 
     /// Returns the isometries under which the image of the motif's box, with a quarter of its size around it, meets a window.

@@ -1,60 +1,87 @@
-//! Conversions of random rules, against the originals.
+//! Conversions of random rules and systems, against the originals.
+
+use std::cell::Cell;
 
 use kfrac::convert::{Keeps, convert};
-use kfrac::extent::NoLimit;
 use kfrac::grow::Growth;
-use kfrac::measure::{Subject, Subset};
+use kfrac::measure::{NoCover, Subject, Subset};
 use kfrac::model::Kind;
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 
 use super::{assert_same, model};
 use crate::common::document_of;
 use crate::common::random_systems::{random_similar_system, random_system};
 use crate::laws::rules::{self, Features};
 
-/// Asserts that conversions of a file have its approximants, and its limit set.
-fn converts(text: &str) {
+/// Asserts that conversions of a file have its approximants and its limit set; returns the number of sets that were
+/// compared.
+fn converts(text: &str) -> usize {
     let model = model(&document_of(text));
-    let Ok(graph) = model.compile(3) else { return };
+    let Ok(graph) = model.compile(3) else {
+        return 0;
+    };
+    let mut compared = 0;
     for to in Kind::ALL.into_iter().filter(|to| *to != model.kind()) {
         if let Ok(document) = convert(&model, to, Keeps::Approximants) {
             let other = super::model(&document).compile(3).unwrap();
             for steps in 0..3 {
                 let set = Subset::Approximant(Growth::steps(steps).max_elements(5_000));
-                match [&graph, &other].map(|graph| Subject::new(graph, set).is_ok()) {
-                    [true, true] => assert_same(text, [&graph, &other], set),
-                    // One of them has more elements, or holds points that are too far away.
-                    has => assert!(
-                        steps > 0 || has[0] == has[1],
-                        "{text} to {to:?}: step {steps}"
-                    ),
+                match [&graph, &other].map(|graph| Subject::new(graph, set).err()) {
+                    [None, None] => {
+                        assert_same(text, [&graph, &other], set);
+                        compared += 1;
+                    }
+                    // Elements that are not drawn may be more in one of them than are compared.
+                    [Some(NoCover::Walk(_)), _] | [_, Some(NoCover::Walk(_))] => {}
+                    [a, b] => assert_eq!(a, b, "{text} to {to:?}: step {steps}"),
                 }
             }
         }
         if let Ok(document) = convert(&model, to, Keeps::Limit) {
             let other = super::model(&document).compile(3).unwrap();
-            match other.limit() {
-                Ok(_) => assert_same(text, [&graph, &other], Subset::Limit),
-                Err(error) => assert!(!matches!(error, NoLimit::DoesNotShrink), "{text}: {error}"),
+            // Limits of L-systems are not known where the turns of the turtle do not recur.
+            if to == Kind::LSystem && other.limit().is_err() {
+                continue;
             }
+            assert_same(text, [&graph, &other], Subset::Limit);
+            compared += 1;
         }
     }
+    compared
 }
 
-proptest! {
-    #![proptest_config(crate::common::cases(24))]
+/// Tests the files of a strategy, of which at least a share has a conversion that is compared.
+fn all_convert(cases: u32, files: &impl Strategy<Value = String>, share: f64) {
+    let config = crate::common::cases(cases);
+    let cases = config.cases;
+    let converted = Cell::new(0);
+    let run = TestRunner::new(config).run(files, |text| {
+        converted.set(converted.get() + u32::from(converts(&text) > 0));
+        Ok(())
+    });
+    run.unwrap_or_else(|error| panic!("{error}"));
+    let converted = converted.get();
+    assert!(
+        f64::from(converted) >= share * f64::from(cases),
+        "{converted} of {cases}"
+    );
+}
 
-    #[test]
-    fn random_rules_keep_their_sets(text in rules::rule(Features::REGULAR)) {
-        converts(&text);
-    }
+#[test]
+fn random_rules_keep_their_sets() {
+    // About one in six is not refused.
+    all_convert(120, &rules::rule(Features::REGULAR), 0.04);
+}
 
-    #[test]
-    fn random_systems_keep_their_sets(seed in any::<u64>(), is_similar in any::<bool>()) {
+#[test]
+fn random_systems_keep_their_sets() {
+    let systems = (any::<u64>(), any::<bool>()).prop_map(|(seed, is_similar)| {
         let system = match is_similar {
             true => random_similar_system(seed),
             false => random_system(seed),
         };
-        converts(&format!("kind: ifs\n{system}"));
-    }
+        format!("kind: ifs\n{system}")
+    });
+    all_convert(24, &systems, 1.0);
 }

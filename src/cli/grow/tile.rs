@@ -119,9 +119,7 @@ impl TileArguments {
             shown.add(back.transform_point2(corner));
         }
         let images = tiling.isometries(&shown).map_err(anyhow::Error::new)?;
-        let listed = graph.initiators.iter().map(|chain| chain.instances.len());
-        let listed = listed.sum::<usize>().saturating_mul(images.len()) as u64;
-        if listed > Model::MAX_LISTED {
+        if !graph.has_room_for_images(images.len() as u64, Model::MAX_LISTED) {
             return Err(anyhow::Error::new(CompileError::TooManyImages {
                 group: group.name().into(),
                 most: Model::MAX_LISTED,
