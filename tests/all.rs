@@ -5,6 +5,7 @@
 mod approximants;
 mod bad_input;
 mod bands;
+mod batches;
 mod boxes;
 mod build;
 mod chaos;

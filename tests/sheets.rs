@@ -177,7 +177,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
     for (arguments, message) in [
         (
             &["koch", "--steps", "3..1"][..],
-            "write 0..6, or a list such as 0,2,4",
+            "a range begins with the smaller number, as 0..6",
         ),
         (
             &["koch", "--steps", "0..x"],
@@ -185,7 +185,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
         ),
         (
             &["koch", "--steps", "0..20000"],
-            "a sheet has no more than 10000 pictures",
+            "no more than 10000 numbers can be given",
         ),
         (
             &["koch", "--columns", "0"],

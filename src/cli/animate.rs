@@ -33,12 +33,12 @@ use super::held::Held;
 use super::input;
 use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
-use super::steps::Several;
+use super::several::Several;
 use super::{Failure, growth, help, length, number, picture, rule, steps, text, tween};
 pub(super) use file::mistakes;
 use fit::Fit;
 use passed::{FrameOptions, Given};
-use plan::{Seeds, Zooms};
+use plan::Zooms;
 use target::Format;
 use timeline::Keys;
 
@@ -81,7 +81,7 @@ pub(super) struct Arguments {
     /// In a production rule of the plane, the elements of a step move from the elements that they replace to their places. Other systems
     /// change from step to step at once.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
-    steps: Option<Several>,
+    steps: Option<Several<u32>>,
     /// Changes from step to step at once
     #[arg(long, requires = "steps")]
     cuts: bool,
@@ -95,8 +95,8 @@ pub(super) struct Arguments {
     #[arg(long)]
     draw: bool,
     /// Seed of random draws, or several as 1..24, each for an equal part of the film
-    #[arg(long, value_name = "S", default_value = "0", value_parser = Seeds::parse)]
-    seed: Seeds,
+    #[arg(long, value_name = "S", default_value = "0", value_parser = growth::seeds)]
+    seed: Several<u64>,
     /// Magnification, from one to another as 1..1e100, or loop: the period of the address --at, which repeats exactly
     #[arg(long, value_name = "ZOOM", value_parser = Zooms::parse)]
     zoom: Option<Zooms>,
@@ -135,7 +135,7 @@ pub(super) struct Arguments {
     once: bool,
     /// Numbers of the frames to draw, from 0, of a film in PNGs: 30..40
     #[arg(long, value_name = "FRAMES", value_parser = steps::parse_several)]
-    only: Option<Several>,
+    only: Option<Several<u32>>,
     /// Long side of the frames in pixels, or WIDTHxHEIGHT
     #[arg(long, value_name = "SIZE", default_value = "640", value_parser = length::paper, help_heading = "Picture")]
     size: Paper,

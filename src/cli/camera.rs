@@ -11,7 +11,7 @@ use super::rule::Loaded;
 use super::{Failure, number, space};
 
 /// Options of sets in space.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Space")]
 pub(super) struct SpaceArguments {
     /// Direction from which a set in space is seen: azimuth and elevation in degrees, or front, side, top or iso

@@ -164,6 +164,20 @@ pub(crate) fn value(text: &str) -> Result<f64, String> {
     }
 }
 
+impl From<Setting> for Assignment {
+    fn from(setting: Setting) -> Self {
+        let part = ParameterPart {
+            name: setting.name.clone(),
+            values: Values::One(setting.value),
+            written: setting.written,
+        };
+        Self {
+            name: setting.name,
+            parts: vec![part],
+        }
+    }
+}
+
 impl Assignment {
     /// Returns the name of the parameter.
     pub(super) fn name(&self) -> &str {
@@ -175,7 +189,8 @@ impl Assignment {
         let settings: Option<Vec<_>> = self.parts.iter().map(ParameterPart::setting).collect();
         settings.ok_or_else(|| {
             let message = format!(
-                "--set {}: several values are for `kfrac sheet`, which draws them side by side",
+                "--set {}: several values are for `kfrac sheet`, which draws them side by side, and for `kfrac grow`, which draws a file \
+                 for each",
                 self.name
             );
             Failure::Usage(message)

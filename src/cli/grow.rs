@@ -1,5 +1,6 @@
 //! `kfrac grow`: draws a rule as a picture or lists its elements as a table.
 
+mod batch;
 mod chaos;
 mod drawing;
 mod morphed;
@@ -8,6 +9,7 @@ mod plot;
 mod scene;
 mod space;
 mod svg;
+mod table;
 mod tile;
 mod visible;
 mod watching;
@@ -23,11 +25,9 @@ use clap::ValueHint;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
 use crate::document::Document;
-use crate::export;
 use crate::fractal::Goal;
-use crate::graph::Graph;
 use crate::metadata::Metadata;
-use crate::render::{self, RenderError};
+use crate::render;
 use crate::style::{Named, View};
 
 use super::camera::{self, SpaceArguments};
@@ -36,8 +36,9 @@ use super::held::{self, Held};
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
+use super::several::Several;
 use super::tween::TweenArguments;
-use super::{Failure, format, help, number, output, readable, redrawn, steps, text};
+use super::{Failure, format, help, input, number, output, readable, redrawn, steps, text};
 use chaos::ChaosArguments;
 use drawing::Drawing;
 use morphed::MorphArguments;
@@ -52,7 +53,7 @@ use zoom::ZoomArguments;
 ///
 /// Replaces the fertile elements for a number of steps and writes the result, the approximant, as a picture
 /// or a table. The output file appears complete or not at all.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -63,9 +64,9 @@ pub(super) struct Arguments {
     ///
     /// If the rule gives no number, the default is the deepest step up to 12 with no more than 20,000
     /// elements. Without --steps, --detail and --max-elements, an SVG is limited to 50,000 elements and 2 MB:
-    /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it.
-    #[arg(long, short, value_name = "N", value_parser = steps::parse, allow_negative_numbers = true)]
-    steps: Option<u32>,
+    /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it. Several numbers, as 0..6 or 0,2,4, are a picture each.
+    #[arg(long, short, value_name = "N", value_parser = steps::parse_several, allow_negative_numbers = true)]
+    steps: Option<Several<u32>>,
     /// Draws the last step of a rule of the plane while it grows, at a share of its way from 0 to 1
     ///
     /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
@@ -84,12 +85,16 @@ pub(super) struct Arguments {
     detail: Option<f64>,
     /// Output file, or - for standard output [default: NAME.svg]
     ///
-    /// An existing file is replaced.
+    /// An existing file is replaced. Names of several pictures contain %s for the seed, %n for the number of steps and %{NAME}
+    /// for the value of a parameter; %03s has at least three digits, and %% is a percent sign.
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
     /// Output format [default: from the extension of the file]
     #[arg(long, value_parser = picture::named::<Format>())]
     format: Option<Format>,
+    /// Number of values in a range --set NAME=FROM..TO, each of which is a picture
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = number::whole("a number of values", 2..=10_000u32), allow_negative_numbers = true)]
+    samples: u32,
     #[command(flatten)]
     growth: GrowthArguments,
     /// Writes the output again whenever the rule, or a file that it uses, changes; Ctrl-C ends it
@@ -164,6 +169,10 @@ Examples:
       without end
   kfrac grow random-tree --seed 7
       Draws another random tree of the same rule
+  kfrac grow random-tree --seed 1..9 -o 'tree-%s.png'
+      Draws nine random trees, into tree-1.png to tree-9.png
+  kfrac grow pythagoras --set angle=20..70 --samples 6 --steps 8,10 -o 'p-%{angle}-%02n.svg'
+      Draws a picture for each of six angles and two numbers of steps
   kfrac grow levy --steps 10 --plot --size 200mm --stroke-width 0.3mm
       Draws single strokes for a pen plotter, 200 mm wide, with no line drawn twice
   kfrac grow koch-snowflake --size 100mm -o flake.dxf
@@ -199,6 +208,10 @@ Examples:
 ";
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
+    let pictures = batch::pictures(arguments)?;
+    let [arguments] = &pictures[..] else {
+        return batch::run(&pictures, catalogue);
+    };
     let plan = Plan::of(arguments)?;
     let is_file = arguments.output.as_deref() != Some(Path::new("-"));
     if !is_file && (arguments.watch || arguments.open) {
@@ -230,8 +243,8 @@ pub(crate) fn hold(
     let mut arguments: Arguments = held::parsed("grow", arguments)?;
     arguments.growth.held = Some(held);
     let plan = Plan::of(&arguments)?;
-    let loaded = arguments.rule.load_from(source, catalogue, true)?;
-    let loaded = arguments.tween.apply(loaded, catalogue, true)?;
+    let document = Arc::new(input::document(source, catalogue)?);
+    let loaded = arguments.resolve(document, catalogue, true)?;
     let (_, summary, _) = arguments.grow(&plan, loaded)?;
     Ok(summary)
 }
@@ -260,10 +273,8 @@ impl<'a> Runs<'a> {
         };
         arguments.growth.held = Some(held);
         let plan = Plan::of(&arguments)?;
-        let settings = arguments.rule.settings()?;
         let document = Arc::clone(&self.document);
-        let loaded = arguments.rule.resolve(document, settings, true)?;
-        let loaded = arguments.tween.apply(loaded, self.catalogue, true)?;
+        let loaded = arguments.resolve(document, self.catalogue, true)?;
         arguments.grow(&plan, loaded).map(|_| ())
     }
 }
@@ -308,6 +319,28 @@ impl Arguments {
         self.chaos.is_asked() || (self.chaos.has_points() && self.is_ply())
     }
 
+    /// Returns the number of steps, if one is given.
+    fn steps(&self) -> Option<u32> {
+        self.steps.as_ref().map(Several::first)
+    }
+
+    /// Resolves the rule of one picture after it has been read.
+    fn resolve(
+        &self,
+        document: Arc<Document>,
+        catalogue: &Catalogue,
+        quiet: bool,
+    ) -> Result<Loaded, Failure> {
+        self.growth.refuse_seeds()?;
+        if let Some(steps) = self.steps.as_ref().filter(|steps| steps.is_plural()) {
+            let message = format!("--steps {steps}: a single number of steps is expected");
+            return Err(Failure::Usage(message));
+        }
+        let settings = self.rule.settings()?;
+        let loaded = self.rule.resolve(document, settings, quiet)?;
+        self.tween.apply(loaded, catalogue, quiet)
+    }
+
     /// Reads the rule and writes the output once; returns its path. `files` become those that the rule consists of.
     fn run_once(
         &self,
@@ -316,9 +349,8 @@ impl Arguments {
         files: &mut Vec<PathBuf>,
     ) -> Result<PathBuf, Failure> {
         let start = Instant::now();
-        let quiet = self.growth.quiet;
-        let loaded = self.rule.load(catalogue, quiet)?;
-        let loaded = self.tween.apply(loaded, catalogue, quiet)?;
+        let document = self.rule.document(catalogue)?;
+        let loaded = self.resolve(document, catalogue, self.growth.quiet)?;
         *files = loaded.paths();
         let (path, summary, bytes) = self.grow(plan, loaded)?;
         self.report(&path, &summary, bytes, start);
@@ -327,7 +359,7 @@ impl Arguments {
 
     /// Writes what the plan asks for; returns the path, a summary and the number of bytes.
     fn grow(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
-        if let (Some(share), Some(steps)) = (self.between, self.steps) {
+        if let (Some(share), Some(steps)) = (self.between, self.steps()) {
             loaded.model = loaded.model.between(steps, share).ok_or_else(|| {
                 let message = format!(
                     "--between applies to production rules of the plane, and {} is none",
@@ -444,7 +476,7 @@ impl Arguments {
         };
         let graph = loaded.compile(goal.steps())?;
         let view = self.view(loaded.model.metadata());
-        let growth = (steps, self.growth.seed);
+        let growth = (steps, self.growth.seed());
         self.tile.tiled(&graph, growth, &view, self.size.size)
     }
 
@@ -454,45 +486,5 @@ impl Arguments {
             true => self.picture.view_in(&Metadata::default(), self.size.unit),
             false => self.picture.view_in(metadata, self.size.unit),
         }
-    }
-
-    /// Lists the elements of a step; returns a summary and the number of bytes.
-    fn list(
-        &self,
-        loaded: Loaded,
-        format: export::TableFormat,
-        path: &Path,
-    ) -> Result<(String, u64), Failure> {
-        let goal = Goal::asked(self.steps, None, &loaded)?;
-        let steps = goal.steps();
-        let color_by = self.picture.style(loaded.model.metadata()).color_by;
-        let tiled = self.tiled(&loaded, goal)?;
-        let loaded = &loaded.with_images(tiled.map(|tiled| tiled.images));
-        let graph = loaded.compile_for(steps, color_by)?;
-        if let Goal::Steps(..) = goal {
-            self.growth.check(steps, &graph, loaded)?;
-        }
-        let (listed, bytes) = self.list_step(&graph, steps, loaded, format, path)?;
-        let step = goal.reached(&loaded.name, steps);
-        Ok((format!("{step}, {listed}"), bytes))
-    }
-
-    /// Lists the elements of a step of a graph; returns a summary and the number of bytes.
-    fn list_step<F: export::Listed>(
-        &self,
-        graph: &Graph<F>,
-        steps: u32,
-        loaded: &Loaded,
-        format: export::TableFormat,
-        path: &Path,
-    ) -> Result<(String, u64), Failure> {
-        let (walked, bytes) = self.growth.write(path, |out, progress| {
-            let growth = self.growth.to(steps, progress);
-            export::write(graph, &growth, format, self.growth.threads(), out)
-                .map_err(|error| self.growth.explain(RenderError::from(error), loaded, path))
-        })?;
-        let elements = readable::counted(&walked.elements.into(), "element");
-        let fractals = drawing::fractals(walked.fractals);
-        Ok((format!("{elements}{fractals}"), bytes))
     }
 }

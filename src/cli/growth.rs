@@ -22,6 +22,7 @@ use crate::rule::Placement;
 use super::held::Held;
 use super::output::{Counted, Output};
 use super::rule::Loaded;
+use super::several::Several;
 use super::{Failure, number, output, text};
 use crate::fractal::Goal;
 
@@ -33,12 +34,11 @@ const MAX_GROWN_TO_DETAIL: u64 = 10 * Model::MAX_ELEMENTS;
 const MAX_PLOTTED: u64 = Model::MAX_ELEMENTS / 10;
 
 /// Options of growth and its limits.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub(super) struct GrowthArguments {
     /// Seed of random draws: each seed gives another individual
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
-    pub(super) seed: u64,
+    #[arg(long, value_name = "S", default_value = "0", value_parser = seeds, allow_negative_numbers = true)]
+    pub(super) seed: Several<u64>,
     /// Limit of the number of elements [default: 50 million; 500 million to the detail of a PNG, 5 million
     /// for a plot]
     ///
@@ -59,6 +59,11 @@ pub(super) struct GrowthArguments {
     pub(super) held: Option<Arc<Held>>,
 }
 
+/// Parses seeds: one, a range such as `1..24`, or a list.
+pub(super) fn seeds(text: &str) -> Result<Several<u64>, String> {
+    Several::parser("a seed", 0..=u64::MAX, 100_000)(text)
+}
+
 /// Parses a number of threads.
 pub(super) fn threads(text: &str) -> Result<NonZero<usize>, String> {
     let threads = number::whole("a number of threads", 1..=1024)(text)?;
@@ -66,6 +71,22 @@ pub(super) fn threads(text: &str) -> Result<NonZero<usize>, String> {
 }
 
 impl GrowthArguments {
+    /// Returns the seed of random draws: the first one, where there are several.
+    pub(super) fn seed(&self) -> u64 {
+        self.seed.first()
+    }
+
+    /// Refuses several seeds.
+    pub(super) fn refuse_seeds(&self) -> Result<(), Failure> {
+        match self.seed.is_plural() {
+            true => Err(Failure::Usage(format!(
+                "--seed {}: several seeds are for `kfrac grow`, which draws a file for each",
+                self.seed
+            ))),
+            false => Ok(()),
+        }
+    }
+
     /// Returns the number of threads.
     pub(super) fn threads(&self) -> NonZero<usize> {
         self.threads.unwrap_or_else(all_cores)
@@ -199,7 +220,7 @@ impl GrowthArguments {
     pub(super) fn to<'a>(&'a self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
         Growth {
             steps,
-            seed: self.seed,
+            seed: self.seed(),
             max_elements: self.max_elements(),
             cancel: self.cancel(),
             progress,
@@ -221,7 +242,7 @@ impl GrowthArguments {
 
     /// Returns the options on which random draws depend, with their values.
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
-        vec![("seed", self.seed.to_string())]
+        vec![("seed", self.seed().to_string())]
     }
 
     /// Returns the failure for which `path` has not been written.

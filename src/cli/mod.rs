@@ -41,6 +41,7 @@ pub(crate) mod readable;
 mod redrawn;
 mod rule;
 mod schema;
+mod several;
 mod sheet;
 mod show;
 mod skeleton;
@@ -51,6 +52,7 @@ mod structure;
 #[cfg(feature = "studio")]
 mod studio;
 mod system;
+mod template;
 mod text;
 mod tween;
 pub(crate) mod watch;

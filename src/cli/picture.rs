@@ -12,7 +12,7 @@ use super::Failure;
 use super::length::{Length, StrokeWidth};
 
 /// Options of pictures.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PictureArguments {
     /// Window that is shown, in the rule's units: lower left corner, width, height

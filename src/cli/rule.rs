@@ -39,7 +39,7 @@ pub(super) fn catalogue(given: &[PathBuf]) -> Result<Catalogue, Failure> {
 }
 
 /// Rule with the settings of its parameters.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 pub(super) struct RuleArguments {
     /// Rule file, name of a rule in the library, or - for standard input
     #[arg(value_name = "RULE")]
@@ -120,6 +120,11 @@ impl RuleArguments {
         self.load_from(&source, catalogue, quiet)
     }
 
+    /// Finds and reads the rule.
+    pub(super) fn document(&self, catalogue: &Catalogue) -> Result<Arc<Document>, Failure> {
+        Ok(input::document(&self.source(catalogue)?, catalogue)?.into())
+    }
+
     /// Returns the text of the rule, with its components exchanged.
     fn source(&self, catalogue: &Catalogue) -> Result<Arc<Source>, Failure> {
         match self.components.exchanged(&self.rule)? {
@@ -161,7 +166,7 @@ impl RuleArguments {
         if swept.is_empty() {
             return Ok(Vec::new());
         }
-        let document = Arc::new(input::document(&self.source(catalogue)?, catalogue)?);
+        let document = self.document(catalogue)?;
         let members = swept.into_iter().enumerate().map(|(number, own)| {
             let settings = [fixed.as_slice(), &own].concat();
             let document = Arc::clone(&document);

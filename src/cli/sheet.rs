@@ -23,7 +23,7 @@ use super::growth::GrowthArguments;
 use super::labels::labels;
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, Member, RuleArguments};
-use super::steps::Several;
+use super::several::Several;
 use super::{Failure, format, help, length, light, number, output, steps, text};
 
 /// Draws approximants side by side, or a family of fractals
@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     /// Without --steps and --max-elements, an SVG is limited to 50,000 elements and 2 MB: beyond that, it
     /// shows fewer steps, and a note reports it.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
-    steps: Option<Several>,
+    steps: Option<Several<u32>>,
     /// Output file, or - for standard output [default: NAME-sheet.svg, or .png in space]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -85,6 +85,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let start = Instant::now();
     arguments.picture.refuse_hits()?;
     let (growth, rule) = (&arguments.growth, &arguments.rule);
+    growth.refuse_seeds()?;
     let family = rule.load_family(catalogue, growth.quiet, arguments.samples)?;
     let grown = |(settings, loaded): Member| (settings, loaded.grown(growth));
     let family: Vec<_> = family.into_iter().map(grown).collect();

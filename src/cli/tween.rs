@@ -13,7 +13,7 @@ use super::rule::{Loaded, RuleArguments};
 use super::{number, picture};
 
 /// Options of the fractal between two.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Tween")]
 pub(super) struct TweenArguments {
     /// Draws a fractal between the rule and another one of its kind

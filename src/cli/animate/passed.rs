@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 27] = [
+const OTHERS: [&str; 28] = [
     "rule",
     "set",
     "steps",
@@ -16,6 +16,7 @@ const OTHERS: [&str; 27] = [
     "watch",
     "open",
     "seed",
+    "samples",
     "threads",
     "quiet",
     "zoom",

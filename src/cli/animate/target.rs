@@ -1,6 +1,7 @@
 //! Files of films.
 
 use std::collections::BTreeSet;
+use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
+use super::super::template::{Placeholder, Template};
 use super::super::{Failure, format, output, progress, readable, redrawn};
 use super::Arguments;
 use super::frames::{Frames, Purpose};
@@ -155,48 +157,33 @@ fn described(arguments: &Arguments, loaded: &Loaded, frames: u32) -> Labels {
 }
 
 /// File for each frame, with its number in the name.
-struct Numbered {
-    /// Texts before and after the number.
-    around: [String; 2],
-    /// Least number of digits.
-    digits: usize,
-}
+struct Numbered(Template);
 
 impl Numbered {
     /// Reads a name such as `film-%04d.png`; `None` without a number.
     fn of(path: &Path) -> Result<Option<Self>, Failure> {
         let name = path.to_string_lossy();
-        let Some((before, after)) = name.split_once('%') else {
-            return Ok(None);
-        };
         let wrong = || {
             let message = format!(
                 "'{name}': the number of a frame is written %d or %04d, once, in the name of a .png"
             );
             Failure::Usage(message)
         };
-        let (digits, after) = after.split_once('d').ok_or_else(wrong)?;
-        let count = match digits {
-            "" => 1,
-            _ => digits
-                .strip_prefix('0')
-                .and_then(|it| it.parse().ok())
-                .ok_or_else(wrong)?,
-        };
-        let is_png = Path::new(after).extension() == Some(OsStr::new("png")) || after == ".png";
-        if count > 20 || after.contains('%') || !is_png {
-            return Err(wrong());
+        if !name.contains('%') {
+            return Ok(None);
         }
-        Ok(Some(Self {
-            around: [before.to_owned(), after.to_owned()],
-            digits: count,
-        }))
+        let template = Template::parse(&name, "d").map_err(|_| wrong())?;
+        let places: Vec<_> = template.placeholders().collect();
+        let is_png = path.extension() == Some(OsStr::new("png"));
+        match places[..] {
+            [Placeholder::Number(_)] if is_png => Ok(Some(Self(template))),
+            _ => Err(wrong()),
+        }
     }
 
     fn path(&self, number: usize) -> PathBuf {
-        let [before, after] = &self.around;
-        let digits = self.digits;
-        format!("{before}{number:0digits$}{after}").into()
+        let filled = self.0.fill(|_| Ok::<_, Infallible>(number.to_string()));
+        filled.unwrap_or_else(|never| match never {}).into()
     }
 
     /// Writes the frames, and describes what has been written.

@@ -31,7 +31,7 @@ use super::super::{Failure, number};
 use super::Arguments;
 
 /// Options of random iteration, and the choice of the method.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Random iteration")]
 pub(super) struct ChaosArguments {
     /// Method of iteration of a system of maps: all compositions of maps, or a random walk
@@ -235,8 +235,8 @@ impl<'a, M: Walked> Iteration<'a, M> {
             anyhow::Error::new(error).context(message)
         })?;
         let color_by = color_by(&arguments.picture, source.metadata())?;
-        refuse_steps(arguments.steps, color_by)?;
-        let steps = arguments.steps.or(source.metadata().steps);
+        refuse_steps(arguments.steps(), color_by)?;
+        let steps = arguments.steps().or(source.metadata().steps);
         Ok(Self {
             arguments,
             loaded,
@@ -271,7 +271,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         let growth = &self.arguments.growth;
         Game {
             points: self.points(DRAWN),
-            seed: growth.seed,
+            seed: growth.seed(),
             start: self.start.clone(),
             classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
@@ -288,7 +288,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         if let Some(progress) = progress {
             progress.expect(points);
         }
-        let all = RandomPoints::new(&self.system, &self.start, growth.seed);
+        let all = RandomPoints::new(&self.system, &self.start, growth.seed());
         Ok((points, all))
     }
 

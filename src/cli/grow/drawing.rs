@@ -44,7 +44,7 @@ impl<'a> Drawing<'a> {
         path: &'a Path,
     ) -> Result<Self, Failure> {
         let loaded = loaded.grown(&arguments.growth);
-        let (steps, detail) = (arguments.steps, arguments.detail);
+        let (steps, detail) = (arguments.steps(), arguments.detail);
         let (loaded, goal) = match shown {
             ShownPart::Zoom(_) => {
                 let loaded = match steps {

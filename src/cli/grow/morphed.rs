@@ -19,7 +19,7 @@ use super::plan::Plan;
 const MAX_BYTES: usize = 1 << 31;
 
 /// Options for the morphology of the picture.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Morphology")]
 pub(super) struct MorphArguments {
     /// Erodes, dilates, opens and closes the picture, as in "open:3, close:2", into a PNG of black on white

@@ -242,7 +242,7 @@ impl Plan {
             zoom.is_asked() && is_table,
             "--zoom applies to pictures only: write a .png, .svg, .pdf or .dxf",
         )?;
-        let gives_depth = arguments.steps.is_some()
+        let gives_depth = arguments.steps().is_some()
             || has_detail
             || arguments.growth.given_max_elements().is_some();
         Ok(match format {

@@ -11,7 +11,7 @@ use super::super::picture::PictureArguments;
 use super::super::readable;
 
 /// Options of plots.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct PlotArguments {
     /// Draws single strokes, for a plotter or a cutter; DXF, HP-GL and G-code always have them

@@ -13,7 +13,7 @@ use super::Arguments;
 use super::plan::{Format, SceneFormat};
 
 /// Options of meshes.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Space")]
 pub(super) struct SceneArguments {
     /// Faces of a mesh: those of all elements, or the shell that remains where faces that cancel are left out
@@ -52,7 +52,7 @@ pub(super) fn write(
     let name = &loaded.name;
     let extension = Format::Scene(format).name();
     let metadata = loaded.model.metadata();
-    let Some(steps) = loaded.model.drawn_steps_in_space(arguments.steps, false) else {
+    let Some(steps) = loaded.model.drawn_steps_in_space(arguments.steps(), false) else {
         let message = format!("a .{extension} holds the elements of a step: give --steps");
         return Err(Failure::Usage(message));
     };

@@ -29,9 +29,9 @@ pub(super) fn draw(
     let metadata = loaded.model.metadata();
     let style = arguments.picture.style(metadata);
     if let Plan::Table(format) = *plan {
-        let graph = loaded.in_space(arguments.steps)?;
+        let graph = loaded.in_space(arguments.steps())?;
         let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
-        let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
+        let steps = steps::choose_in_space(arguments.steps(), loaded, &graph);
         arguments.growth.check(steps, &graph, loaded)?;
         let (listed, bytes) = arguments.list_step(&graph, steps, loaded, format, path)?;
         let summary = format!("step {steps} of {}, {listed}", loaded.name);
@@ -41,7 +41,8 @@ pub(super) fn draw(
         Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::in_space(arguments, loaded)?),
         _ => None,
     };
-    let steps = { &loaded.model }.drawn_steps_in_space(arguments.steps, arguments.detail.is_some());
+    let steps =
+        { &loaded.model }.drawn_steps_in_space(arguments.steps(), arguments.detail.is_some());
     let mut options = render::Options {
         format: render::Format::Png,
         style,
@@ -170,7 +171,7 @@ fn options(arguments: &Arguments, game: Option<&SpaceGame<'_>>) -> Vec<(&'static
     let mut options: Vec<(&'static str, String)> = Vec::new();
     match game {
         Some(game) => options.extend(game.options()),
-        None => options.extend(arguments.steps.map(|steps| ("steps", steps.to_string()))),
+        None => options.extend(arguments.steps().map(|steps| ("steps", steps.to_string()))),
     }
     options.extend(
         arguments

@@ -7,7 +7,7 @@ use super::super::picture::named;
 use super::super::readable;
 
 /// Option of SVG files.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct SvgArguments {
     /// Structure of an SVG: every single line, or nested instances

@@ -13,7 +13,7 @@ use super::super::rule::Loaded;
 use super::super::{Failure, number, picture};
 
 /// Options of tilings.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Tiling")]
 pub(super) struct TileArguments {
     /// Wallpaper or frieze group under which the picture is repeated without end

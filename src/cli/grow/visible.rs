@@ -54,9 +54,9 @@ pub(super) fn draw(
     }
     let metadata = loaded.model.metadata();
     let mut style = picture.style_in(metadata, size.unit);
-    let graph = loaded.in_space(arguments.steps)?;
+    let graph = loaded.in_space(arguments.steps())?;
     let graph = graph.ok_or_else(|| anyhow!("{name} lies in the plane"))?;
-    let steps = steps::choose_in_space(arguments.steps, loaded, &graph);
+    let steps = steps::choose_in_space(arguments.steps(), loaded, &graph);
     let drawn = loaded.drawn_in_space(Some(steps), style.color_by)?;
     drawn.colour(&mut style);
     let (graph, levels) = (drawn.graph, drawn.steps.unwrap_or(steps));

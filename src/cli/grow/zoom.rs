@@ -8,7 +8,7 @@ use crate::zoom::{Address, Factor};
 use super::super::{Failure, readable};
 
 /// Options of zooms.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Picture")]
 pub(super) struct ZoomArguments {
     /// Magnifies the neighbourhood of the point given by --at, or in space by --look-at: 250, 1e1000, 3^5000

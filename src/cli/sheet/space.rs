@@ -23,7 +23,7 @@ impl Arguments {
         let (_, first) = &family[0];
         self.refuse_of_plane(&first.name)?;
         let views = self.space.views(&first.model.space_view());
-        let most = self.steps.as_ref().map(steps::Several::largest);
+        let most = self.steps.as_ref().map(super::Several::largest);
         let graphs = family.iter().map(|(settings, loaded)| {
             let graph = loaded.in_space(most)?;
             let graph = graph.ok_or_else(|| anyhow!("{} lies in the plane", loaded.name))?;
