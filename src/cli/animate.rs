@@ -26,6 +26,7 @@ use crate::film::Rate;
 
 use super::exchanged::ExchangedComponents;
 use super::family::Assignment;
+use super::growth::{self, Seeds};
 #[cfg(feature = "studio")]
 use super::held;
 use super::held::Held;
@@ -34,11 +35,11 @@ use super::input;
 use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
-use super::{Failure, growth, help, length, number, picture, rule, steps, text, tween};
+use super::{Failure, help, length, number, picture, rule, steps, text, tween};
+use crate::figure::sheet::Fit;
 pub(super) use file::mistakes;
-use fit::Fit;
 use passed::{FrameOptions, Given};
-use plan::{Seeds, Zooms};
+use plan::Zooms;
 use target::Format;
 use timeline::Keys;
 
@@ -95,7 +96,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     draw: bool,
     /// Seed of random draws, or several as 1..24, each for an equal part of the film
-    #[arg(long, value_name = "S", default_value = "0", value_parser = Seeds::parse)]
+    #[arg(long, value_name = "S", default_value = "0", value_parser = growth::parse_seeds)]
     seed: Seeds,
     /// Magnification, from one to another as 1..1e100, or loop: the period of the address --at, which repeats exactly
     #[arg(long, value_name = "ZOOM", value_parser = Zooms::parse)]

@@ -444,7 +444,7 @@ impl Arguments {
         };
         let graph = loaded.compile(goal.steps())?;
         let view = self.view(loaded.model.metadata());
-        let growth = (steps, self.growth.seed);
+        let growth = (steps, self.growth.seed.first());
         self.tile.tiled(&graph, growth, &view, self.size.size)
     }
 

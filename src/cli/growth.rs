@@ -36,9 +36,10 @@ const MAX_PLOTTED: u64 = Model::MAX_ELEMENTS / 10;
 #[derive(clap::Args)]
 pub(super) struct GrowthArguments {
     /// Seed of random draws: each seed gives another individual
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    #[arg(value_parser = number::whole("a seed", 0..=u64::MAX), allow_negative_numbers = true)]
-    pub(super) seed: u64,
+    ///
+    /// `kfrac sheet` draws one individual for each of several seeds, as 1..12 or 3,5,9.
+    #[arg(long, value_name = "S", default_value = "0", value_parser = parse_seeds, allow_hyphen_values = true)]
+    pub(super) seed: Seeds,
     /// Limit of the number of elements [default: 50 million; 500 million to the detail of a PNG, 5 million
     /// for a plot]
     ///
@@ -57,6 +58,14 @@ pub(super) struct GrowthArguments {
     /// Destination of a command that runs within the program.
     #[arg(skip)]
     pub(super) held: Option<Arc<Held>>,
+}
+
+/// Several seeds, at least one.
+pub(super) type Seeds = number::Several<u64>;
+
+/// Parses seeds: one, a range such as `1..24`, or a list.
+pub(super) fn parse_seeds(text: &str) -> Result<Seeds, String> {
+    number::several("a seed", 0..=u64::MAX)(text)
 }
 
 /// Parses a number of threads.
@@ -115,6 +124,17 @@ impl GrowthArguments {
     pub(super) fn spares(&self) -> Spares {
         let held = self.held.as_ref();
         held.map_or_else(Spares::default, |held| held.spares.clone())
+    }
+
+    /// Returns an error if several seeds are given.
+    pub(super) fn refuse_several_seeds(&self) -> Result<(), Failure> {
+        match self.seed.as_slice() {
+            [_] => Ok(()),
+            _ => Err(Failure::Usage(format!(
+                "--seed {}: several seeds are for `kfrac sheet`, which draws them side by side, and `kfrac animate`",
+                self.seed
+            ))),
+        }
     }
 
     pub(super) fn max_elements(&self) -> u64 {
@@ -199,7 +219,7 @@ impl GrowthArguments {
     pub(super) fn to<'a>(&'a self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
         Growth {
             steps,
-            seed: self.seed,
+            seed: self.seed.first(),
             max_elements: self.max_elements(),
             cancel: self.cancel(),
             progress,

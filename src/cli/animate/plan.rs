@@ -15,7 +15,7 @@ use crate::zoom::Factor;
 
 use super::super::family::Assignment;
 use super::super::rule::Loaded;
-use super::super::{Failure, grow, number, tween};
+use super::super::{Failure, grow, tween};
 use super::frames::Frames;
 use super::timeline::{Ease, Keys, Moment, Timeline};
 use super::{Arguments, endless, fit};
@@ -25,39 +25,6 @@ pub(super) struct Film<'a> {
     pub(super) frames: Frames<'a>,
     /// Width and height in pixels.
     pub(super) size: [u32; 2],
-}
-
-/// Seeds of a film.
-#[derive(Clone, Debug)]
-pub(super) struct Seeds(Vec<u64>);
-
-impl Seeds {
-    /// Parses seeds: one, a range such as `1..24`, or a list.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        const MOST: u64 = 100_000;
-        let seed = number::whole("a seed", 0..=u64::MAX);
-        let Some((first, last)) = text.split_once("..") else {
-            let seeds: Result<Vec<u64>, _> = text.split(',').map(|it| seed(it.trim())).collect();
-            return seeds.map(Self);
-        };
-        let (first, last) = (seed(first.trim())?, seed(last.trim())?);
-        match last.checked_sub(first) {
-            Some(more) if more < MOST => Ok(Self((first..=last).collect())),
-            Some(_) => Err(format!("a film has up to {MOST} seeds")),
-            None => Err("write the smaller seed first".into()),
-        }
-    }
-
-    /// Returns the number of seeds.
-    fn count(&self) -> u32 {
-        u32::try_from(self.0.len()).unwrap_or(u32::MAX)
-    }
-
-    /// Returns the seed of a frame of several.
-    fn at(&self, frame: u32, frames: u32) -> u64 {
-        let at = u64::from(frame) * u64::from(self.count()) / u64::from(frames);
-        self.0[usize::try_from(at).unwrap_or_default()]
-    }
 }
 
 /// Magnifications of a film.
@@ -220,7 +187,7 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     let changes = [
         swept,
         arguments.steps.as_ref().is_some_and(several),
-        arguments.seed.count() > 1,
+        arguments.seed.as_slice().len() > 1,
         !matches!(arguments.zoom, None | Some(Zooms::One(_))),
         arguments.turn.as_ref().is_some_and(Keys::changes),
         arguments.from.iter().flatten().any(Keys::changes),
@@ -237,7 +204,7 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
 }
 
 pub(super) fn timeline(arguments: &Arguments) -> Timeline {
-    let seeds = arguments.seed.count();
+    let seeds = u32::try_from(arguments.seed.as_slice().len()).unwrap_or(u32::MAX);
     let is_endless = matches!(arguments.zoom, Some(Zooms::Loop));
     let is_even = arguments.is_loop || arguments.draw || arguments.zoom.is_some() || seeds > 1;
     let default = if is_even { Ease::Linear } else { Ease::InOut };
@@ -272,10 +239,10 @@ fn at(
     let mut own = Vec::new();
     let tracks = arguments.set.iter().flat_map(Assignment::tracks);
     own.extend(tracks.map(|track| format!("--set={}", track.at(moment))));
-    own.push(format!(
-        "--seed={}",
-        arguments.seed.at(moment.number, timeline.frames)
-    ));
+    // Each seed has an equal part of the film.
+    let seeds = arguments.seed.as_slice();
+    let seed = moment.number as usize * seeds.len() / timeline.frames as usize;
+    own.push(format!("--seed={}", seeds[seed]));
     own.extend(
         { arguments.steps.iter() }.flat_map(|it| steps(arguments, loaded, it.as_slice(), moment)),
     );

@@ -104,6 +104,7 @@ pub(super) const NO_ZOOM_OF_POINTS: &str =
 impl Plan {
     /// Returns the plan of the arguments; an error if they exclude each other.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        arguments.growth.refuse_several_seeds()?;
         let plan = Self::chosen(arguments)?;
         arguments.morphed.refuse_beside(&plan)?;
         Ok(plan)
