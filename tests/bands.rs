@@ -3,7 +3,7 @@
 use std::num::NonZero;
 
 use crate::common;
-use kfrac::figure::sheet::{self, Cell};
+use kfrac::figure::sheet::{self, Arrangement, Cell};
 use kfrac::graph::Graph;
 use kfrac::grow::{Growth, Progress};
 use kfrac::render::{self, Detail, Format, Options, Size};
@@ -125,13 +125,6 @@ fn sheets_do_not_know_of_bands() {
     let document = common::document("dragon-wreath");
     let rule = document.resolve(&[]).unwrap().0.into_rule().unwrap();
     let graph = Graph::compile(&rule, 4).unwrap();
-    let cells: Vec<_> = (0..=4)
-        .map(|steps| Cell {
-            name: format!("step {steps}"),
-            graph: &graph,
-            growth: Growth::steps(steps),
-        })
-        .collect();
     for width in [1.5, 6.0] {
         let [whole, drawn] = [u64::MAX, 9_000].map(|band| {
             let mut options = Options::of(rule.metadata())
@@ -141,8 +134,21 @@ fn sheets_do_not_know_of_bands() {
                 .band(band)
                 .threads(NonZero::<usize>::MIN);
             options.style.width = Width::Pixels(width);
+            let cells: Vec<_> = (0..=4)
+                .map(|steps| Cell {
+                    name: format!("step {steps}"),
+                    graph: &graph,
+                    growth: Growth::steps(steps),
+                    style: &options.style,
+                    view: options.view,
+                })
+                .collect();
+            let arrangement = Arrangement {
+                columns: Some(2),
+                ..Arrangement::default()
+            };
             let mut bytes = Vec::new();
-            sheet::write(&cells, Some(2), &options, &mut bytes).unwrap();
+            sheet::write(&cells, arrangement, &options, &mut bytes).unwrap();
             bytes
         });
         assert!(drawn == whole, "{width}");

@@ -175,7 +175,7 @@ fn shells_learn_commands_options_and_rules() {
         );
     }
     let zsh = printed(&["completions", "zsh"]);
-    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 11);
+    assert_eq!(zsh.matches(":_kfrac_rules' \\").count(), 12);
     assert_eq!(zsh.matches(":_kfrac_components' \\").count(), 3);
 }
 

@@ -1,11 +1,13 @@
 //! Sheets: approximants side by side, and the command that draws them.
 
+mod several;
+
 use std::fs;
 use std::path::Path;
 
 use crate::common::{compiled, document, resolved};
 use assert_cmd::Command;
-use kfrac::figure::sheet::{self, Cell};
+use kfrac::figure::sheet::{self, Arrangement, Cell};
 use kfrac::grow::Growth;
 use kfrac::render::{Options, Size};
 
@@ -13,17 +15,23 @@ use kfrac::render::{Options, Size};
 fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::SheetSummary, String) {
     let rule = resolved(&document(name), &[]);
     let graph = compiled(&rule, *steps.iter().max().unwrap_or(&0));
+    let options = Options::of(rule.metadata()).size(Size::Long(200));
     let cells: Vec<_> = steps
         .iter()
         .map(|&step| Cell {
             name: format!("step {step}"),
             graph: &graph,
             growth: Growth::steps(step),
+            style: &options.style,
+            view: options.view,
         })
         .collect();
-    let options = Options::of(rule.metadata()).size(Size::Long(200));
     let mut bytes = Vec::new();
-    let written = sheet::write(&cells, columns, &options, &mut bytes).unwrap();
+    let arrangement = Arrangement {
+        columns,
+        ..Arrangement::default()
+    };
+    let written = sheet::write(&cells, arrangement, &options, &mut bytes).unwrap();
     (written, String::from_utf8(bytes).unwrap())
 }
 
@@ -177,7 +185,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
     for (arguments, message) in [
         (
             &["koch", "--steps", "3..1"][..],
-            "a range begins with the smaller number, as 0..6",
+            "write 0..6, or a list such as 0,2,4",
         ),
         (
             &["koch", "--steps", "0..x"],
@@ -185,7 +193,7 @@ fn what_is_wrong_with_the_command_line_is_said() {
         ),
         (
             &["koch", "--steps", "0..20000"],
-            "no more than 10000 numbers can be given",
+            "a sheet has no more than 10000 pictures",
         ),
         (
             &["koch", "--columns", "0"],

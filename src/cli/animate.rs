@@ -26,6 +26,7 @@ use crate::film::Rate;
 
 use super::exchanged::ExchangedComponents;
 use super::family::Assignment;
+use super::growth::{self, Seeds};
 #[cfg(feature = "studio")]
 use super::held;
 use super::held::Held;
@@ -33,10 +34,10 @@ use super::held::Held;
 use super::input;
 use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
-use super::several::Several;
-use super::{Failure, growth, help, length, number, picture, rule, steps, text, tween};
+use super::steps::Several;
+use super::{Failure, help, length, number, picture, rule, steps, text, tween};
+use crate::figure::sheet::Fit;
 pub(super) use file::mistakes;
-use fit::Fit;
 use passed::{FrameOptions, Given};
 use plan::Zooms;
 use target::Format;
@@ -81,7 +82,7 @@ pub(super) struct Arguments {
     /// In a production rule of the plane, the elements of a step move from the elements that they replace to their places. Other systems
     /// change from step to step at once.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
-    steps: Option<Several<u32>>,
+    steps: Option<Several>,
     /// Changes from step to step at once
     #[arg(long, requires = "steps")]
     cuts: bool,
@@ -95,8 +96,8 @@ pub(super) struct Arguments {
     #[arg(long)]
     draw: bool,
     /// Seed of random draws, or several as 1..24, each for an equal part of the film
-    #[arg(long, value_name = "S", default_value = "0", value_parser = growth::seeds)]
-    seed: Several<u64>,
+    #[arg(long, value_name = "S", default_value = "0", value_parser = growth::parse_seeds)]
+    seed: Seeds,
     /// Magnification, from one to another as 1..1e100, or loop: the period of the address --at, which repeats exactly
     #[arg(long, value_name = "ZOOM", value_parser = Zooms::parse)]
     zoom: Option<Zooms>,
@@ -135,7 +136,7 @@ pub(super) struct Arguments {
     once: bool,
     /// Numbers of the frames to draw, from 0, of a film in PNGs: 30..40
     #[arg(long, value_name = "FRAMES", value_parser = steps::parse_several)]
-    only: Option<Several<u32>>,
+    only: Option<Several>,
     /// Long side of the frames in pixels, or WIDTHxHEIGHT
     #[arg(long, value_name = "SIZE", default_value = "640", value_parser = length::paper, help_heading = "Picture")]
     size: Paper,

@@ -65,7 +65,7 @@ struct CountReport<'a> {
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let Arguments { rule, growth, .. } = arguments;
-    growth.refuse_seeds()?;
+    growth.refuse_several_seeds()?;
     let loaded = rule.load(catalogue, growth.quiet)?.grown(growth);
     if let Some(graph) = loaded.in_space(arguments.steps)? {
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);

@@ -21,7 +21,7 @@ use crate::render::{self, Labels};
 pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::exchanged::ExchangedComponents;
-use super::family::{Assignment, assignment};
+use super::family::{Assignment, Family, assignment};
 use super::pixels::PixelArguments;
 use super::rule::RuleArguments;
 use super::{Failure, format, growth, help, number, output, space, steps, text};
@@ -179,10 +179,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let plot = arguments.plot.as_deref();
     let plot = plot.map(|path| Ok::<_, Failure>((path, format::choose(None, Some(path))?)));
     let plot = plot.transpose()?;
-    let family = arguments
-        .rules()
-        .load_family(catalogue, true, arguments.samples)?;
-    if !family.is_empty() {
+    let family = Family::of(&arguments.set, arguments.samples, false)?;
+    if !family.is_single() {
+        let family = arguments.rules().load_family(&family, catalogue, true)?;
         let series = Series::of(&family)?;
         if let Some((path, format)) = plot {
             series.draw(path, format)?;

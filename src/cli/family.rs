@@ -308,51 +308,131 @@ pub(super) fn plain(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 
-/// Splits assignments into the settings that all members share and the settings of each member. Several swept
-/// parameters, such as the parts of a complex one, must have the same number of values.
-pub(super) fn split(
-    assignments: &[Assignment],
-    samples: u32,
-) -> Result<(Vec<Setting>, Vec<Vec<Setting>>), Failure> {
-    let mut fixed = Vec::new();
-    let mut swept: Vec<Vec<Setting>> = Vec::new();
-    for assignment in assignments.iter().flat_map(|it| &it.parts) {
-        let Some(several) = assignment.several(samples) else {
-            fixed.extend(assignment.setting());
-            continue;
-        };
-        if swept.is_empty() {
-            swept = vec![Vec::new(); several.len()];
-        } else if swept.len() != several.len() {
-            let message = format!(
-                "--set {}: {} values do not match the {} of {}",
-                assignment.name,
-                several.len(),
-                swept.len(),
-                swept[0][0].name
-            );
-            return Err(Failure::Usage(message));
-        } else if swept[0].iter().any(|it| it.name == assignment.name) {
-            let message = format!("--set {0}: {0} is swept already", assignment.name);
-            return Err(Failure::Usage(message));
+/// Settings of the members of a family.
+#[derive(Clone, Debug)]
+pub(super) struct Family {
+    /// Settings that all members share.
+    fixed: Vec<Setting>,
+    /// Independent choices: the settings of each alternative.
+    choices: Vec<Vec<Vec<Setting>>>,
+}
+
+impl Family {
+    /// Returns the family of assignments, with `samples` values for a range. Parameters with several values vary
+    /// together, and must have the same number of them; in a grid, every assignment varies on its own.
+    pub(super) fn of(
+        assignments: &[Assignment],
+        samples: u32,
+        is_grid: bool,
+    ) -> Result<Self, Failure> {
+        let mut fixed = Vec::new();
+        let mut choices: Vec<Vec<Vec<Setting>>> = Vec::new();
+        for assignment in assignments {
+            let mut is_new = is_grid;
+            for part in &assignment.parts {
+                let Some(several) = part.several(samples) else {
+                    fixed.extend(part.setting());
+                    continue;
+                };
+                let mut swept = choices.iter().flat_map(|choice| &choice[0]);
+                if swept.any(|it| it.name == part.name) {
+                    let message = format!("--set {0}: {0} is swept already", part.name);
+                    return Err(Failure::Usage(message));
+                }
+                if is_new || choices.is_empty() {
+                    choices.push(vec![Vec::new(); several.len()]);
+                    is_new = false;
+                }
+                let Some(choice) = choices.last_mut() else {
+                    continue;
+                };
+                if choice.len() != several.len() {
+                    let message = format!(
+                        "--set {}: {} values do not match the {} of {}, with which they vary together; in a grid of \
+                         `kfrac sheet --grid`, parameters vary independently",
+                        part.name,
+                        several.len(),
+                        choice.len(),
+                        choice[0][0].name
+                    );
+                    return Err(Failure::Usage(message));
+                }
+                for (alternative, setting) in choice.iter_mut().zip(several) {
+                    alternative.push(setting);
+                }
+            }
         }
-        for (member, setting) in swept.iter_mut().zip(several) {
-            member.push(setting);
-        }
+        Ok(Self { fixed, choices })
     }
-    Ok((fixed, swept))
+
+    /// Returns whether there is a single member, because no parameter has several values.
+    pub(super) fn is_single(&self) -> bool {
+        self.choices.is_empty()
+    }
+
+    /// Returns the settings that all members share.
+    pub(super) fn fixed(&self) -> &[Setting] {
+        &self.fixed
+    }
+
+    /// Returns the number of alternatives of each independent choice.
+    pub(super) fn counts(&self) -> impl DoubleEndedIterator<Item = usize> {
+        self.choices.iter().map(Vec::len)
+    }
+
+    /// Returns the settings of each member that vary. The first choice changes from one member to the next.
+    pub(super) fn members(&self) -> Vec<Vec<Setting>> {
+        let first = vec![Vec::new()];
+        self.choices.iter().rev().fold(first, |members, choice| {
+            let all = { members.iter() }
+                .flat_map(|own| choice.iter().map(|more| [more.as_slice(), own].concat()));
+            all.collect()
+        })
+    }
+
+    /// Returns the names of the parameters that vary.
+    pub(super) fn names(&self) -> Vec<&str> {
+        let settings = self.choices.iter().flat_map(|choice| &choice[0]);
+        settings.map(|setting| setting.name.as_str()).collect()
+    }
+
+    /// Returns the assignments of the parameters that vary, as on the command line.
+    pub(super) fn written(&self) -> Vec<String> {
+        let list = |choice: &[Vec<Setting>], number: usize| {
+            let values = choice
+                .iter()
+                .map(|settings| settings[number].value.to_string());
+            values.collect::<Vec<_>>().join(",")
+        };
+        let is_grid = self.choices.len() > 1;
+        let all = self.choices.iter().flat_map(|choice| {
+            let names = choice[0].iter().map(|setting| &setting.name).enumerate();
+            let each = names.map(|(number, name)| format!("{name}={}", list(choice, number)));
+            // Both parts of a complex parameter are one choice.
+            let whole = choice[0][0].name.strip_suffix(PARTS[0]);
+            match whole.filter(|_| is_grid && choice[0].len() == 2) {
+                Some(name) => {
+                    let value = |it: &Vec<Setting>| format!("[{},{}]", it[0].value, it[1].value);
+                    let values: Vec<_> = choice.iter().map(value).collect();
+                    vec![format!("{name}={}", values.join(","))]
+                }
+                None => each.collect(),
+            }
+        });
+        all.collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Setting, assignment, split};
+    use super::{Family, assignment};
 
     #[test]
     fn values_are_one_or_several() {
         let values = |text: &str| {
-            let (fixed, swept) = split(&[assignment(text).unwrap()], 3).unwrap();
-            let all = fixed.into_iter().chain(swept.into_iter().flatten());
-            all.map(|setting| setting.value).collect::<Vec<_>>()
+            let family = Family::of(&[assignment(text).unwrap()], 3, false).unwrap();
+            let all = [family.fixed(), &family.members().concat()].concat();
+            all.iter().map(|it| it.value).collect::<Vec<_>>()
         };
         assert_eq!(values("a=180/4"), [45.0]);
         assert_eq!(values("a=max(1, 2)"), [2.0]);
@@ -361,12 +441,17 @@ mod tests {
         for wrong in ["a", "a=", "a=1,", "a=1..", "a=1/0", "a=x,2"] {
             assert!(assignment(wrong).is_err(), "{wrong}");
         }
-        let together = |texts: &[&str]| {
+        let varied = |texts: &[&str], is_grid: bool| {
             let all: Vec<_> = texts.iter().map(|text| assignment(text).unwrap()).collect();
-            let (_, swept) = split(&all, 3).ok()?;
-            let values = |member: &Vec<Setting>| member.iter().map(|it| it.value).collect();
-            Some(swept.iter().map(values).collect::<Vec<Vec<f64>>>())
+            let family = Family::of(&all, 3, is_grid).ok()?;
+            let members = family.members().into_iter();
+            let values = members.map(|own| own.iter().map(|it| it.value).collect());
+            Some((
+                values.collect::<Vec<Vec<f64>>>(),
+                family.written().join(" "),
+            ))
         };
+        let together = |texts: &[&str]| Some(varied(texts, false)?.0);
         let path = together(&["re=0..1", "c=7", "im=5,6,8"]).unwrap();
         assert_eq!(path, [[0.0, 5.0], [0.5, 6.0], [1.0, 8.0]]);
         assert_eq!(together(&["re=1,2", "im=1,2,3"]), None);
@@ -376,6 +461,18 @@ mod tests {
         assert_eq!(together(&["s=[0,5],[1/2,max(6,1)], [1,7]"]).unwrap(), path);
         assert_eq!(together(&["s=[0,5],[1/2,6],[1,7]", "s.re=0..1"]), None);
         assert_eq!(values("s=[max(1, 2), 3]"), [2.0, 3.0]);
+        let (grid, written) = varied(&["a=1,2", "c=7", "s=[0,5]..[1,7]"], true).unwrap();
+        assert_eq!(written, "a=1,2 s=[0,5],[0.5,6],[1,7]");
+        let all = [
+            [1.0, 0.0, 5.0],
+            [2.0, 0.0, 5.0],
+            [1.0, 0.5, 6.0],
+            [2.0, 0.5, 6.0],
+            [1.0, 1.0, 7.0],
+            [2.0, 1.0, 7.0],
+        ];
+        assert_eq!(grid, all);
+        assert_eq!(varied(&["a=1,2", "a=1,2,3"], true), None);
         for wrong in [
             "s=[1]",
             "s=[1,2",

@@ -36,7 +36,6 @@ use super::held::{self, Held};
 use super::length::{self, Paper};
 use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
-use super::several::Several;
 use super::tween::TweenArguments;
 use super::{Failure, format, help, input, number, output, readable, redrawn, steps, text};
 use chaos::ChaosArguments;
@@ -66,7 +65,7 @@ pub(super) struct Arguments {
     /// elements. Without --steps, --detail and --max-elements, an SVG is limited to 50,000 elements and 2 MB:
     /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it. Several numbers, as 0..6 or 0,2,4, are a picture each.
     #[arg(long, short, value_name = "N", value_parser = steps::parse_several, allow_negative_numbers = true)]
-    steps: Option<Several<u32>>,
+    steps: Option<steps::Several>,
     /// Draws the last step of a rule of the plane while it grows, at a share of its way from 0 to 1
     ///
     /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
@@ -321,7 +320,7 @@ impl Arguments {
 
     /// Returns the number of steps, if one is given.
     fn steps(&self) -> Option<u32> {
-        self.steps.as_ref().map(Several::first)
+        self.steps.as_ref().map(steps::Several::first)
     }
 
     /// Resolves the rule of one picture after it has been read.
@@ -331,7 +330,7 @@ impl Arguments {
         catalogue: &Catalogue,
         quiet: bool,
     ) -> Result<Loaded, Failure> {
-        self.growth.refuse_seeds()?;
+        self.growth.refuse_several_seeds()?;
         if let Some(steps) = self.steps.as_ref().filter(|steps| steps.is_plural()) {
             let message = format!("--steps {steps}: a single number of steps is expected");
             return Err(Failure::Usage(message));
@@ -476,7 +475,7 @@ impl Arguments {
         };
         let graph = loaded.compile(goal.steps())?;
         let view = self.view(loaded.model.metadata());
-        let growth = (steps, self.growth.seed());
+        let growth = (steps, self.growth.seed.first());
         self.tile.tiled(&graph, growth, &view, self.size.size)
     }
 

@@ -22,7 +22,6 @@ use crate::rule::Placement;
 use super::held::Held;
 use super::output::{Counted, Output};
 use super::rule::Loaded;
-use super::several::Several;
 use super::{Failure, number, output, text};
 use crate::fractal::Goal;
 
@@ -37,8 +36,10 @@ const MAX_PLOTTED: u64 = Model::MAX_ELEMENTS / 10;
 #[derive(clap::Args, Clone)]
 pub(super) struct GrowthArguments {
     /// Seed of random draws: each seed gives another individual
-    #[arg(long, value_name = "S", default_value = "0", value_parser = seeds, allow_negative_numbers = true)]
-    pub(super) seed: Several<u64>,
+    ///
+    /// `kfrac sheet` and `kfrac grow` draw one individual for each of several seeds, as 1..12 or 3,5,9.
+    #[arg(long, value_name = "S", default_value = "0", value_parser = parse_seeds, allow_hyphen_values = true)]
+    pub(super) seed: Seeds,
     /// Limit of the number of elements [default: 50 million; 500 million to the detail of a PNG, 5 million
     /// for a plot]
     ///
@@ -59,9 +60,12 @@ pub(super) struct GrowthArguments {
     pub(super) held: Option<Arc<Held>>,
 }
 
+/// Several seeds, at least one.
+pub(super) type Seeds = number::Several<u64>;
+
 /// Parses seeds: one, a range such as `1..24`, or a list.
-pub(super) fn seeds(text: &str) -> Result<Several<u64>, String> {
-    Several::parser("a seed", 0..=u64::MAX, 100_000)(text)
+pub(super) fn parse_seeds(text: &str) -> Result<Seeds, String> {
+    number::several("a seed", 0..=u64::MAX)(text)
 }
 
 /// Parses a number of threads.
@@ -71,22 +75,6 @@ pub(super) fn threads(text: &str) -> Result<NonZero<usize>, String> {
 }
 
 impl GrowthArguments {
-    /// Returns the seed of random draws: the first one, where there are several.
-    pub(super) fn seed(&self) -> u64 {
-        self.seed.first()
-    }
-
-    /// Refuses several seeds.
-    pub(super) fn refuse_seeds(&self) -> Result<(), Failure> {
-        match self.seed.is_plural() {
-            true => Err(Failure::Usage(format!(
-                "--seed {}: several seeds are for `kfrac grow`, which draws a file for each",
-                self.seed
-            ))),
-            false => Ok(()),
-        }
-    }
-
     /// Returns the number of threads.
     pub(super) fn threads(&self) -> NonZero<usize> {
         self.threads.unwrap_or_else(all_cores)
@@ -136,6 +124,18 @@ impl GrowthArguments {
     pub(super) fn spares(&self) -> Spares {
         let held = self.held.as_ref();
         held.map_or_else(Spares::default, |held| held.spares.clone())
+    }
+
+    /// Returns an error if several seeds are given.
+    pub(super) fn refuse_several_seeds(&self) -> Result<(), Failure> {
+        match self.seed.as_slice() {
+            [_] => Ok(()),
+            _ => Err(Failure::Usage(format!(
+                "--seed {}: several seeds are for `kfrac sheet`, which draws them side by side, for `kfrac grow`, which draws a file for each, \
+                 and for `kfrac animate`",
+                self.seed
+            ))),
+        }
     }
 
     pub(super) fn max_elements(&self) -> u64 {
@@ -220,7 +220,7 @@ impl GrowthArguments {
     pub(super) fn to<'a>(&'a self, steps: u32, progress: Option<&'a Progress>) -> Growth<'a> {
         Growth {
             steps,
-            seed: self.seed(),
+            seed: self.seed.first(),
             max_elements: self.max_elements(),
             cancel: self.cancel(),
             progress,
@@ -242,7 +242,7 @@ impl GrowthArguments {
 
     /// Returns the options on which random draws depend, with their values.
     pub(super) fn options(&self) -> Vec<(&'static str, String)> {
-        vec![("seed", self.seed().to_string())]
+        vec![("seed", self.seed.to_string())]
     }
 
     /// Returns the failure for which `path` has not been written.

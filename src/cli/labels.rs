@@ -14,21 +14,45 @@ pub(super) fn labels(
     subcommand: &str,
     options: impl IntoIterator<Item = (impl Display, String)>,
 ) -> render::Labels {
-    let description = &loaded.model.metadata().description;
-    let title = description
-        .title
-        .clone()
-        .unwrap_or_else(|| loaded.name.clone());
+    labels_of_rules(&[loaded], shown, subcommand, options)
+}
+
+/// Returns the labels of a picture of several rules, at least one, which have the same settings. The texts of the rules
+/// follow one another.
+pub(super) fn labels_of_rules(
+    rules: &[&Loaded],
+    shown: &str,
+    subcommand: &str,
+    options: impl IntoIterator<Item = (impl Display, String)>,
+) -> render::Labels {
+    let title = |loaded: &&Loaded| {
+        let title = &loaded.model.metadata().description.title;
+        title.clone().unwrap_or_else(|| loaded.name.clone())
+    };
+    let titles: Vec<_> = rules.iter().map(title).collect();
+    let names: Vec<_> = rules.iter().map(|loaded| loaded.name.as_str()).collect();
     let mut provenance = format!(
         "# kfrac {}\n# {}\n",
         env!("CARGO_PKG_VERSION"),
-        command(loaded, subcommand, options)
+        command(rules, subcommand, options)
     );
-    add_content(&mut provenance, loaded);
-    let about = description.about.as_deref().unwrap_or_default().trim();
+    for (number, loaded) in rules.iter().enumerate() {
+        if number > 0 {
+            provenance.push_str(&format!("---\n# {}\n", quoted(&loaded.name)));
+        }
+        add_content(&mut provenance, loaded);
+    }
+    let about = match rules {
+        [loaded] => loaded.model.metadata().description.about.as_deref(),
+        _ => None,
+    };
     render::Labels {
-        title,
-        description: format!("{shown} of {}. {about}", loaded.name),
+        title: titles.join(", "),
+        description: format!(
+            "{shown} of {}. {}",
+            names.join(", "),
+            about.unwrap_or_default().trim()
+        ),
         provenance,
     }
 }
@@ -62,14 +86,17 @@ fn add_content(provenance: &mut String, loaded: &Loaded) {
     }
 }
 
-/// Returns the command that reproduces the picture from the resolved rule.
+/// Returns the command that reproduces the picture from the resolved rules.
 fn command(
-    loaded: &Loaded,
+    rules: &[&Loaded],
     subcommand: &str,
     options: impl IntoIterator<Item = (impl Display, String)>,
 ) -> String {
-    let file = quoted(&format!("{}.yaml", loaded.name));
-    let mut command = format!("kfrac {subcommand} {file}");
+    let mut command = format!("kfrac {subcommand}");
+    for loaded in rules {
+        command.push_str(&format!(" {}", quoted(&format!("{}.yaml", loaded.name))));
+    }
+    let loaded = rules[0];
     let settings = loaded.settings.iter();
     let settings = settings.map(|setting| {
         (

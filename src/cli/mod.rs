@@ -41,7 +41,6 @@ pub(crate) mod readable;
 mod redrawn;
 mod rule;
 mod schema;
-mod several;
 mod sheet;
 mod show;
 mod skeleton;

@@ -16,7 +16,7 @@ use crate::ifs::{AffineMap, System};
 use crate::model::Model;
 
 use super::exchanged::ExchangedComponents;
-use super::family::{self, Assignment};
+use super::family::{self, Assignment, Family};
 use super::{Failure, input, number, redrawn, text};
 
 pub(super) use loaded::Loaded;
@@ -154,26 +154,25 @@ impl RuleArguments {
         Ok(settings?.concat())
     }
 
-    /// Returns the members of a family, each with its settings; `samples` is the number of values of a range.
-    /// The result is empty if no parameter has several values.
+    /// Returns the members of a family of the settings of this rule, each with the settings that vary.
     pub(super) fn load_family(
         &self,
+        family: &Family,
         catalogue: &Catalogue,
         quiet: bool,
-        samples: u32,
     ) -> Result<Vec<Member>, Failure> {
-        let (fixed, swept) = family::split(&self.set, samples)?;
-        if swept.is_empty() {
-            return Ok(Vec::new());
-        }
         let document = self.document(catalogue)?;
-        let members = swept.into_iter().enumerate().map(|(number, own)| {
-            let settings = [fixed.as_slice(), &own].concat();
-            let document = Arc::clone(&document);
-            let mut loaded = self.resolve(document, settings, quiet || number > 0)?;
-            loaded.settings.clone_from(&fixed);
-            Ok((own, loaded))
-        });
+        let members = family
+            .members()
+            .into_iter()
+            .enumerate()
+            .map(|(number, own)| {
+                let settings = [family.fixed(), &own].concat();
+                let document = Arc::clone(&document);
+                let mut loaded = self.resolve(document, settings, quiet || number > 0)?;
+                loaded.settings = family.fixed().to_vec();
+                Ok((own, loaded))
+            });
         members.collect()
     }
 

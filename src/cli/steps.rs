@@ -5,7 +5,6 @@ use crate::geometry::Frame3;
 use crate::graph::Graph;
 
 use super::rule::Loaded;
-use super::several::Several;
 use super::{Failure, number};
 
 /// Reads a number of steps.
@@ -16,9 +15,12 @@ pub(super) fn parse(text: &str) -> Result<u32, String> {
 /// Largest number of approximants on a sheet by default.
 pub(super) const MAX_CELLS: u32 = 12;
 
+/// Several numbers of steps, at least one.
+pub(super) type Several = number::Several<u32>;
+
 /// Parses several numbers of steps: `0..6` is 0 to 6, both included, and `0,2,4` is a list.
-pub(super) fn parse_several(text: &str) -> Result<Several<u32>, String> {
-    Several::parser("a number of steps", 0..=Goal::MAX_STEPS, 10_000)(text)
+pub(super) fn parse_several(text: &str) -> Result<Several, String> {
+    number::several("a number of steps", 0..=Goal::MAX_STEPS)(text)
 }
 
 /// Returns the number of steps that was given, or else the [proposed one](proposed_steps).

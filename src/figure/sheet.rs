@@ -1,19 +1,23 @@
-//! Sheets: approximants side by side at one scale, each with its name and its number of elements.
+//! Sheets: approximants side by side, each with its name and its number of elements.
 
 mod space;
 
 pub use space::{SpaceCell, write_in_space};
 
-use std::io::Write;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io::{self, Write};
+use std::slice;
 
 use crate::geometry::DVec2;
 use crate::graph::Graph;
-use crate::grow::Growth;
+use crate::grow::{Growth, WalkError};
 use crate::parallel::Team;
 use crate::render::{
-    Canvas, Drawing, Options, Pen, Prepass, RenderError, Scene, Surface, pen, write_drawing,
+    Canvas, Drawing, FINE, NoRoom, Options, Paint, Pen, Prepass, RenderError, Scene, Surface, pen,
+    position, write_drawing,
 };
-use crate::style::{Colour, Style};
+use crate::style::{Colour, Named, Style, View};
 
 use crate::readable::counted;
 
@@ -27,6 +31,30 @@ const CAPTION_HEIGHT: u32 = 24;
 /// Space around cells, in pixels.
 const GAP: u32 = 16;
 
+/// Part of the plane that each of several pictures shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fit {
+    /// All pictures show one part, at one scale.
+    #[default]
+    All,
+    /// Every picture shows the part that it fills.
+    Each,
+}
+
+impl Named for Fit {
+    const NAMES: &'static [(&'static str, Self)] = &[("all", Self::All), ("each", Self::Each)];
+}
+
+/// Arrangement of the pictures of a sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arrangement {
+    /// Number of pictures in a row. With `None`, the sides of the sheet are about 4 to 3.
+    pub columns: Option<u32>,
+    /// Part of the plane that each picture shows.
+    pub fit: Fit,
+}
+
 /// One picture of a sheet.
 pub struct Cell<'a> {
     /// Name of the approximant.
@@ -35,6 +63,10 @@ pub struct Cell<'a> {
     pub graph: &'a Graph,
     /// Options of its growth.
     pub growth: Growth<'a>,
+    /// Style of the picture. A background that is not the one of the sheet fills the picture.
+    pub style: &'a Style,
+    /// Window and margin of the picture. They have no effect with [`Fit::All`].
+    pub view: View,
 }
 
 /// Summary of a sheet that has been written.
@@ -46,52 +78,116 @@ pub struct SheetSummary {
     pub elements: u64,
 }
 
-/// Grows approximants and writes them side by side, in rows of `columns`. With `None`, the sides of the sheet
-/// are about 4 to 3.
+/// Error of a sheet that cannot be drawn.
+#[derive(Debug)]
+pub struct SheetError {
+    /// Number of the picture that cannot be drawn, from 0; `None` if the error is not that of one picture.
+    pub cell: Option<usize>,
+    /// Error of that picture, or of the sheet.
+    pub error: RenderError,
+}
+
+impl fmt::Display for SheetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.cell {
+            Some(cell) => write!(f, "picture {}: {}", cell + 1, self.error),
+            None => self.error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for SheetError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.error.source()
+    }
+}
+
+impl<E: Into<RenderError>> From<E> for SheetError {
+    fn from(error: E) -> Self {
+        Self {
+            cell: None,
+            error: error.into(),
+        }
+    }
+}
+
+/// Grows approximants and writes them side by side, in rows.
 ///
-/// [`Options::size`] is the size of every picture, not of the sheet. All pictures show the same part of the
-/// plane, the one that the largest approximant fills; colours by step mean the same in all of them.
+/// [`Options::size`] is the size of every picture, not of the sheet. With [`Fit::All`], all pictures show the
+/// part of the plane that all approximants fill together, or the window of [`Options::view`]. Colours by step mean
+/// the same in all pictures of a graph. [`Options::style`] has the background of the sheet. The limit of the number of
+/// elements of a picture counts those of the pictures before it as well.
 ///
 /// # Errors
 ///
 /// Returns an error if growing ends early, if there is nothing to draw or no room for it, or if `out` fails.
 pub fn write(
     cells: &[Cell<'_>],
-    columns: Option<u32>,
+    arrangement: Arrangement,
     options: &Options,
     out: &mut impl Write,
-) -> Result<SheetSummary, RenderError> {
-    let Options { style, view, .. } = options;
-    let steps = cells.iter().map(|cell| cell.growth.steps).max();
-    let mut surveys = Vec::new();
+) -> Result<SheetSummary, SheetError> {
+    let of_cell = |cell: usize| {
+        move |error: RenderError| SheetError {
+            cell: Some(cell),
+            error,
+        }
+    };
+    let mut deepest = BTreeMap::new();
     for cell in cells {
-        surveys.push(Prepass::of(
-            cell.graph,
-            &cell.growth,
-            style,
-            steps.unwrap_or_default(),
-            options.threads,
-        )?);
+        let steps: &mut u32 = deepest.entry(&raw const *cell.graph).or_default();
+        *steps = cell.growth.steps.max(*steps);
     }
-    let canvas = Canvas::of(&surveys, view, options.size)?;
-    let font = Font::new();
-    let mut scenes = Vec::new();
+    let mut surveys = Vec::new();
     let mut elements = 0;
-    for (cell, survey) in cells.iter().zip(&surveys) {
-        let caption = format!(
-            "{}: {}",
-            cell.name,
-            counted(&survey.elements.into(), "element")
-        );
-        scenes.push((caption, Scene::new(survey, &cell.growth, canvas)));
+    for (number, cell) in cells.iter().enumerate() {
+        let steps = deepest[&(&raw const *cell.graph)];
+        let limit = cell.growth.max_elements;
+        let growth = Growth {
+            max_elements: limit.saturating_sub(elements),
+            ..cell.growth
+        };
+        let survey = Prepass::of(cell.graph, &growth, cell.style, steps, options.threads);
+        let survey = survey.map_err(|error| match RenderError::from(error) {
+            RenderError::Walk(WalkError::TooManyElements { .. }) => {
+                of_cell(number)(RenderError::Walk(WalkError::TooManyElements { limit }))
+            }
+            error => of_cell(number)(error),
+        })?;
         elements += survey.elements;
+        surveys.push(survey);
     }
-    let captions = scenes.iter().map(|(caption, _)| caption.as_str());
+    let common = match arrangement.fit {
+        Fit::All => Some(Canvas::of(&surveys, &options.view, options.size)?),
+        Fit::Each => None,
+    };
+    let font = Font::new();
+    let mut pictures = Vec::new();
+    let mut captions = Vec::new();
+    for (number, (cell, survey)) in cells.iter().zip(&surveys).enumerate() {
+        let own = || {
+            let own = Canvas::of(slice::from_ref(survey), &cell.view, options.size);
+            own.map_err(|error: NoRoom| of_cell(number)(error.into()))
+        };
+        let canvas = common.map_or_else(own, Ok)?;
+        let count = counted(&survey.elements.into(), "element");
+        captions.push(format!("{}: {count}", cell.name));
+        pictures.push(ScenePicture {
+            scene: Scene::new(survey, &cell.growth, canvas),
+            size: canvas.size(),
+            background: cell.style.ground(),
+        });
+    }
+    let side = |axis: usize| pictures.iter().map(|it| it.size[axis]).max();
+    let largest = [0, 1].map(|axis| side(axis).unwrap_or_default());
+    let names = captions.iter().map(String::as_str);
     let sheet = Sheet {
-        grid: Grid::of(captions, &font, canvas.size(), columns),
-        scenes,
+        grid: Grid::of(names, &font, largest, arrangement.columns),
+        pictures,
+        captions,
         font,
-        style,
+        style: &options.style,
+        fills: !(options.plot || options.format.is_plot()),
     };
     write_drawing(&sheet, options, out)?;
     Ok(SheetSummary {
@@ -103,7 +199,7 @@ pub fn write(
 /// Places of the pictures of a sheet.
 struct Grid {
     count: u32,
-    /// Width and height of every picture, in pixels.
+    /// Width and height of the largest picture, in pixels.
     cell: [u32; 2],
     columns: u32,
     /// Width of a column, in pixels, without the gap.
@@ -158,9 +254,11 @@ impl Grid {
         })
     }
 
-    /// Returns the upper left corner of a picture at the corner of its column and row.
-    fn picture(&self, [left, top]: [u32; 2]) -> [u32; 2] {
-        [left + (self.column - self.cell[0]) / 2, top]
+    /// Returns the upper left corner of a picture of a size, in the middle of the place at the corner of its column
+    /// and row.
+    fn picture(&self, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> [u32; 2] {
+        let top = top + (self.cell[1] - height) / 2;
+        [left + (self.column - width) / 2, top]
     }
 
     /// Draws the caption of the picture at the corner of its column and row.
@@ -178,12 +276,38 @@ impl Grid {
     }
 }
 
+/// Picture of a sheet, without its caption.
+struct ScenePicture<'a> {
+    scene: Scene<'a>,
+    /// Width and height in pixels.
+    size: [u32; 2],
+    background: Option<Colour>,
+}
+
+impl ScenePicture<'_> {
+    /// Fills the picture with its background.
+    fn fill(&self, surface: &mut impl Surface) -> io::Result<()> {
+        let paint = Paint {
+            fill: self.background,
+            ..Paint::default()
+        };
+        let [width, height] = position(DVec2::from_array(self.size.map(f64::from)) * FINE);
+        surface.begin(&paint)?;
+        surface.move_to([0, 0]);
+        surface.lines_to(&[[width, 0], [width, height], [0, height]]);
+        surface.close();
+        surface.end()
+    }
+}
+
 struct Sheet<'a> {
-    /// The approximants with their captions.
-    scenes: Vec<(String, Scene<'a>)>,
+    pictures: Vec<ScenePicture<'a>>,
+    captions: Vec<String>,
     grid: Grid,
     font: Font,
     style: &'a Style,
+    /// Whether backgrounds of pictures are drawn.
+    fills: bool,
 }
 
 impl Drawing for Sheet<'_> {
@@ -200,9 +324,16 @@ impl Drawing for Sheet<'_> {
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
-        for ((caption, scene), corner) in self.scenes.iter().zip(self.grid.corners()) {
-            if surface.enter(self.grid.picture(corner), self.grid.cell)? {
-                scene.draw(surface, team)?;
+        let all = self.pictures.iter().zip(&self.captions);
+        for ((picture, caption), corner) in all.zip(self.grid.corners()) {
+            let at = self.grid.picture(corner, picture.size);
+            if surface.enter(at, picture.size)? {
+                let is_own =
+                    picture.background.is_some() && picture.background != self.background();
+                if self.fills && is_own {
+                    picture.fill(surface)?;
+                }
+                picture.scene.draw(surface, team)?;
                 surface.leave()?;
             }
             self.grid.caption(surface, &self.font, caption, corner)?;

@@ -2,27 +2,14 @@
 
 use std::path::Path;
 
+use crate::figure::sheet::Fit;
 use crate::geometry::{Bounds, DVec2, DVec3};
 use crate::render::{Canvas, Size, Unit};
-use crate::style::Named;
 
 use super::super::rule::Loaded;
 use super::super::{Failure, output};
 use super::Arguments;
 use super::frames::{Frames, Purpose};
-
-/// Part that frames show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Fit {
-    /// One part, which holds all frames.
-    All,
-    /// The part that each frame needs.
-    Each,
-}
-
-impl Named for Fit {
-    const NAMES: &'static [(&'static str, Self)] = &[("all", Self::All), ("each", Self::Each)];
-}
 
 /// Largest number of pixels of a frame.
 const MAX_PIXELS: u64 = 1 << 25;

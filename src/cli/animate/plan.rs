@@ -183,11 +183,11 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     let swept = { arguments.set.iter() }
         .flat_map(Assignment::tracks)
         .any(|it| it.changes());
-    let several = |it: &super::Several<u32>| it.is_plural();
+    let several = |it: &super::Several| it.as_slice().len() > 1;
     let changes = [
         swept,
         arguments.steps.as_ref().is_some_and(several),
-        arguments.seed.is_plural(),
+        arguments.seed.as_slice().len() > 1,
         !matches!(arguments.zoom, None | Some(Zooms::One(_))),
         arguments.turn.as_ref().is_some_and(Keys::changes),
         arguments.from.iter().flatten().any(Keys::changes),
@@ -204,16 +204,14 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
 }
 
 pub(super) fn timeline(arguments: &Arguments) -> Timeline {
-    let has_seeds = arguments.seed.is_plural();
+    let seeds = u32::try_from(arguments.seed.as_slice().len()).unwrap_or(u32::MAX);
     let is_endless = matches!(arguments.zoom, Some(Zooms::Loop));
-    let is_even = arguments.is_loop || arguments.draw || arguments.zoom.is_some() || has_seeds;
+    let is_even = arguments.is_loop || arguments.draw || arguments.zoom.is_some() || seeds > 1;
     let default = if is_even { Ease::Linear } else { Ease::InOut };
     Timeline {
-        frames: arguments.frames.unwrap_or(if has_seeds {
-            arguments.seed.count()
-        } else {
-            60
-        }),
+        frames: arguments
+            .frames
+            .unwrap_or(if seeds > 1 { seeds } else { 60 }),
         is_loop: arguments.is_loop || is_endless,
         bounces: arguments.bounce,
         hold: arguments.hold,
@@ -241,10 +239,10 @@ fn at(
     let mut own = Vec::new();
     let tracks = arguments.set.iter().flat_map(Assignment::tracks);
     own.extend(tracks.map(|track| format!("--set={}", track.at(moment))));
-    let seeds = &arguments.seed;
-    let part = u64::from(moment.number) * u64::from(seeds.count()) / u64::from(timeline.frames);
-    let seed = seeds.as_slice()[usize::try_from(part).unwrap_or_default()];
-    own.push(format!("--seed={seed}"));
+    // Each seed has an equal part of the film.
+    let seeds = arguments.seed.as_slice();
+    let seed = moment.number as usize * seeds.len() / timeline.frames as usize;
+    own.push(format!("--seed={}", seeds[seed]));
     own.extend(
         { arguments.steps.iter() }.flat_map(|it| steps(arguments, loaded, it.as_slice(), moment)),
     );

@@ -7,10 +7,11 @@ use std::time::Instant;
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 
+use super::super::Failure;
+use super::super::family::Family;
+use super::super::number::Several;
 use super::super::rule::name_of;
-use super::super::several::Several;
 use super::super::template::{Placeholder, Template};
-use super::super::{Failure, family};
 use super::Arguments;
 use super::plan::Plan;
 
@@ -21,15 +22,11 @@ const MOST: usize = 10_000;
 /// seeds. Parameters with several values are varied together.
 pub(super) fn pictures(all: &Arguments) -> Result<Vec<Arguments>, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
-    let (fixed, swept) = family::split(&all.rule.set, all.samples)?;
-    let varied: Vec<_> = { swept.first().into_iter().flatten() }
-        .map(|setting| Placeholder::Value(setting.name.clone()))
+    let family = Family::of(&all.rule.set, all.samples, false)?;
+    let varied: Vec<_> = { family.names().into_iter() }
+        .map(|name| Placeholder::Value(name.to_owned()))
         .collect();
-    let members = if swept.is_empty() {
-        vec![Vec::new()]
-    } else {
-        swept
-    };
+    let members = family.members();
     let steps: Vec<_> = match &all.steps {
         Some(steps) => steps.as_slice().iter().copied().map(Some).collect(),
         None => vec![None],
@@ -72,7 +69,7 @@ pub(super) fn pictures(all: &Arguments) -> Result<Vec<Arguments>, Failure> {
     }
     let mut pictures = Vec::with_capacity(count);
     for own in &members {
-        let settings: Vec<_> = fixed.iter().chain(own).cloned().collect();
+        let settings: Vec<_> = family.fixed().iter().chain(own).cloned().collect();
         for &steps in &steps {
             for &seed in seeds {
                 let path = |template: &Option<Template>, given: &Option<PathBuf>| match template {

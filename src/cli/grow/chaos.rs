@@ -271,7 +271,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         let growth = &self.arguments.growth;
         Game {
             points: self.points(DRAWN),
-            seed: growth.seed(),
+            seed: growth.seed.first(),
             start: self.start.clone(),
             classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
@@ -288,7 +288,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         if let Some(progress) = progress {
             progress.expect(points);
         }
-        let all = RandomPoints::new(&self.system, &self.start, growth.seed());
+        let all = RandomPoints::new(&self.system, &self.start, growth.seed.first());
         Ok((points, all))
     }
 

@@ -78,7 +78,7 @@ impl Loaded {
 
     /// Sets the seed and the limit of the number of elements.
     pub(in crate::cli) fn grown(mut self, growth: &GrowthArguments) -> Self {
-        self.growth = (growth.seed(), growth.given_max_elements());
+        self.growth = (growth.seed.first(), growth.given_max_elements());
         self
     }
 

@@ -23,6 +23,8 @@ pub struct SpaceCell<'a> {
     pub steps: Option<u32>,
     /// Camera, shading and light.
     pub space: SpaceOptions,
+    /// Style of the picture.
+    pub style: &'a Style,
 }
 
 /// Draws sets in space side by side, in rows of `columns`, and writes them as PNG. With `None`, the sides of the sheet
@@ -43,7 +45,11 @@ pub fn write_in_space(
     let mut pictures = Vec::new();
     let mut elements = 0;
     for cell in cells {
-        let drawn = pixels_in_space(cell.graph, cell.steps, options, &cell.space, cancel);
+        let own = Options {
+            style: cell.style.clone(),
+            ..options.clone()
+        };
+        let drawn = pixels_in_space(cell.graph, cell.steps, &own, &cell.space, cancel);
         let drawn = drawn?;
         elements += drawn.picture.elements;
         pictures.push(drawn.pixels);
@@ -60,13 +66,7 @@ pub fn write_in_space(
     };
     let mut pixels = draw_paths(&sheet, options)?;
     for (picture, corner) in pictures.iter().zip(sheet.grid.corners()) {
-        let [left, top] = sheet.grid.picture(corner);
-        let [width, height] = picture.size();
-        let middle = [
-            left + (largest[0] - width) / 2,
-            top + (largest[1] - height) / 2,
-        ];
-        pixels.put(picture, middle);
+        pixels.put(picture, sheet.grid.picture(corner, picture.size()));
     }
     let size = pixels.size();
     pixels.write(options, out)?;

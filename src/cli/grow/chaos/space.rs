@@ -73,7 +73,13 @@ impl<'a> SpaceGame<'a> {
         path: &Path,
     ) -> Result<String, Failure> {
         let (points, mut all) = self.walk(progress)?;
-        let cloud = || RandomPoints::new(&self.system, &self.start, !self.arguments.growth.seed());
+        let cloud = || {
+            RandomPoints::new(
+                &self.system,
+                &self.start,
+                !self.arguments.growth.seed.first(),
+            )
+        };
         let cloud = || cloud().take(SURFACE).map(|point| point.place);
         let bounds = match (graph.limit_bounds(), &self.start) {
             (Some(bounds), Start::Attractor) => bounds,
