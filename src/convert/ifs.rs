@@ -70,10 +70,17 @@ pub(super) fn write<M: Convertible>(
         .map(|placed| M::set(&structure.shapes[placed.shape], &placed.map))
         .collect();
     let sets = sets?.into_iter().map(Entries::value);
-    let initial = structure.initial().flatten().map(|shape| {
+    let set = |shape: usize| {
         let initial = M::set(&structure.shapes[shape], &system.initial);
         initial.map(Entries::value)
-    });
+    };
+    let initial = match structure.initial() {
+        // The elements that are replaced would not be drawn beside condensation sets.
+        None if !system.sets.is_empty() => { structure.drawn_before() }
+            .find_map(|shape| set(shape).ok())
+            .map(Ok),
+        shape => shape.flatten().map(set),
+    };
     let initial = keeps.initial(initial)?;
     let count = system.maps.len();
     let edges = (system.edges.len() < count * count).then(|| edges(&system.edges, count));

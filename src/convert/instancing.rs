@@ -20,6 +20,9 @@ pub(super) fn write<M: Convertible>(
     let has_shapes = structure.instances().any(|placed| placed.object.is_none());
     let initial = match structure.initial() {
         Some(Some(shape)) => Some(M::set(&structure.shapes[shape], &M::IDENTITY)),
+        None if keeps == Keeps::Limit && has_shapes => { structure.drawn_before() }
+            .find_map(|shape| M::set(&structure.shapes[shape], &M::IDENTITY).ok())
+            .map(Ok),
         // Where there are shapes, objects that are not replaced draw nothing.
         Some(None) | None if keeps == Keeps::Limit => None,
         Some(None) if has_shapes => None,

@@ -229,6 +229,28 @@ impl<M: AffineMap> Structure<M> {
         shapes.all(|shape| shape == first).then_some(first)
     }
 
+    /// Iterates over the shapes with which the limit set can be approached, where instances before they are replaced are not
+    /// all drawn alike. There are none if some object never draws anything, which a common drawing would change.
+    pub(super) fn drawn_before(&self) -> impl Iterator<Item = usize> {
+        let mut draws_nothing = vec![true; self.objects.len()];
+        loop {
+            let is_nothing = |placed: &PlacedObject<M>| {
+                !placed.visible && placed.object.is_some_and(|object| draws_nothing[object])
+            };
+            let next: Vec<_> = { self.objects.iter() }
+                .map(|object| !object.is_empty() && object.iter().all(is_nothing))
+                .collect();
+            if next == draws_nothing {
+                break;
+            }
+            draws_nothing = next;
+        }
+        let all_draw = !draws_nothing.contains(&true);
+        self.instances()
+            .filter(move |placed| all_draw && placed.object.is_some() && placed.visible)
+            .map(|placed| placed.shape)
+    }
+
     /// Returns the name of an instance for messages: `map 2`, `instance 3 of object 1`, `element 1 of the
     /// initiator`. With no `object`, the instance is one of the scene.
     pub(super) fn called(&self, object: Option<usize>, number: usize) -> String {

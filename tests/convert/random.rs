@@ -85,3 +85,23 @@ fn random_systems_keep_their_sets() {
     });
     all_convert(24, &systems, 1.0);
 }
+
+/// Found at random: one of two fertile elements is not drawn, beside an element that is kept.
+#[test]
+fn objects_without_shapes_are_drawn_beside_elements_that_are_kept() {
+    let rule = "\
+initiator:
+  closed: true
+  elements:
+    - [0, 0]
+    - {to: [1/7, 0], from: [0, 2/5], fertile: false, connected: false}
+generator:
+  parts:
+    - seeds: true
+      elements:
+        - [0, 0]
+        - {to: [9/14, -1/4], visible: false}
+        - {to: [7/40, 0], direction: 3}
+";
+    assert!(converts(rule) > 1);
+}

@@ -417,11 +417,6 @@ fn mistakes_in_several_are_reported() {
         ),
         ("sheet koch --fit some", 2, "all, each"),
         (
-            "grow random-tree --seed 1..3",
-            2,
-            "several seeds are for `kfrac sheet`",
-        ),
-        (
             "count random-tree --seed 1..3",
             2,
             "several seeds are for `kfrac sheet`",
