@@ -168,6 +168,10 @@ fn names_that_do_not_differ_are_refused_before_anything_is_written() {
             "a list has no more than 100000 numbers",
         ),
         (
+            &["pythagoras", "--set", "angle=30,200", "-o", "%{angle}.svg"],
+            "--set angle=200: ",
+        ),
+        (
             &["koch", "--seed", "1,2", "-o", "%s.svg", "--watch"],
             "--watch and --open are for a single picture",
         ),

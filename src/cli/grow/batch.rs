@@ -157,13 +157,17 @@ fn named(
     Ok(filled.map_err(Failure::Usage)?.into())
 }
 
-/// Draws several pictures of a rule, which is read once. Arguments that contradict each other are reported before the first is drawn.
+/// Draws several pictures of a rule, which is read once. Arguments that contradict each other or the rule are reported before
+/// the first is drawn.
 pub(super) fn run(pictures: &[Arguments], catalogue: &Catalogue) -> Result<(), Failure> {
     let Some(first) = pictures.first() else {
         return Ok(());
     };
     let plans: Vec<_> = pictures.iter().map(Plan::of).collect::<Result<_, _>>()?;
     let document = first.rule.document(catalogue)?;
+    for picture in pictures {
+        picture.resolve(document.clone(), catalogue, true)?;
+    }
     for (number, (picture, plan)) in pictures.iter().zip(&plans).enumerate() {
         let start = Instant::now();
         let quiet = picture.growth.quiet || number > 0;
