@@ -1,5 +1,7 @@
 //! Names of files with placeholders for numbers and values, as `tree-%03s.png` or `tree-%{angle}.png`.
 
+use std::convert::Infallible;
+
 /// Name with placeholders.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Template(Vec<Part>);
@@ -87,6 +89,23 @@ impl Template {
             }
         }
         Ok(name)
+    }
+}
+
+/// Name with one place for a number, written `%d` or `%06d`.
+pub(super) struct NumberedName(Template);
+
+impl NumberedName {
+    /// Parses a name; `None` unless it has one place.
+    pub(super) fn parse(name: &str) -> Option<Self> {
+        let template = Template::parse(name, "d").ok()?;
+        let places: Vec<_> = template.placeholders().collect();
+        matches!(places[..], [Placeholder::Number(_)]).then_some(Self(template))
+    }
+
+    pub(super) fn with(&self, number: u64) -> String {
+        let filled = self.0.fill(|_| Ok::<_, Infallible>(number.to_string()));
+        filled.unwrap_or_else(|never| match never {})
     }
 }
 

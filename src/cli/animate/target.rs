@@ -1,7 +1,6 @@
 //! Files of films.
 
 use std::collections::BTreeSet;
-use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -14,7 +13,7 @@ use crate::style::Named;
 
 use super::super::labels::labels;
 use super::super::rule::Loaded;
-use super::super::template::{Placeholder, Template};
+use super::super::template::NumberedName;
 use super::super::{Failure, format, output, progress, readable, redrawn};
 use super::Arguments;
 use super::frames::{Frames, Purpose};
@@ -157,7 +156,7 @@ fn described(arguments: &Arguments, loaded: &Loaded, frames: u32) -> Labels {
 }
 
 /// File for each frame, with its number in the name.
-struct Numbered(Template);
+struct Numbered(NumberedName);
 
 impl Numbered {
     /// Reads a name such as `film-%04d.png`; `None` without a number.
@@ -172,18 +171,13 @@ impl Numbered {
         if !name.contains('%') {
             return Ok(None);
         }
-        let template = Template::parse(&name, "d").map_err(|_| wrong())?;
-        let places: Vec<_> = template.placeholders().collect();
         let is_png = path.extension() == Some(OsStr::new("png"));
-        match places[..] {
-            [Placeholder::Number(_)] if is_png => Ok(Some(Self(template))),
-            _ => Err(wrong()),
-        }
+        let numbered = NumberedName::parse(&name).filter(|_| is_png);
+        Ok(Some(Self(numbered.ok_or_else(wrong)?)))
     }
 
     fn path(&self, number: usize) -> PathBuf {
-        let filled = self.0.fill(|_| Ok::<_, Infallible>(number.to_string()));
-        filled.unwrap_or_else(|never| match never {}).into()
+        self.0.with(number as u64).into()
     }
 
     /// Writes the frames, and describes what has been written.

@@ -10,6 +10,7 @@ use anyhow::anyhow;
 use crate::dataset::Dataset;
 use crate::output_file::OutputFile;
 
+use super::super::template::NumberedName;
 use super::super::{Failure, output};
 use super::manifest::{LabelRow, Tally};
 use super::{Job, Shard};
@@ -21,23 +22,15 @@ pub(super) struct Place {
     pub(super) archive: Option<ArchiveName>,
 }
 
-/// Name of archives: the texts before and after the number, and its least number of digits.
+/// Name of archives, with their numbers, in a folder.
 pub(super) struct ArchiveName {
-    before: String,
-    digits: usize,
-    after: String,
+    name: NumberedName,
     folder: PathBuf,
 }
 
 impl ArchiveName {
     pub(super) fn path(&self, number: u64) -> PathBuf {
-        let Self {
-            before,
-            digits,
-            after,
-            folder,
-        } = self;
-        folder.join(format!("{before}{number:0digits$}{after}"))
+        self.folder.join(self.name.with(number))
     }
 }
 
@@ -54,20 +47,7 @@ pub(super) fn place(output: &Path) -> Result<Place, Failure> {
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
-    let number = name.split_once('%').and_then(|(before, rest)| {
-        let (digits, after) = rest.split_once('d')?;
-        let digits = if digits.is_empty() {
-            Some(1)
-        } else {
-            digits.strip_prefix('0')?.parse().ok()
-        };
-        Some((
-            before.to_owned(),
-            digits.filter(|it| (1..=19).contains(it))?,
-            after.to_owned(),
-        ))
-    });
-    let Some((before, digits, after)) = number else {
+    let Some(numbered) = NumberedName::parse(&name) else {
         let message =
             format!("'{name}' has no place for the number of an archive: %06d.tar, for example");
         return Err(Failure::Usage(message));
@@ -77,9 +57,7 @@ pub(super) fn place(output: &Path) -> Result<Place, Failure> {
     Ok(Place {
         folder: folder.clone(),
         archive: Some(ArchiveName {
-            before,
-            digits,
-            after,
+            name: numbered,
             folder,
         }),
     })
