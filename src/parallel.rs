@@ -8,13 +8,16 @@ use std::num::NonZero;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, LazyLock, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 /// Returns the number of threads that the machine runs at once; 1 if that is unknown.
 #[must_use]
 pub(crate) fn all_cores() -> NonZero<usize> {
-    thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN)
+    // Linux reads the limits of the process from files.
+    static CORES: LazyLock<NonZero<usize>> =
+        LazyLock::new(|| thread::available_parallelism().unwrap_or(NonZero::<usize>::MIN));
+    *CORES
 }
 
 /// Returns whether a flag that cancels work is set.

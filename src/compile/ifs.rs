@@ -45,11 +45,7 @@ impl<F: Bounded> Graph<F> {
 
     fn compile_system<M: AffineMap<Frame = F>>(system: &System<M>, by_last_map: bool) -> Self {
         let ifs = system.ifs();
-        let mut graph = Compiler::new(system, by_last_map).run();
-        let diverges = system.contraction().verdict == Verdict::Diverges;
-        graph.no_limit = diverges.then_some(NoLimit::OnAverage);
-        graph.middle = middle(&graph);
-        let limit = graph.limit_bounds();
+        let (mut graph, limit) = Self::provisional(system, by_last_map);
         let initial = ifs.initial().map(|set| M::outlines(set).swap_remove(0));
         let initial = initial.unwrap_or_else(|| M::filling(limit));
         let mut whole = limit.unwrap_or(Bounds::EMPTY);
@@ -62,6 +58,28 @@ impl<F: Bounded> Graph<F> {
         graph.set_extent(&whole);
         graph
     }
+
+    /// Returns the bounding box of a system's limit set, under the conditions of [`Graph::limit_bounds`].
+    pub(crate) fn limit_bounds_of<M: AffineMap<Frame = F>>(
+        system: &System<M>,
+    ) -> Option<Bounds<F::Point>> {
+        let (_, limit) = Self::provisional(system, false);
+        limit
+    }
+
+    /// Returns a graph without its unit of length and without its initial set, which follow from the limit set; and the box
+    /// of that.
+    fn provisional<M: AffineMap<Frame = F>>(
+        system: &System<M>,
+        by_last_map: bool,
+    ) -> (Self, Option<Bounds<F::Point>>) {
+        let mut graph = Compiler::new(system, by_last_map).run();
+        let diverges = system.contraction().verdict == Verdict::Diverges;
+        graph.no_limit = diverges.then_some(NoLimit::OnAverage);
+        graph.middle = middle(&graph);
+        let limit = graph.limit_bounds();
+        (graph, limit)
+    }
 }
 
 /// Returns the approximate centre of the limit of a graph.
@@ -69,7 +87,7 @@ fn middle<F: Bounded>(graph: &Graph<F>) -> F::Point {
     let mut bounds = Bounds::EMPTY;
     let drawn = graph.alive(true);
     let own = Own::Outlines(&vec![0.0; drawn.len()]);
-    if let Some(hulls) = F::hulls(graph, &own, Some(&drawn), Fineness::COARSE) {
+    if let Some(hulls) = F::hulls(graph, &own, Some(&drawn), Fineness::ROUGH) {
         for corner in hulls.corners(0) {
             bounds.add(*corner);
         }

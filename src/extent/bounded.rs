@@ -19,6 +19,14 @@ pub struct Fineness {
 }
 
 impl Fineness {
+    /// For a point that lies about in the middle.
+    pub(crate) const ROUGH: Self = Self {
+        tolerance: 1e-2,
+        max_work: 1 << 16,
+        max_corners: 32,
+        spared: 0.0,
+    };
+
     pub(crate) const COARSE: Self = Self {
         tolerance: 1e-4,
         max_work: 1 << 20,

@@ -1,7 +1,7 @@
 //! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
 //! in products.
 
-use crate::geometry::{Bounds, DMat2, DVec2, Frame2, convex_hull, distance_to_hull, thinned};
+use crate::geometry::{Bounds, DMat2, DVec2, Frame2, convex_hull, hausdorff_distance, thinned};
 use crate::ifs::Shrinking;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
@@ -159,7 +159,7 @@ impl Graph {
             if ends || round == asked {
                 asked += 1 + round / 4;
                 let changes: Vec<f64> = { next.iter().zip(polygons) }
-                    .map(|(a, b)| apart(a, b))
+                    .map(|(a, b)| hausdorff_distance(a, b))
                     .collect();
                 // The remaining change is that of thinning.
                 let settled = is_fine && changes.iter().all(|it| *it <= 2.0 * tolerance);
@@ -269,16 +269,4 @@ fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
         let angle = turn * f64::from(corner);
         centre + far * DVec2::new(libm::cos(angle), libm::sin(angle))
     })
-}
-
-/// Returns the Hausdorff distance of two convex polygons.
-fn apart(a: &[DVec2], b: &[DVec2]) -> f64 {
-    match (a.is_empty(), b.is_empty()) {
-        (true, true) => return 0.0,
-        (false, false) => (),
-        _ => return f64::INFINITY,
-    }
-    let there = a.iter().map(|point| distance_to_hull(*point, b));
-    let back = b.iter().map(|point| distance_to_hull(*point, a));
-    there.chain(back).fold(0.0, f64::max)
 }

@@ -33,8 +33,9 @@ pub(super) fn followed(
         firsts.push(count);
         count += corners.len();
     }
-    let rightmost: Vec<usize> = polygons.iter().map(|corners| rightmost(corners)).collect();
-    let origin = |kind: usize, direction: DVec2| {
+    // Directions turn, and so do their images: the farthest corner is near the one before.
+    let mut nearby: Vec<Vec<usize>> = images.iter().map(|images| vec![0; images.len()]).collect();
+    let mut origin = |kind: usize, direction: DVec2| {
         let mut best = (f64::NEG_INFINITY, None);
         for &point in &points[kind] {
             let far = point.dot(direction);
@@ -42,10 +43,11 @@ pub(super) fn followed(
                 best = (far, Some(Origin::Point(point)));
             }
         }
-        for &(map, inner) in &images[kind] {
+        for (&(map, inner), near) in images[kind].iter().zip(&mut nearby[kind]) {
             let corners = &polygons[inner];
             let along = map.matrix2.transpose() * direction;
-            if let Some(number) = farthest(corners, rightmost[inner], along) {
+            if let Some(number) = farthest_near(corners, *near, along) {
+                *near = number;
                 let far = corners[number].dot(along) + map.translation.dot(direction);
                 if far > best.0 {
                     best = (far, Some(Origin::Image(map, firsts[inner] + number)));
@@ -143,6 +145,23 @@ fn directions(corners: &[DVec2]) -> impl Iterator<Item = DVec2> {
 pub(super) fn rightmost(corners: &[DVec2]) -> usize {
     let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
     (0..corners.len()).max_by(order).unwrap_or_default()
+}
+
+/// Returns the number of the corner that is farthest along a vector, found from another one.
+fn farthest_near(corners: &[DVec2], near: usize, vector: DVec2) -> Option<usize> {
+    let count = corners.len();
+    let mut at = near;
+    for step in [1, count.checked_sub(1)?] {
+        // Around a polygon, the distance has one maximum. No corner comes twice.
+        for _ in 0..count {
+            let next = (at + step) % count;
+            if (corners[next] - corners[at]).dot(vector) <= 0.0 {
+                break;
+            }
+            at = next;
+        }
+    }
+    Some(at)
 }
 
 /// Returns the number of the corner that is farthest along a vector; `right` is the rightmost corner.

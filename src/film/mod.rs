@@ -84,10 +84,28 @@ fn rows(pixels: &[u8], width: u32, area: Area) -> impl Iterator<Item = &[u8]> {
     rows.map(move |row| &row[4 * left..4 * (left + across)])
 }
 
+/// Number of pixels that are compared at once.
+const WIDE: usize = 16;
+
 /// Iterates over runs of equal pixels.
 fn runs(pixels: &[u8]) -> impl Iterator<Item = &[[u8; 4]]> {
-    let pixels = pixels.as_chunks::<4>().0;
-    pixels.chunk_by(|one, next| u32::from_ne_bytes(*one) == u32::from_ne_bytes(*next))
+    let mut rest = pixels.as_chunks::<4>().0;
+    std::iter::from_fn(move || {
+        let first = *rest.first()?;
+        let differs = |pixel: &[u8; 4]| u32::from_ne_bytes(*pixel) != u32::from_ne_bytes(first);
+        let mut length = 1;
+        if rest.get(1) == Some(&first) {
+            // The comparisons of a chunk are independent of each other.
+            let equal = |chunk: &[[u8; 4]]| chunk.iter().fold(true, |all, it| all & !differs(it));
+            let wide = rest[1..].chunks_exact(WIDE);
+            length += WIDE * wide.take_while(|it| equal(it)).count();
+        }
+        let after = rest[length..].iter();
+        length += after.take_while(|it| !differs(it)).count();
+        let (run, others) = rest.split_at(length);
+        rest = others;
+        Some(run)
+    })
 }
 
 /// Blends a pixel with white paper.
@@ -119,6 +137,19 @@ mod tests {
         let part: Vec<_> = rows(&after, 5, [1, 1, 3, 2]).collect();
         assert_eq!(part.concat().iter().filter(|it| **it == 7).count(), 2);
         assert_eq!(part.len(), 2);
+    }
+
+    #[test]
+    fn runs_are_as_long_as_equal_pixels() {
+        let lengths = [1, 2, 15, 16, 17, 1, 33, 64, 3];
+        let colours = |number: usize| [u8::try_from(number % 2).unwrap(), 0, 1, 9];
+        let pixels: Vec<_> = { lengths.iter().enumerate() }
+            .flat_map(|(number, length)| vec![colours(number); *length])
+            .collect();
+        let found: Vec<_> = runs(pixels.as_flattened()).collect();
+        let expected =
+            { lengths.iter().enumerate() }.map(|(number, length)| vec![colours(number); *length]);
+        assert_eq!(found, expected.collect::<Vec<_>>());
     }
 
     #[test]

@@ -4,6 +4,9 @@ use std::io::{self, Write};
 
 use super::{FilmEncoder, FilmOptions, on_white, runs};
 
+/// Differences of greys.
+const NO_COLOUR: u8 = 128;
+
 /// Encoder of YUV4MPEG2: three planes of full size a frame, in the limited range of ITU-R BT.601, on white paper.
 pub(crate) struct Y4m<W> {
     out: W,
@@ -29,11 +32,23 @@ impl<W: Write> Y4m<W> {
 
 impl<W: Write> FilmEncoder for Y4m<W> {
     fn add(&mut self, pixels: &[u8]) -> io::Result<()> {
-        self.planes.iter_mut().for_each(Vec::clear);
+        let count = pixels.len() / 4;
+        for plane in &mut self.planes {
+            plane.resize(count, NO_COLOUR);
+        }
+        let [luma, colours @ ..] = &mut self.planes;
+        colours.iter_mut().for_each(|plane| plane.fill(NO_COLOUR));
+        let mut first = 0;
         for run in runs(pixels) {
-            for (plane, value) in self.planes.iter_mut().zip(converted(on_white(run[0]))) {
-                plane.resize(plane.len() + run.len(), value);
+            let end = first + run.len();
+            let [own, differences @ ..] = converted(on_white(run[0]));
+            luma[first..end].fill(own);
+            if differences != [NO_COLOUR; 2] {
+                for (plane, value) in colours.iter_mut().zip(differences) {
+                    plane[first..end].fill(value);
+                }
             }
+            first = end;
         }
         self.out.write_all(b"FRAME\n")?;
         { self.planes.iter() }.try_for_each(|plane| self.out.write_all(plane))

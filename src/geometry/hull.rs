@@ -8,7 +8,7 @@ use glam::DVec2;
 /// A point within `tolerance` of its predecessor in the order of x is dropped, and so is a corner within
 /// `tolerance` of the line through its neighbours.
 pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup_by(|a, b| a.distance(*b) <= tolerance);
     if points.len() < 3 {
         return points;
@@ -54,7 +54,62 @@ pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     kept
 }
 
+/// Returns the Hausdorff distance of two convex polygons, each given counter-clockwise from the leftmost corner, the
+/// lower one of two: the largest difference of their extents along a direction. Infinite if one of them is empty.
+pub(crate) fn hausdorff_distance(a: &[DVec2], b: &[DVec2]) -> f64 {
+    match (a, b) {
+        ([], []) => return 0.0,
+        ([], _) | (_, []) => return f64::INFINITY,
+        ([a], [b]) => return a.distance(*b),
+        _ => {}
+    }
+    // Both sequences of sides turn from downwards to downwards.
+    let mut sides = [sides(a).peekable(), sides(b).peekable()];
+    let (mut at, mut since) = ([0, 0], DVec2::NEG_X);
+    let mut farthest: f64 = 0.0;
+    loop {
+        // Along the directions up to the next side's, both polygons are farthest in the same corners.
+        let [own, others] = &mut sides;
+        let next = match (own.peek(), others.peek()) {
+            (Some(own), Some(other)) => usize::from(turns_before(*other, *own)),
+            (own, _) => usize::from(own.is_none()),
+        };
+        let side = sides[next].next();
+        let until = side.map_or(DVec2::NEG_X, |side| -side.perp().normalize_or_zero());
+        let apart = a[at[0] % a.len()] - b[at[1] % b.len()];
+        let is_between =
+            |along: DVec2| since.perp_dot(along) >= 0.0 && along.perp_dot(until) >= 0.0;
+        let ends = [since, until].map(|direction| apart.dot(direction).abs());
+        farthest = farthest.max(ends[0]).max(ends[1]);
+        if is_between(apart) || is_between(-apart) {
+            farthest = farthest.max(apart.length());
+        }
+        if side.is_none() {
+            return farthest;
+        }
+        at[next] += 1;
+        since = until;
+    }
+}
+
+/// Iterates over the sides of a polygon, if it has any.
+fn sides(corners: &[DVec2]) -> impl Iterator<Item = DVec2> {
+    let count = if corners.len() > 1 { corners.len() } else { 0 };
+    (0..count).map(move |from| corners[(from + 1) % count] - corners[from])
+}
+
+/// Returns whether a side comes before another one in a polygon that begins at its leftmost corner.
+fn turns_before(side: DVec2, other: DVec2) -> bool {
+    let is_late = |side: DVec2| side.x < 0.0 || side.x == 0.0 && side.y < 0.0;
+    match (is_late(side), is_late(other)) {
+        (false, true) => true,
+        (true, false) => false,
+        _ => side.perp_dot(other) > 0.0,
+    }
+}
+
 /// Returns the distance of a point to a convex polygon given counter-clockwise: 0 inside.
+#[cfg(test)]
 pub(crate) fn distance_to_hull(point: DVec2, corners: &[DVec2]) -> f64 {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let (mut nearest, mut is_inside) = (f64::INFINITY, corners.len() > 2);
@@ -75,4 +130,31 @@ pub(crate) fn distance_to_segment(point: DVec2, from: DVec2, to: DVec2) -> f64 {
         0.0
     };
     point.distance(from + at * along)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn points() -> impl Strategy<Value = Vec<DVec2>> {
+        let coordinate = || prop_oneof![-1.0..1.0, (-2..3).prop_map(f64::from)];
+        let point = (coordinate(), coordinate()).prop_map(|(x, y)| DVec2::new(x, y));
+        prop::collection::vec(point, 1..12)
+    }
+
+    proptest! {
+        /// Distances are largest in corners.
+        #[test]
+        fn hausdorff_distances_are_those_of_corners(a in points(), b in points(), apart in -3.0..3.0) {
+            let moved = b.iter().map(|point| *point + DVec2::new(apart, 0.0));
+            let [a, b] = [a, moved.collect()].map(|points| convex_hull(points, 0.0));
+            let there = a.iter().map(|point| distance_to_hull(*point, &b));
+            let back = b.iter().map(|point| distance_to_hull(*point, &a));
+            let expected = there.chain(back).fold(0.0, f64::max);
+            let found = hausdorff_distance(&a, &b);
+            prop_assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+        }
+    }
 }

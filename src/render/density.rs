@@ -14,7 +14,7 @@ use super::canvas::{Canvas, Size};
 use super::error::RenderError;
 use super::options::Labels;
 use super::options::PngEncoding;
-use super::png::{TooManyPixels, write_pixels};
+use super::png::{Spare, Spares, TooManyPixels, write_pixels};
 
 /// Mapping of a number of hits to a tone from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -127,10 +127,12 @@ pub fn density_canvas(
     if let Some(window) = view.window {
         return Ok(Canvas::of_window(window, view, size)?);
     }
-    let graph = Graph::of_system(source);
     let limit = match &source.metadata().symmetry {
-        Some(group) => graph.with_images(&group.isometries()).limit_bounds(),
-        None => graph.limit_bounds(),
+        Some(group) => {
+            let graph = Graph::of_system(source);
+            graph.with_images(&group.isometries()).limit_bounds()
+        }
+        None => Graph::limit_bounds_of(source),
     };
     let mut bounds = limit.unwrap_or(Bounds::EMPTY);
     if limit.is_none() || *start != Start::Attractor {
@@ -159,7 +161,7 @@ fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
     [DVec2::new(left, low), DVec2::new(right, high)]
 }
 
-/// Number of hits below which levels are tabulated.
+/// Number of hits below which colours are tabulated.
 const FEW_HITS: u64 = 4096;
 
 /// Writes a histogram as PNG.
@@ -173,8 +175,21 @@ pub fn write_density(
     labels: &Labels,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
+    write_density_with(&Spares::default(), histogram, density, labels, out)
+}
+
+/// Writes a histogram as [`write_density`] does, with the memory of finished pictures.
+pub(crate) fn write_density_with(
+    spares: &Spares,
+    histogram: &Histogram,
+    density: &Density,
+    labels: &Labels,
+    out: &mut impl Write,
+) -> Result<(), RenderError> {
     let size @ [width, height] = histogram.size();
-    let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+    let mut pixmap = { spares.take().take_pixels(size) }
+        .or_else(|| Pixmap::new(width, height))
+        .ok_or(TooManyPixels { size })?;
     let classes: Vec<_> = (0..histogram.classes())
         .map(|class| histogram.counts(class))
         .collect();
@@ -185,7 +200,9 @@ pub fn write_density(
             hits.sum()
         }),
     }
-    Ok(write_pixels(&pixmap, labels, density.png, out)?)
+    write_pixels(&pixmap, labels, density.png, out)?;
+    spares.put(Spare::of_pixels(pixmap));
+    Ok(())
 }
 
 /// Paints every pixel. `hits` returns the number of hits of a pixel, over all classes.
@@ -193,20 +210,25 @@ fn paint(pixmap: &mut Pixmap, density: &Density, classes: &[&[u32]], hits: impl 
     let pixels = pixmap.pixels_mut();
     let most = (0..pixels.len()).map(&hits).max().unwrap_or(0);
     let colours = colours(density).map(premultiplied);
-    let levels: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
-        .map(|all| level(density.tone.of(all, most)))
+    let level = |all: u64| match all {
+        0 => 0,
+        _ => level(density.tone.of(all, most)),
+    };
+    let few: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
+        .map(|all| (level(all), colours[usize::from(level(all))]))
         .collect();
     for (place, pixel) in pixels.iter_mut().enumerate() {
         let all = hits(place);
-        let known = usize::try_from(all).ok().and_then(|all| levels.get(all));
-        let level = known.map_or_else(|| level(density.tone.of(all, most)), |&level| level);
-        *pixel = match &density.shades {
-            Shades::Classes(inks) if all > 0 && !inks.is_empty() => {
+        let known = usize::try_from(all).ok().and_then(|all| few.get(all));
+        *pixel = match (&density.shades, known) {
+            (Shades::Classes(inks), _) if all > 0 && !inks.is_empty() => {
                 let shares = classes.iter().map(|counts| u64::from(counts[place]));
                 let ink = mean(shares.zip(inks.iter().cycle()), all);
+                let level = known.map_or_else(|| level(all), |(level, _)| *level);
                 premultiplied(laid_on(density.background, ink, level))
             }
-            _ => colours[usize::from(if all > 0 { level } else { 0 })],
+            (_, Some((_, colour))) => *colour,
+            (_, None) => colours[usize::from(level(all))],
         };
     }
 }

@@ -7,6 +7,8 @@ use super::png::{PlacedSprite, SegmentBatch};
 pub(super) enum Command<C, K> {
     /// Straight lines, each to a point.
     Lines(usize),
+    /// Separate straight lines with equal keys.
+    Segments { key: K, count: usize },
     /// Polygons with equal keys and equal numbers of vertices.
     Polygons { key: K, sides: usize, count: usize },
     /// Segment batches.
@@ -75,6 +77,17 @@ impl<C, K: Copy + PartialEq> DisplayList<C, K> {
         }
     }
 
+    /// Adds separate straight lines, by pairs of ends.
+    #[inline]
+    pub(super) fn segments(&mut self, key: K, ends: &[Position]) {
+        self.points.extend_from_slice(ends);
+        let added = ends.len() / 2;
+        match self.commands.last_mut() {
+            Some(Command::Segments { key: last, count }) if *last == key => *count += added,
+            _ => self.commands.push(Command::Segments { key, count: added }),
+        }
+    }
+
     /// Adds a polygon of `sides` vertices, which the caller adds to the points.
     #[inline]
     pub(super) fn polygon(&mut self, key: K, sides: usize) -> &mut Vec<Position> {
@@ -126,6 +139,8 @@ impl<C, K: Copy + PartialEq> DisplayList<C, K> {
 pub(super) enum Step<'a, C, K> {
     /// Ends of straight lines.
     Lines(&'a [Position]),
+    /// Pairs of ends of separate straight lines.
+    Segments(K, &'a [Position]),
     /// Vertices of polygons, with the number of vertices of each.
     Polygons(K, usize, &'a [Position]),
     Batches(&'a [SegmentBatch]),
@@ -157,6 +172,9 @@ impl<'a, C, K: Copy> Iterator for Replay<'a, C, K> {
     fn next(&mut self) -> Option<Self::Item> {
         Some(match self.commands.next()? {
             Command::Lines(count) => Step::Lines(take(&mut self.points, *count)),
+            Command::Segments { key, count } => {
+                Step::Segments(*key, take(&mut self.points, 2 * count))
+            }
             Command::Polygons { key, sides, count } => {
                 Step::Polygons(*key, *sides, take(&mut self.points, sides * count))
             }

@@ -63,6 +63,8 @@ mod write;
 mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
+#[cfg(feature = "cli")]
+pub(crate) use density::write_density_with;
 pub use density::{Density, Shades, Tone, density_canvas, write_density};
 pub(crate) use drawing::Drawing;
 pub use error::{NoDetail, NoZoom, Remedy, RenderError};

@@ -77,6 +77,7 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             let is_class = matches!(step, Step::Other(Mark::Class(_)));
             match step {
                 Step::Lines(ends) => self.lines(ends)?,
+                Step::Segments(key, ends) => self.segments(key, ends)?,
                 Step::Polygons(key, sides, vertices) => {
                     (self.previous, self.is_first) = (None, false);
                     self.begin_path(key)?;
@@ -219,6 +220,17 @@ impl<'a, 's, S: Surface> Painter<'a, 's, S> {
             meets_frame: meets_end,
             drawn: true,
         });
+        Ok(())
+    }
+
+    /// Draws lines that nothing joins.
+    fn segments(&mut self, key: PaintKey, ends: &[Position]) -> io::Result<()> {
+        (self.previous, self.ring, self.is_first) = (None, None, false);
+        self.begin_path(key)?;
+        for ends in ends.chunks(2 * MANY) {
+            self.tracer.segments(ends);
+            self.hand_on()?;
+        }
         Ok(())
     }
 

@@ -144,10 +144,11 @@ impl<'t, 'w> Png<'t, 'w> {
         rows: Range<u32>,
         outline: Outline,
         background: Option<Colour>,
-        spare: Spare,
+        mut spare: Spare,
         team: &'t Team<'w>,
     ) -> Result<Self, TooManyPixels> {
-        let part = PicturePart::of_rows([0, 0], size, rows, spare.pixmap);
+        let pixels = spare.take_pixels([size[0], rows.end - rows.start]);
+        let part = PicturePart::of_rows([0, 0], size, rows, pixels);
         let mut part = part.ok_or(TooManyPixels { size })?.on(spare.layers);
         if let Some(background) = background {
             let [red, green, blue, opacity] = background.rgba();
@@ -327,6 +328,25 @@ impl Surface for Png<'_, '_> {
         }
         self.stroke(to.iter().copied());
         self.trail.at = to.last().copied().unwrap_or(self.trail.at);
+    }
+
+    fn segments(&mut self, ends: &[Position]) {
+        let segments = ends.as_chunks().0;
+        let Some(&[from, to]) = segments.last() else {
+            return;
+        };
+        if self.covers || self.is_outlined {
+            for &[from, to] in segments {
+                self.move_to(from);
+                self.line_to(to);
+            }
+            return;
+        }
+        if self.stroker.is_some() {
+            self.chunk.list.segments((), ends);
+        }
+        self.trail = Trail::of(from);
+        self.trail.go_to(to);
     }
 
     #[inline]

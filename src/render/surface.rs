@@ -23,6 +23,14 @@ pub(crate) trait Surface {
             self.line_to(to);
         }
     }
+    /// Draws straight lines, each as a subpath, by pairs of ends. The ends of a dot are equal.
+    #[inline]
+    fn segments(&mut self, ends: &[Position]) {
+        for &[from, to] in ends.as_chunks().0 {
+            self.move_to(from);
+            self.line_to(to);
+        }
+    }
     /// Draws a cubic Bézier curve.
     fn curve_to(&mut self, a: Position, b: Position, to: Position);
     /// Closes the subpath with a line to its first vertex.

@@ -69,6 +69,12 @@ impl<'s, S: Surface + ?Sized> Tracer<'s, S> {
         }
     }
 
+    /// Draws separate straight lines, by pairs of ends.
+    pub(crate) fn segments(&mut self, ends: &[Position]) {
+        self.finish();
+        self.surface.segments(ends);
+    }
+
     pub(crate) fn curve_to(&mut self, a: Position, b: Position, to: Position) {
         self.draw_held();
         if [a, b, to] == [self.pen; 3] {

@@ -6,7 +6,6 @@
 //! width do not form batches: many of them may coincide, and a batch would count the area of each.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::geometry::{Bounds, DAffine2, DVec2};
@@ -28,7 +27,7 @@ const NEAR: f64 = 0.25;
 /// Number of scales per octave for which batches are computed.
 const SCALES_AN_OCTAVE: f64 = 64.0;
 
-/// Maximum number of batches that are kept, over all blocks and scales.
+/// Maximum number of batches and of lines apart that are kept, over all blocks and scales.
 const MAX_KEPT: usize = 1 << 17;
 
 /// Combines the lines of the runs of one walk into segment batches.
@@ -37,6 +36,8 @@ pub(in crate::render) struct BatchBuilder {
     octave: f64,
     /// Length that the caps add to a line, in widths.
     ends: f64,
+    /// Whether lines may join others.
+    joins: bool,
     /// Results, by number of the run's block and by scale.
     kept: Mutex<Kept>,
 }
@@ -44,15 +45,17 @@ pub(in crate::render) struct BatchBuilder {
 #[derive(Default)]
 struct Kept {
     blocks: BTreeMap<(u64, i32), Arc<Batched>>,
-    bundles: usize,
+    /// Number of batches and lines.
+    size: usize,
 }
 
 /// Lines of a run at a scale.
 #[derive(Default)]
 pub(in crate::render) struct Batched {
     bundles: Vec<Bundle>,
-    /// Ranges of lines that are drawn one by one; the others are in bundles.
-    pub(in crate::render) apart: Vec<Range<usize>>,
+    /// Numbers of the lines that are drawn one by one; the others are in bundles. If no line joins another, they are in the
+    /// order of their widths.
+    pub(in crate::render) apart: Vec<u32>,
 }
 
 /// Lines that form a batch.
@@ -66,11 +69,12 @@ struct Bundle {
 }
 
 impl BatchBuilder {
-    /// Creates a builder for strokes of relative width.
-    pub(super) fn new(width: f64, pen: Pen) -> Self {
+    /// Creates a builder for strokes of relative width. `joins` states whether lines may join others.
+    pub(super) fn new(width: f64, pen: Pen, joins: bool) -> Self {
         Self {
             octave: libm::log2(width * FINE),
             ends: 2.0 * pen.overshoot(),
+            joins,
             kept: Mutex::default(),
         }
     }
@@ -96,8 +100,9 @@ impl BatchBuilder {
         let batched = known.unwrap_or_else(|| {
             let batched = Arc::new(self.at(sticks, own_scale));
             let mut kept = kept();
-            if kept.bundles + batched.bundles.len() < MAX_KEPT {
-                kept.bundles += batched.bundles.len() + 1;
+            let size = batched.bundles.len() + batched.apart.len();
+            if kept.size + size < MAX_KEPT {
+                kept.size += size + 1;
                 kept.blocks.insert(key, Arc::clone(&batched));
             }
             batched
@@ -110,17 +115,14 @@ impl BatchBuilder {
         let mut batched = Batched::default();
         let mut open = OpenBundle::default();
         let mut before = None;
-        for (number, stick) in sticks.iter().enumerate() {
+        for (number, stick) in (0..).zip(sticks) {
             let class = width_class(octave + stick.octave);
             let width = class_width(class) / FINE;
             let length = stick.ends[0].distance(stick.ends[1]) * scale;
             let goes_on = stick.joined && before == Some(class);
             before = Some(class);
             if width >= THIN || length > LONG {
-                match batched.apart.last_mut() {
-                    Some(range) if range.end == number => range.end += 1,
-                    _ => batched.apart.push(number..number + 1),
-                }
+                batched.apart.push(number);
                 continue;
             }
             let ends = if goes_on { 0.0 } else { self.ends };
@@ -139,6 +141,13 @@ impl BatchBuilder {
             }
         }
         batched.bundles.extend(open.take());
+        if !self.joins {
+            // Pixels do not depend on the order: lines of one width share a path.
+            let octave = |number: &u32| sticks[*number as usize].octave;
+            batched
+                .apart
+                .sort_by(|a, b| octave(a).total_cmp(&octave(b)));
+        }
         batched
     }
 }

@@ -101,6 +101,12 @@ impl Chunk {
                     }
                     at = lines.last().copied().unwrap_or(at);
                 }
+                (Step::Segments((), ends), hand) => {
+                    if let Some(hand) = hand {
+                        hand.segments(over, ends);
+                    }
+                    at = ends.last().copied().unwrap_or(at);
+                }
                 (Step::Polygons((), sides, vertices), _) => {
                     for polygon in vertices.chunks_exact(sides) {
                         plane.shape(polygon);

@@ -117,14 +117,19 @@ pub(in crate::render) fn encode_pieces<E: From<io::Error>>(
 /// Writes pixels without encoding them.
 fn write_raw(pixmap: &Pixmap, out: &mut impl Write) -> io::Result<()> {
     let width = pixmap.width() as usize;
-    let mut row = Vec::with_capacity(4 * width);
+    let mut row = Vec::new();
     let rows = pixmap.data().chunks_exact(4 * width);
     for (bytes, pixels) in rows.zip(pixmap.pixels().chunks_exact(width)) {
+        // Most pixels are opaque or empty, and need no division.
+        let is_plain = |pixel: &PremultipliedColorU8| matches!(pixel.alpha(), 0 | 255);
+        if pixels.iter().fold(true, |all, it| all & is_plain(it)) {
+            out.write_all(bytes)?;
+            continue;
+        }
         row.clear();
         row.extend_from_slice(bytes);
-        // Most pixels are opaque or empty, and need no division.
         let values = row.as_chunks_mut::<4>().0.iter_mut().zip(pixels);
-        for (values, &pixel) in values.filter(|(values, _)| !matches!(values[3], 0 | 255)) {
+        for (values, &pixel) in values.filter(|(_, pixel)| !is_plain(pixel)) {
             *values = rgba(pixel);
         }
         out.write_all(&row)?;

@@ -53,7 +53,7 @@ fn batches(scene: &Scene<'_>, pass: Pass, raster: &dyn Raster) -> Option<BatchBu
     };
     let paint = PaintKey::of(PathKind::Line).paint(scene, pass.colour(scene));
     let stroke = paint.stroke.filter(|_| raster.takes_batches(&paint))?;
-    Some(BatchBuilder::new(width, stroke.pen))
+    Some(BatchBuilder::new(width, stroke.pen, scene.graph.joins()))
 }
 
 /// Creates the sprites of a pass, if every class is painted in one opaque colour, or in two of which that of

@@ -61,7 +61,8 @@ impl PicturePart {
         self.rows.clone()
     }
 
-    /// Creates some rows of a part, on the pixels of another picture if they are as many; `None` if it has no valid size.
+    /// Creates some rows of a part, on the pixels of another picture of their size if there are any; `None` if it has no
+    /// valid size.
     pub(super) fn of_rows(
         corner: [u32; 2],
         size: [u32; 2],
@@ -69,7 +70,6 @@ impl PicturePart {
         spare: Option<Pixmap>,
     ) -> Option<Self> {
         let (width, height) = (size[0], rows.end - rows.start);
-        let spare = spare.filter(|it| [it.width(), it.height()] == [width, height]);
         let cleared = spare.map(|mut pixmap| {
             pixmap.fill(Color::TRANSPARENT);
             pixmap
@@ -167,20 +167,31 @@ impl PicturePart {
                 continue;
             };
             let [red, green, blue, opacity] = ink.rgba();
-            let whole = WHOLE * 255;
+            const FULL: u32 = WHOLE * 255;
+            let is_grey = red == green && green == blue;
             planes.drain(pixels, |values, covered| {
                 let part = covered * u32::from(opacity);
-                if part == whole {
+                if part == FULL {
                     *values = [red, green, blue, 255];
                     return;
                 }
-                for (value, ink) in values.iter_mut().zip([red, green, blue, 255]) {
-                    let mixed = u32::from(ink) * part + u32::from(*value) * (whole - part);
-                    #[expect(clippy::cast_possible_truncation, reason = "a mean of bytes")]
-                    {
-                        *value = ((mixed + whole / 2) / whole) as u8;
-                    }
-                }
+                #[expect(clippy::cast_possible_truncation, reason = "a mean of bytes")]
+                let mix = |ink: u8, value: u8| {
+                    let mixed = u32::from(ink) * part + u32::from(value) * (FULL - part);
+                    ((mixed + FULL / 2) / FULL) as u8
+                };
+                let [first, second, third, alpha] = *values;
+                *values = if is_grey && first == second && second == third && alpha == 255 {
+                    let grey = mix(red, first);
+                    [grey, grey, grey, 255]
+                } else {
+                    [
+                        mix(red, first),
+                        mix(green, second),
+                        mix(blue, third),
+                        mix(255, alpha),
+                    ]
+                };
             });
         }
     }

@@ -22,6 +22,21 @@ pub(in crate::render) struct Spare {
     pub(super) strokers: Strokers,
 }
 
+impl Spare {
+    /// Creates memory of some pixels.
+    pub(in crate::render) fn of_pixels(pixmap: Pixmap) -> Self {
+        Self {
+            pixmap: Some(pixmap),
+            ..Self::default()
+        }
+    }
+
+    /// Takes the pixels, if they have this width and height. Their colours are arbitrary.
+    pub(in crate::render) fn take_pixels(&mut self, size: [u32; 2]) -> Option<Pixmap> {
+        self.pixmap.take_if(|it| [it.width(), it.height()] == size)
+    }
+}
+
 /// Store of the memory of finished pictures. By default, nothing is stored.
 #[derive(Clone, Default)]
 pub(crate) struct Spares(Option<Arc<Mutex<Vec<Spare>>>>);

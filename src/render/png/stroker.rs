@@ -153,6 +153,28 @@ impl Hand {
         }
     }
 
+    /// Draws lines, each as a subpath, by pairs of ends.
+    pub(super) fn segments(&mut self, plane: &mut CoverageBuffer, ends: &[Position]) {
+        let ends = ends.as_chunks().0.iter();
+        match self {
+            Self::Round(pen) => {
+                for &[from, to] in ends {
+                    plane.dot(pen, from);
+                    plane.line(pen, from, to);
+                }
+            }
+            Self::Hair { pen, .. } => {
+                ends.for_each(|&[from, to]| plane.hair(pen, from, to, true));
+            }
+            Self::Flat(stroke) => {
+                for &[from, to] in ends {
+                    stroke.start(from, plane);
+                    stroke.line(to, plane);
+                }
+            }
+        }
+    }
+
     /// Closes the subpath; its last line leads to its start.
     pub(super) fn close(&mut self, plane: &mut CoverageBuffer) {
         if let Self::Flat(stroke) = self {

@@ -4,7 +4,7 @@ use crate::geometry::DVec2;
 use crate::grow::{Colony, Element, LineElement, Run};
 use crate::render::contribution::Painted;
 use crate::render::display::Command;
-use crate::render::paint::{FINE, position};
+use crate::render::paint::{FINE, Position, position};
 use crate::render::paint_key::{PaintKey, PathKind, width_class};
 use crate::render::png::{PlacedSprite, Put};
 
@@ -22,9 +22,13 @@ impl Sketcher<'_> {
 
     /// Draws lines of one class that need not join.
     pub(super) fn sticks(&mut self, run: &Run<'_>, sticks: &[LineElement], first: &Element) {
-        self.see(first);
-        let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
-        self.draw_sticks(run, rest);
+        if self.scene.graph.joins() {
+            self.see(first);
+            let rest = sticks[1..].iter().map(|stick| (stick, stick.joined));
+            self.draw_sticks(run, rest);
+        } else {
+            self.segments(run, sticks.iter());
+        }
     }
 
     /// Draws lines, each with whether it joins the one before.
@@ -33,25 +37,9 @@ impl Sketcher<'_> {
         run: &Run<'_>,
         sticks: impl Iterator<Item = (&'b LineElement, bool)>,
     ) {
-        let map = self.scene.canvas.map(run.map());
-        let fine = |point: DVec2| position(map.transform_point2(point) * FINE);
-        let whole = self.octave(run.map().matrix2.x_axis.length());
-        let class =
-            |stick: &LineElement| whole.map_or(0, |whole| width_class(whole + stick.octave));
-        let mut sticks: Vec<_> = sticks
-            .map(|(stick, joined)| (class(stick), stick, joined))
-            .collect();
-        // Pixels do not depend on the order of lines of which none joins another: those of one width share a path.
-        if self.means.batches.is_some() && !self.scene.graph.joins() {
-            sticks.sort_by_key(|(class, ..)| *class);
-        }
-        let kind = self.kind();
-        for (width, stick, joined) in sticks {
-            let key = PaintKey {
-                kind,
-                width,
-                colour: None,
-            };
+        let placed = self.placing(run);
+        for (stick, joined) in sticks {
+            let (key, [from, to]) = placed(stick);
             let goes_on = match self.open.map(|open| &self.sketch.commands[open]) {
                 Some(Command::Other(Mark::Line(line))) => joined && line.key == key,
                 _ => false,
@@ -63,9 +51,35 @@ impl Sketcher<'_> {
                     meets_frame: [true; 2],
                 }));
                 self.open = Some(self.sketch.commands.len() - 1);
-                self.sketch.points.push(fine(stick.ends[0]));
+                self.sketch.points.push(from);
             }
-            self.go_to(fine(stick.ends[1]));
+            self.go_to(to);
+        }
+    }
+
+    /// Draws lines of which none joins another.
+    fn segments<'b>(&mut self, run: &Run<'_>, sticks: impl Iterator<Item = &'b LineElement>) {
+        let placed = self.placing(run);
+        self.open = None;
+        for stick in sticks {
+            let (key, ends) = placed(stick);
+            self.sketch.segments(key, &ends);
+        }
+    }
+
+    /// Returns a function that places the lines of a run: their paint keys and their ends.
+    fn placing(&self, run: &Run<'_>) -> impl Fn(&LineElement) -> (PaintKey, [Position; 2]) + use<> {
+        let map = self.scene.canvas.map(run.map());
+        let whole = self.octave(run.map().matrix2.x_axis.length());
+        let kind = self.kind();
+        move |stick| {
+            let key = PaintKey {
+                kind,
+                width: whole.map_or(0, |whole| width_class(whole + stick.octave)),
+                colour: None,
+            };
+            let fine = |point| position(map.transform_point2(point) * FINE);
+            (key, stick.ends.map(fine))
         }
     }
 
@@ -85,7 +99,7 @@ impl Sketcher<'_> {
     }
 
     /// Draws lines of one class, short and thin ones in segment batches. Returns `false`, and draws nothing, if
-    /// there are none of these.
+    /// lines may join and there are none of these.
     pub(super) fn batches(&mut self, run: &Run<'_>, sticks: &[LineElement]) -> bool {
         let (Some(builder), Some(last)) = (&self.means.batches, sticks.last()) else {
             return false;
@@ -93,12 +107,19 @@ impl Sketcher<'_> {
         let map = self.scene.canvas.map(run.map());
         let scale = map.matrix2.x_axis.length();
         let (batched, longer) = builder.batched(run.number(), sticks, scale);
+        let apart = batched.apart.iter().map(|number| *number as usize);
+        if !self.scene.graph.joins() {
+            self.segments(run, apart.map(|number| &sticks[number]));
+            self.sketch.batches(batched.placed(map, longer));
+            return true;
+        }
         if batched.is_empty() {
             return false;
         }
-        let apart = batched.apart.iter().flat_map(|apart| {
-            let lines = sticks[apart.clone()].iter().enumerate();
-            lines.map(|(number, stick)| (stick, number > 0 && stick.joined))
+        let mut next = sticks.len();
+        let apart = apart.map(|number| {
+            let follows = std::mem::replace(&mut next, number + 1) == number;
+            (&sticks[number], follows && sticks[number].joined)
         });
         self.draw_sticks(run, apart);
         self.sketch.batches(batched.placed(map, longer));

@@ -14,7 +14,9 @@ use crate::grow::Progress;
 use crate::ifs::System;
 use crate::model::Model;
 use crate::render;
-use crate::render::{Canvas, Density, RenderError, Shades, Size, density_canvas, write_density};
+use crate::render::{
+    Canvas, Density, RenderError, Shades, Size, density_canvas, write_density_with,
+};
 use crate::style::{ColorBy, Colour, Style};
 use crate::symmetry::Symmetry;
 
@@ -177,7 +179,8 @@ impl<'a> PlaneGame<'a> {
         options.extend(arguments.tile.options());
         options.extend(picture.options());
         let labels = labels(self.iteration.loaded, &described, "grow", options);
-        write_density(&histogram, &density, &labels, out).map_err(explain)?;
+        let spares = arguments.growth.spares();
+        write_density_with(&spares, &histogram, &density, &labels, out).map_err(explain)?;
         let inside = match histogram.inside() {
             inside if inside == game.points => String::new(),
             inside => format!(", {} inside", crate::readable::grouped(&inside.into())),

@@ -8,6 +8,9 @@ use super::{CoverageBuffer, MARGIN, SAMPLES, Touched, WHOLE, index};
 /// Number of cells that are worth a thread.
 const WORTH: usize = 1 << 16;
 
+/// Number of cells of a row that are passed over at once where nothing is covered.
+const BLANK: usize = 16;
+
 /// Coverage of buffers for the same rows of a picture, which is taken from them row by row.
 ///
 /// Samples of the buffers are united and absorptions added, so that the division of paths between buffers
@@ -82,28 +85,48 @@ impl<'b> Drain<'b> {
             return;
         };
         let start = row * stride;
-        let hairs = || self.buffers.iter().map(|buffer| &buffer.hairs);
-        let has_hairs = hairs().any(|hairs| !hairs.is_empty());
-        for column in self.columns.clone() {
-            let mut samples = 0;
-            for buffer in &self.buffers {
-                let cell = &buffer.cells[start + column];
-                let own = cell.load(Relaxed);
-                // Most cells of many layers are empty.
-                if own != 0 {
-                    cell.store(0, Relaxed);
-                    samples |= own;
-                }
-            }
-            if samples == 0 && !has_hairs {
+        for first in self.columns.clone().step_by(BLANK) {
+            let end = self.columns.end.min(first + BLANK);
+            let cells = start + first..start + end;
+            let has = |buffer: &&CoverageBuffer| buffer.has_any(cells.clone());
+            if !self.buffers.iter().any(has) {
                 continue;
             }
-            let absorbed = super::hair::absorbed(hairs().map(|hairs| hairs.take(start + column)));
-            let covered = covered(samples.count_ones(), absorbed);
-            if covered > 0 {
-                paint(column, covered);
+            for column in first..end {
+                let cell = start + column;
+                let taken = self.buffers.iter().map(|buffer| buffer.take(cell));
+                let (samples, absorbed) = taken.fold((0, 0), |(samples, absorbed), taken| {
+                    (samples | taken.0, u32::saturating_add(absorbed, taken.1))
+                });
+                if samples == 0 && absorbed == 0 {
+                    continue;
+                }
+                let covered = covered(samples.count_ones(), super::hair::absorbed(absorbed));
+                if covered > 0 {
+                    paint(column, covered);
+                }
             }
         }
+    }
+}
+
+impl CoverageBuffer {
+    /// Returns whether any of some cells is covered. Most cells are not.
+    #[inline]
+    fn has_any(&self, cells: Range<usize>) -> bool {
+        let samples = self.cells[cells.clone()].iter();
+        let covered = samples.fold(0, |all, cell| all | cell.load(Relaxed)) != 0;
+        covered || self.hairs.has_any(cells)
+    }
+
+    /// Returns the samples and the absorption of a cell, and clears it.
+    #[inline]
+    fn take(&self, cell: usize) -> (u64, u32) {
+        let samples = self.cells[cell].load(Relaxed);
+        if samples != 0 {
+            self.cells[cell].store(0, Relaxed);
+        }
+        (samples, self.hairs.take(cell))
     }
 }
 

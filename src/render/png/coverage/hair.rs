@@ -1,7 +1,9 @@
 //! Hairlines: strokes so thin that their lines would fall between the samples.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
+use super::pen::part;
 use super::{CoverageBuffer, FINE, MARGIN, Position, index};
 
 /// Thin lines close to each other, drawn as one box that is no larger than a pixel.
@@ -17,8 +19,26 @@ pub(crate) struct SegmentBatch {
     pub(crate) width: f32,
 }
 
-/// Maximum length of the pieces of a line, along either axis, in hundredths of a pixel.
-const PIECE: i64 = 25;
+/// Maximum length of the pieces of a line, along either axis, in hundredths of a pixel. With its width, a piece is no
+/// longer than a pixel.
+const PIECE: i64 = 75;
+
+/// Maximum length of the pieces that lie in four pixels: elsewhere, the absorption of every pixel depends on one
+/// coordinate, in which a piece is as even as its box.
+const SHORT: i64 = 25;
+
+/// Number of binary places of parts of a box.
+const PART_PLACES: u32 = 24;
+/// Reciprocals of twice the extents of boxes, with these places.
+const PARTS: [u64; 128] = {
+    let mut parts = [0; 128];
+    let mut extent = 1;
+    while extent < parts.len() {
+        parts[extent] = (1 << PART_PLACES) / (2 * extent as u64);
+        extent += 1;
+    }
+    parts
+};
 
 /// Number of binary places of positions along a line.
 const PLACES: u32 = 16;
@@ -91,9 +111,11 @@ impl Hairs {
         taken
     }
 
-    /// Returns whether no hairline has ever been drawn.
-    pub(super) fn is_empty(&self) -> bool {
-        self.cells.is_empty()
+    /// Returns whether any of some cells absorbs anything.
+    #[inline]
+    pub(super) fn has_any(&self, cells: Range<usize>) -> bool {
+        let cells = self.cells.get(cells).unwrap_or_default();
+        cells.iter().fold(0, |all, cell| all | cell.load(Relaxed)) != 0
     }
 
     fn make_room(&mut self, count: usize) {
@@ -107,10 +129,9 @@ impl Hairs {
     }
 }
 
-/// Returns the fraction of a pixel's light that hairlines absorb, from the absorptions of several buffers.
+/// Returns the fraction of a pixel's light that hairlines absorb, from their absorption.
 #[inline]
-pub(super) fn absorbed(taken: impl Iterator<Item = u32>) -> f32 {
-    let taken = taken.fold(0, u32::saturating_add);
+pub(super) fn absorbed(taken: u32) -> f32 {
     if taken == 0 {
         return 0.0;
     }
@@ -146,7 +167,7 @@ impl CoverageBuffer {
         }
         let extent = batch.extent.map(|extent| i64::from(extent).clamp(1, FINE));
         let ink = batch.area * thickness(batch.width) * UNIT;
-        self.blot(batch.middle.map(i64::from), extent, ink);
+        self.blot(batch.middle.map(i64::from), extent, [0; 2], whole(ink));
     }
 
     #[inline]
@@ -155,39 +176,44 @@ impl CoverageBuffer {
         let [across, down] = way.map(|along| along as f32);
         let length = (across * across + down * down).sqrt();
         let ends = if ends { pen.ends } else { 0.0 };
+        // Extent of the line's width along both axes.
+        let broad = if length > 0.0 {
+            let broad = pen.width as f32 / length;
+            [down, across].map(|other| (other.abs() * broad + 0.5) as i64)
+        } else {
+            [pen.width; 2]
+        };
         // Twice the centre, so that halves are whole numbers.
         let middle = [from[0] + to[0], from[1] + to[1]];
         let extent = way.map(i64::abs);
         let longest = extent[0].max(extent[1]);
         if longest <= PIECE {
             let ink = (length + ends) * pen.ink;
-            self.blot(middle, extent.map(|extent| extent + pen.width), ink);
+            let extent = [0, 1].map(|axis| extent[axis] + broad[axis]);
+            self.blot(middle, extent, way, whole(ink));
         } else {
             // The ends are drawn at the start of the line, so that its other pieces do not depend on them.
             if ends > 0.0 {
-                self.blot(from.map(|at| 2 * at), [pen.width; 2], ends * pen.ink);
+                let ink = whole(ends * pen.ink);
+                self.blot(from.map(|at| 2 * at), [pen.width; 2], [0; 2], ink);
             }
-            let ink = length * pen.ink;
             let pieces = (longest + PIECE - 1) / PIECE;
-            let step = way.map(|along| (along << (PLACES + 1)) / pieces);
-            let extent = extent.map(|extent| extent / pieces + pen.width);
+            let ink = whole(length * pen.ink / pieces as f32);
+            let step = way.map(|along| part(along << (PLACES + 1), pieces));
+            let way = step.map(|step| (step + (1 << PLACES)) >> (PLACES + 1));
+            let extent = [0, 1].map(|axis| way[axis].abs() + broad[axis]);
             let mut at = [0, 1].map(|axis| (from[axis] << (PLACES + 1)) + step[axis] / 2);
-            let ink = ink / pieces as f32;
             for _ in 0..pieces {
-                self.blot(at.map(|place| place >> PLACES), extent, ink);
+                self.blot(at.map(|place| place >> PLACES), extent, way, ink);
                 at = [at[0] + step[0], at[1] + step[1]];
             }
         }
     }
 
-    /// Spreads absorption over a box no larger than a pixel, given by twice its centre and by its extent.
+    /// Spreads absorption over a box no larger than a pixel, given by twice its centre and by its extent. If the box is that
+    /// of a line, `way` leads from one end of the line to the other.
     #[inline(always)]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "casts from floats saturate"
-    )]
-    fn blot(&mut self, middle: [i64; 2], extent: [i64; 2], ink: f32) {
+    fn blot(&mut self, middle: [i64; 2], extent: [i64; 2], way: [i64; 2], ink: u32) {
         let first = [MARGIN, MARGIN - self.top];
         let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * first[axis]);
         // Negative positions become larger than any buffer.
@@ -198,20 +224,48 @@ impl CoverageBuffer {
         }
         let within = [0, 1].map(|axis| least[axis] - cell[axis] as i64 * 2 * FINE);
         let beyond = [0, 1].map(|axis| within[axis] + 2 * extent[axis] - 2 * FINE);
+        if beyond[0] > 0 && beyond[1] > 0 && way[0].abs().max(way[1].abs()) > SHORT {
+            return self.blot_halves(middle, extent, way, ink);
+        }
         let [column, row] = [0, 1].map(|axis| cell[axis] as i64 - first[axis]);
         self.touched.add([column, column + 1], [row, row + 1]);
         let start = cell[1] * self.stride + cell[0];
         let cells = &self.hairs.cells[start..start + self.stride + 2];
         if beyond[0] <= 0 && beyond[1] <= 0 {
-            add(&cells[0], ink as u32);
+            add(&cells[0], ink);
             return;
         }
-        let share = |axis: usize| beyond[axis].max(0) as f32 / (2 * extent[axis]) as f32;
-        let (right, below) = (share(0), share(1));
-        let (upper, lower) = (ink * (1.0 - below), ink * below);
-        add(&cells[0], (upper * (1.0 - right)) as u32);
-        add(&cells[1], (upper * right) as u32);
-        add(&cells[self.stride], (lower * (1.0 - right)) as u32);
-        add(&cells[self.stride + 1], (lower * right) as u32);
+        let share = |axis: usize, ink: u32| {
+            let beyond = beyond[axis].max(0) as u64 * PARTS[index(extent[axis]) % PARTS.len()];
+            ((u64::from(ink) * beyond) >> PART_PLACES) as u32
+        };
+        let lower = share(1, ink);
+        let [upper_right, lower_right] = [ink - lower, lower].map(|ink| share(0, ink));
+        add(&cells[0], ink - lower - upper_right);
+        add(&cells[1], upper_right);
+        add(&cells[self.stride], lower - lower_right);
+        add(&cells[self.stride + 1], lower_right);
     }
+
+    /// Spreads the absorption of a line over the boxes of its halves.
+    fn blot_halves(&mut self, middle: [i64; 2], extent: [i64; 2], way: [i64; 2], ink: u32) {
+        let half = way.map(|along| along / 2);
+        let extent = [0, 1].map(|axis| extent[axis] - half[axis].abs());
+        // The centre is doubled.
+        let [before, after] =
+            [-1, 1].map(|side| [0, 1].map(|axis| middle[axis] + side * half[axis]));
+        self.blot(before, extent, half, ink / 2);
+        self.blot(after, extent, half, ink - ink / 2);
+    }
+}
+
+/// Returns an absorption in whole `UNIT`s.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate"
+)]
+fn whole(ink: f32) -> u32 {
+    ink as u32
 }

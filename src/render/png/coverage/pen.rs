@@ -235,7 +235,7 @@ fn pieces(pen: &RoundPen, from: Position, to: Position) -> i64 {
 
 /// Returns one of `parts` equal parts of a distance.
 #[inline]
-fn part(way: i64, parts: i64) -> i64 {
+pub(super) fn part(way: i64, parts: i64) -> i64 {
     match PARTS.get(index(parts)) {
         Some(part) => ((way >> PART_SHIFT) * part) >> (PART_PLACES - PART_SHIFT),
         None => way / parts,
