@@ -387,7 +387,7 @@ fn tiles_and_pictures_hold_their_rule() {
     fs::write(folder.join("koch.yaml"), made_from).unwrap();
     let old = files(&folder.join("tiles"));
     fs::remove_dir_all(folder.join("tiles")).unwrap();
-    grow(folder, line);
+    grow(folder, &line.replace('\'', ""));
     let mut new = files(&folder.join("tiles"));
     // The text of the file has grown by the lines about the picture.
     new.insert("koch_files/pyramid.json".into(), text.into_bytes());
