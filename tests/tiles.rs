@@ -362,7 +362,7 @@ fn bad_input_is_refused_before_anything_is_written() {
     }
 }
 
-/// What a picture holds is drawn as tiles, and tiles are made from what their folder holds.
+/// Rules that pictures hold are drawn as tiles, and folders of tiles hold their rule.
 #[test]
 fn tiles_and_pictures_hold_their_rule() {
     let folder = tempfile::tempdir().unwrap();
