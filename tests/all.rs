@@ -53,6 +53,7 @@ mod symmetry;
 mod systems;
 mod terminal;
 mod threads;
+mod tiles;
 mod tilings;
 mod tints;
 mod turns;

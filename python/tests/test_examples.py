@@ -12,7 +12,11 @@ import kfrac
 FOLDER = Path(__file__).parent.parent
 
 
-@pytest.mark.parametrize("path", sorted((FOLDER / "examples").glob("*.py")), ids=lambda path: path.name)
+# Those for engines are run by `test_engines.py`.
+EXAMPLES = [path for path in sorted((FOLDER / "examples").glob("*.py")) if not path.name.startswith("on_")]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.name)
 def test_examples_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(path), run_name="__main__")

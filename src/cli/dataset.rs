@@ -17,6 +17,7 @@ use crate::dataset::{Dataset, DatasetError};
 use crate::parallel::all_cores;
 
 use self::manifest::Manifest;
+use super::shard::Shard;
 use super::{Failure, growth, help, number, output, progress, readable, rule, text};
 
 /// Writes a data set of pictures with labels, for the training of networks
@@ -39,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long, short, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     output: PathBuf,
     /// Part of the work, such as 3/64: the third of 64 parts
-    #[arg(long, value_name = "K/N", value_parser = shard)]
+    #[arg(long, value_name = "K/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
     /// Number of pictures of an archive
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = number::whole("a number of pictures", 1..=10_000_000_u64))]
@@ -73,24 +74,6 @@ Examples:
       Draws all pictures again, and reports those that differ
 ";
 
-/// Part of the work: number, from 1, and number of parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Shard {
-    number: u32,
-    count: u32,
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let parts = text.split_once('/').and_then(|(number, count)| {
-        let [number, count] = [number, count].map(|it| it.trim().parse::<u32>().ok());
-        Some((number?, count?))
-    });
-    match parts {
-        Some((number, count)) if number >= 1 && number <= count => Ok(Shard { number, count }),
-        _ => Err("a part is K/N, with K from 1 to N".into()),
-    }
-}
-
 /// Number of pictures that are drawn before their results are put in order.
 const BLOCK: u64 = 512;
 
@@ -99,10 +82,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let set = Dataset::read(&source, catalogue)?;
     let place = folder::place(&arguments.output)?;
     let threads = arguments.threads.unwrap_or_else(all_cores).get();
-    let shard = arguments.shard.unwrap_or(Shard {
-        number: 1,
-        count: 1,
-    });
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
     place.keep_spec(&set, arguments.check)?;
     let done = AtomicU64::new(0);
     let wanted = !arguments.quiet && !arguments.json;
@@ -181,24 +161,5 @@ impl Job<'_> {
             from = to;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Shard, shard};
-
-    #[test]
-    fn parts_are_fractions() {
-        assert_eq!(
-            shard("3/64"),
-            Ok(Shard {
-                number: 3,
-                count: 64
-            })
-        );
-        for wrong in ["", "3", "0/4", "5/4", "1/0", "a/b", "1/2/3"] {
-            assert!(shard(wrong).is_err(), "{wrong}");
-        }
     }
 }

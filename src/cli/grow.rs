@@ -6,6 +6,7 @@ mod drawing;
 mod morphed;
 mod plan;
 mod plot;
+mod pyramid;
 mod scene;
 mod space;
 mod svg;
@@ -43,6 +44,7 @@ use drawing::Drawing;
 use morphed::MorphArguments;
 use plan::{Format, Plan};
 use plot::PlotArguments;
+use pyramid::PyramidArguments;
 use scene::SceneArguments;
 use svg::SvgArguments;
 use tile::{TileArguments, Tiled};
@@ -126,6 +128,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     tile: TileArguments,
     #[command(flatten)]
+    pyramid: PyramidArguments,
+    #[command(flatten)]
     picture: PictureArguments,
     #[command(flatten)]
     space: SpaceArguments,
@@ -166,6 +170,8 @@ Examples:
       Magnifies the neighbourhood of a point by a factor of 1e1000; the address of the point is
       a position in the initiator, then positions in the generator, those in brackets repeated
       without end
+  kfrac grow dragon --detail 1 --size 30000 --tiles dragon
+      Draws tiles of a picture at all scales, and a page that shows them
   kfrac grow random-tree --seed 7
       Draws another random tree of the same rule
   kfrac grow random-tree --seed 1..9 -o 'tree-%s.png'
@@ -241,6 +247,11 @@ pub(crate) fn hold(
 ) -> Result<String, Failure> {
     let mut arguments: Arguments = held::parsed("grow", arguments)?;
     arguments.growth.held = Some(held);
+    if arguments.pyramid.is_asked() {
+        return Err(Failure::Usage(
+            "--tiles writes a folder, and not one picture".into(),
+        ));
+    }
     let plan = Plan::of(&arguments)?;
     let document = Arc::new(input::document(source, catalogue)?);
     let loaded = arguments.resolve(document, catalogue, true)?;
@@ -292,7 +303,7 @@ impl Arguments {
             given,
             &settings.collect::<Vec<_>>(),
             self.steps.is_some() || self.detail.is_some(),
-            self.output.is_some() || self.format.is_some(),
+            self.output.is_some() || self.format.is_some() || self.pyramid.is_asked(),
         )
     }
 
@@ -369,6 +380,7 @@ impl Arguments {
         }
         if loaded.model.is_in_space() {
             self.tile.refuse_in_space(&loaded)?;
+            self.pyramid.refuse_in_space(&loaded)?;
             let loaded = loaded.grown(&self.growth);
             return match *plan {
                 Plan::Scene(format) => scene::write(self, &loaded, format),
@@ -381,6 +393,9 @@ impl Arguments {
         self.space.refuse_in_plane(&loaded)?;
         if self.depth.is_some() {
             return Err(camera::in_plane("depth", &loaded));
+        }
+        if self.pyramid.is_asked() {
+            return pyramid::write(self, loaded.turned(self.turn));
         }
         let default = self.rule.file("", plan.extension());
         let path = self.output.as_ref().unwrap_or(&default);
@@ -449,6 +464,7 @@ impl Arguments {
         given
             .filter_map(|(name, value)| Some((name, value?.to_string())))
             .chain(self.tile.options())
+            .chain(self.pyramid.options())
             .collect()
     }
 

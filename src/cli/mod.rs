@@ -41,6 +41,7 @@ pub(crate) mod readable;
 mod redrawn;
 mod rule;
 mod schema;
+mod shard;
 mod sheet;
 mod show;
 mod skeleton;

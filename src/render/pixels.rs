@@ -8,6 +8,8 @@ use tiny_skia::{IntSize, Pixmap};
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::parallel::with_team;
+#[cfg(feature = "cli")]
+use crate::style::Colour;
 
 use super::cells::DrawingMethod;
 use super::drawing::Drawing;
@@ -85,6 +87,17 @@ impl Pixels {
 }
 
 impl Pixels {
+    /// Returns whether nothing is drawn on a background.
+    #[cfg(feature = "cli")]
+    pub(crate) fn are_blank(&self, background: Option<Colour>) -> bool {
+        let [red, green, blue, opacity] = background.unwrap_or(Colour::TRANSPARENT).rgba();
+        let Some(mut pixel) = Pixmap::new(1, 1) else {
+            return false;
+        };
+        pixel.fill(tiny_skia::Color::from_rgba8(red, green, blue, opacity));
+        self.bytes.chunks_exact(4).all(|it| it == pixel.data())
+    }
+
     /// Copies a smaller picture over this one, at the column and row of its upper left corner. Pixels beyond the edges
     /// are left out.
     pub(crate) fn put(&mut self, other: &Self, [left, top]: [u32; 2]) {

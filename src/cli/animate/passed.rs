@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 28] = [
+const OTHERS: [&str; 34] = [
     "rule",
     "set",
     "steps",
@@ -35,6 +35,12 @@ const OTHERS: [&str; 28] = [
     "initiator",
     "generator",
     "base_element",
+    "tiles",
+    "tile_size",
+    "overlap",
+    "level",
+    "shard",
+    "max_tiles",
 ];
 
 /// Options of `kfrac animate` that change nothing of a film.

@@ -25,12 +25,12 @@ const SECONDS_A_PIXEL: f64 = 1.3e-8;
 
 /// Picture of elements to be drawn.
 pub(super) struct Drawing<'a> {
-    arguments: &'a Arguments,
-    loaded: Loaded,
+    pub(super) arguments: &'a Arguments,
+    pub(super) loaded: Loaded,
     format: Format,
     shown: &'a ShownPart,
-    goal: Goal,
-    path: &'a Path,
+    pub(super) goal: Goal,
+    pub(super) path: &'a Path,
     tiled: Option<Tiled>,
 }
 
@@ -226,7 +226,7 @@ impl<'a> Drawing<'a> {
 
     /// Returns the style of the picture. A zoom counts no elements: a rule that colours by index or fractal
     /// is drawn in one colour, unless the command line asks for that `color_by`.
-    fn style(&self) -> Style {
+    pub(super) fn style(&self) -> Style {
         let style = self.full_style();
         match self.lacks_numbers(&style) {
             true => style.in_one_colour(),
@@ -306,7 +306,7 @@ impl<'a> Drawing<'a> {
 
     /// Returns the options of the picture, with the labels that describe it in its file. `place` maps the
     /// coordinates of the graph to those of the rule.
-    fn options(&self, goal: Goal, place: &Homothety) -> render::Options {
+    pub(super) fn options(&self, goal: Goal, place: &Homothety) -> render::Options {
         let Arguments {
             growth,
             plot,

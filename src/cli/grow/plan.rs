@@ -140,12 +140,14 @@ impl Plan {
             }
             picture.refuse_hits()?;
         }
+        refuse_beside_tiles(arguments, is_chaos)?;
         let path = arguments
             .output
             .as_deref()
             .filter(|path| *path != Path::new("-"));
+        let draws_png = is_chaos || arguments.pyramid.is_asked();
         let format = match arguments.format {
-            None if is_chaos && path.is_none() => Format::Picture(render::Format::Png),
+            None if draws_png && path.is_none() => Format::Picture(render::Format::Png),
             asked => format::choose(asked, path)?,
         };
         let drawn = match format {
@@ -270,6 +272,45 @@ impl Plan {
             Self::Cloud => Format::PLY.name(),
         }
     }
+}
+
+/// Refuses options that do not apply to pyramids of tiles, if one is asked for.
+fn refuse_beside_tiles(arguments: &Arguments, is_chaos: bool) -> Result<(), Failure> {
+    let pyramid = &arguments.pyramid;
+    if !pyramid.is_asked() {
+        return Ok(());
+    }
+    refuse(
+        is_chaos,
+        "--tiles draws elements, and --method chaos draws points",
+    )?;
+    refuse(
+        arguments.output.is_some(),
+        "--tiles names the folder of the tiles, and --output a single file: give only one of them",
+    )?;
+    let png = Format::Picture(render::Format::Png);
+    refuse(
+        arguments.format.is_some_and(|format| format != png),
+        "--tiles writes PNGs: leave out --format",
+    )?;
+    refuse(
+        arguments.open && pyramid.is_part(),
+        "--open shows the page of all tiles, and --level and --shard draw some of them",
+    )?;
+    for (option, is_asked) in [
+        ("--plot", arguments.plot.is_asked()),
+        ("--svg instanced", arguments.svg.is_instanced()),
+        ("--zoom", arguments.zoom.is_asked()),
+        ("--drawn", arguments.drawn.is_some()),
+        ("--depth", arguments.depth.is_some()),
+        ("--watch", arguments.watch),
+    ] {
+        refuse(
+            is_asked,
+            format!("{option} applies to single pictures, and not to --tiles"),
+        )?;
+    }
+    Ok(())
 }
 
 fn refuse(is_wrong: bool, message: impl Into<String>) -> Result<(), Failure> {
