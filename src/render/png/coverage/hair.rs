@@ -171,6 +171,10 @@ impl CoverageBuffer {
     }
 
     #[inline]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "no more than the width of the pen"
+    )]
     fn near_hair(&mut self, pen: &HairPen, from: Position, to: Position, ends: bool) {
         let way = [to[0] - from[0], to[1] - from[1]];
         let [across, down] = way.map(|along| along as f32);
@@ -213,6 +217,7 @@ impl CoverageBuffer {
     /// Spreads absorption over a box no larger than a pixel, given by twice its centre and by its extent. If the box is that
     /// of a line, `way` leads from one end of the line to the other.
     #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "parts of an ink")]
     fn blot(&mut self, middle: [i64; 2], extent: [i64; 2], way: [i64; 2], ink: u32) {
         let first = [MARGIN, MARGIN - self.top];
         let least = [0, 1].map(|axis| middle[axis] - extent[axis] + 2 * FINE * first[axis]);
