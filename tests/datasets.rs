@@ -8,7 +8,7 @@ use std::path::Path;
 use kfrac::dataset::Dataset;
 use serde_json::Value;
 
-use crate::common::said;
+use crate::common::{files, said};
 
 const SPEC: &str = "\
 kind: dataset
@@ -23,24 +23,6 @@ fn run(folder: &Path, arguments: &[&str]) -> String {
     let (status, said) = said(folder, &[&["dataset", "set.yaml"], arguments].concat());
     assert_eq!(status, Some(0), "{said}");
     said
-}
-
-/// Returns the files below a folder, with their bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path.strip_prefix(folder).unwrap().display().to_string();
-            found.insert(name, fs::read(&path).unwrap());
-        }
-    }
-    found
 }
 
 fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {

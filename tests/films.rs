@@ -674,3 +674,26 @@ animation: {set: {angle: 10..60}, frames: 4, loop: true, ease: linear}
         }
     }
 }
+
+/// Where no graph determines the cost of frames, some of them are drawn for the forecast.
+#[test]
+fn films_of_every_kind_are_forecast() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for line in [
+        "pythagoras --set angle=20..60",
+        "koch --zoom 1..1e9 --at 0.(1) --detail 1",
+        "barnsley-fern --method chaos --points 1k --seed 1..24",
+        "sierpinski-tetrahedron --from 0..90,20",
+    ] {
+        let film = "--frames 24 --size 160x120 -o film.y4m";
+        let line = format!("animate {line} {film}");
+        let (status, said) = said(folder, &line.split(' ').collect::<Vec<_>>());
+        assert_eq!(status, Some(0), "{line}: {said}");
+        let note = said
+            .lines()
+            .find(|line| line.starts_with("note: 24 frames"));
+        // Three bytes a pixel.
+        assert!(note.is_some_and(|it| it.ends_with(", 1.4 MB")), "{said}");
+    }
+}

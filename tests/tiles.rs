@@ -1,13 +1,12 @@
 //! Pyramids of tiles: tiles are the picture, whoever draws them, and nothing is written in part.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use resvg::tiny_skia::{Color, Pixmap};
 use serde_json::Value;
 
-use crate::common::said;
+use crate::common::{files, said};
 
 /// Runs `kfrac grow` with a line of arguments in a folder; returns what it reports.
 fn grow(folder: &Path, line: &str) -> String {
@@ -19,24 +18,6 @@ fn grow(folder: &Path, line: &str) -> String {
 fn run(folder: &Path, line: &str) -> (Option<i32>, String) {
     let words: Vec<_> = ["grow"].into_iter().chain(line.split(' ')).collect();
     said(folder, &words)
-}
-
-/// Returns the files below a folder, with their bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path.strip_prefix(folder).unwrap().display().to_string();
-            found.insert(name, fs::read(&path).unwrap());
-        }
-    }
-    found
 }
 
 /// Returns the numbers of a pyramid from its page.

@@ -247,11 +247,6 @@ pub(crate) fn hold(
 ) -> Result<String, Failure> {
     let mut arguments: Arguments = held::parsed("grow", arguments)?;
     arguments.growth.held = Some(held);
-    if arguments.pyramid.is_asked() {
-        return Err(Failure::Usage(
-            "--tiles writes a folder, and not one picture".into(),
-        ));
-    }
     let plan = Plan::of(&arguments)?;
     let document = Arc::new(input::document(source, catalogue)?);
     let loaded = arguments.resolve(document, catalogue, true)?;

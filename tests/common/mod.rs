@@ -2,7 +2,9 @@
 
 pub(crate) mod random_systems;
 
+use std::collections::BTreeMap;
 use std::convert::Infallible;
+use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -136,4 +138,22 @@ impl Draws {
     pub(crate) fn unit(&mut self) -> f64 {
         self.below(1_000_001) as f64 / 1_000_000.0
     }
+}
+
+/// Returns the files below a folder, with their bytes.
+pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(folder).unwrap().display().to_string();
+            found.insert(name, fs::read(&path).unwrap());
+        }
+    }
+    found
 }

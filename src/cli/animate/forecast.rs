@@ -33,7 +33,8 @@ struct Cost {
 pub(super) fn note(film: &Film<'_>, format: Option<Format>) -> Result<Option<String>, Failure> {
     let count = film.frames.arguments.len();
     let [width, height] = film.size.map(f64::from);
-    let Some(cost) = estimated(film)?.map_or_else(|| tried(film), |cost| Ok(Some(cost)))? else {
+    let estimated = estimated(film)?;
+    let Some(cost) = estimated.map_or_else(|| tried(film), |cost| Ok(Some(cost)))? else {
         return Ok(None);
     };
     let threads = film.frames.threads.get().min(count);

@@ -281,6 +281,10 @@ fn refuse_beside_tiles(arguments: &Arguments, is_chaos: bool) -> Result<(), Fail
         return Ok(());
     }
     refuse(
+        arguments.growth.held.is_some(),
+        "--tiles writes a folder, and not one picture",
+    )?;
+    refuse(
         is_chaos,
         "--tiles draws elements, and --method chaos draws points",
     )?;

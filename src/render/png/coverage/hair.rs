@@ -27,14 +27,14 @@ const PIECE: i64 = 75;
 /// coordinate, in which a piece is as even as its box.
 const SHORT: i64 = 25;
 
-/// Number of binary places of parts of a box.
-const PART_PLACES: u32 = 24;
+/// Number of binary places of reciprocals.
+const RECIPROCAL_PLACES: u32 = 24;
 /// Reciprocals of twice the extents of boxes, with these places.
-const PARTS: [u64; 128] = {
+const RECIPROCALS: [u64; 128] = {
     let mut parts = [0; 128];
     let mut extent = 1;
     while extent < parts.len() {
-        parts[extent] = (1 << PART_PLACES) / (2 * extent as u64);
+        parts[extent] = (1 << RECIPROCAL_PLACES) / (2 * extent as u64);
         extent += 1;
     }
     parts
@@ -241,8 +241,9 @@ impl CoverageBuffer {
             return;
         }
         let share = |axis: usize, ink: u32| {
-            let beyond = beyond[axis].max(0) as u64 * PARTS[index(extent[axis]) % PARTS.len()];
-            ((u64::from(ink) * beyond) >> PART_PLACES) as u32
+            let beyond =
+                beyond[axis].max(0) as u64 * RECIPROCALS[index(extent[axis]) % RECIPROCALS.len()];
+            ((u64::from(ink) * beyond) >> RECIPROCAL_PLACES) as u32
         };
         let lower = share(1, ink);
         let [upper_right, lower_right] = [ink - lower, lower].map(|ink| share(0, ink));
