@@ -14,6 +14,7 @@ use crate::geometry::{DAffine2, Homothety};
 use crate::ifs::AffineMap;
 use crate::metadata::Metadata;
 use crate::style::Colour;
+use crate::tween::Growing;
 
 /// Structure of objects that instance each other.
 ///
@@ -25,6 +26,8 @@ pub struct Instancing<M: AffineMap = DAffine2> {
     pub(crate) objects: Vec<ObjectDefinition<M>>,
     pub(crate) scene: Vec<ObjectInstance<M>>,
     pub(crate) initial: Option<M::Set>,
+    /// Step that is drawn while it grows, if there is one.
+    pub(crate) growing: Option<Growing>,
 }
 
 /// Canonical object: a union of instances.

@@ -24,6 +24,7 @@ use crate::lsystem::{LSystem, LSystemInSpace};
 use crate::metadata::Metadata;
 use crate::rule::Rule;
 use crate::style::{Shade, SpaceView};
+use crate::tween::Growing;
 use place::Extent;
 
 /// Declares the models of the kinds.
@@ -208,14 +209,32 @@ impl Model {
         }
     }
 
-    /// Returns the model whose step `steps` is drawn while it grows, as [`Rule::between`] does; `None` for models other
-    /// than production rules of the plane.
+    /// Returns the model whose step `steps` is drawn while it grows out of the step before: at a `share` of 0 it is about
+    /// that step, at 1 the step itself.
+    ///
+    /// Elements of rules, and those of systems whose maps are chained, rise from the element that they replace: a point (x,
+    /// y) begins at (x, 0) with x between 0 and 1, and moves in a straight line. Surfaces of rules in space begin in the
+    /// plane of the one that they replace. Solids of rules, and images of other systems and of objects with an initial set,
+    /// begin as what they replace; maps turn about their fixed points. Shapes of structures grow out of their origins.
+    /// Lines of L-systems rise from the way of the turtle along the module that is replaced.
+    ///
+    /// The limit set, and points of random iteration, are those of the model.
     #[must_use]
-    pub fn between(&self, steps: u32, share: f64) -> Option<Self> {
-        match self {
-            Self::Rule(rule) => Some(Self::Rule(Arc::new(rule.between(steps, share)))),
-            _ => None,
+    pub fn between(&self, steps: u32, share: f64) -> Self {
+        let share = share.clamp(0.0, 1.0);
+        let growing = Some(Growing { steps, share });
+        let mut model = self.clone();
+        match &mut model {
+            Self::Rule(rule) => Arc::make_mut(rule).growing = growing,
+            Self::RuleInSpace(rule) => Arc::make_mut(rule).growing = growing,
+            Self::Ifs(system) => Arc::make_mut(system).growing = growing,
+            Self::IfsInSpace(system) => Arc::make_mut(system).growing = growing,
+            Self::Instancing(structure) => Arc::make_mut(structure).growing = growing,
+            Self::InstancingInSpace(structure) => Arc::make_mut(structure).growing = growing,
+            Self::LSystem(system) => Arc::make_mut(system).growing = growing,
+            Self::LSystemInSpace(system) => Arc::make_mut(system).words.growing = growing,
         }
+        model
     }
 
     /// Compiles the model to a graph that is resolved for at least `steps` steps, with the seed 0 and the

@@ -77,10 +77,9 @@ pub(super) struct Arguments {
     /// moves once around a circle.
     #[arg(long, value_name = "NAME=VALUE", value_parser = super::family::assignment)]
     set: Vec<Assignment>,
-    /// Number of steps, or several as 0..6, between which a rule grows
+    /// Number of steps, or several as 0..6, between which the fractal grows
     ///
-    /// In a production rule of the plane, the elements of a step move from the elements that they replace to their places. Other systems
-    /// change from step to step at once.
+    /// The elements of a step move from those that they replace to their places.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
     /// Changes from step to step at once

@@ -68,9 +68,9 @@ pub(super) struct Arguments {
     /// beyond that, it is drawn with fewer steps or a coarser detail, and a note reports it. Several numbers, as 0..6 or 0,2,4, are a picture each.
     #[arg(long, short, value_name = "N", value_parser = steps::parse_several, allow_negative_numbers = true)]
     steps: Option<steps::Several>,
-    /// Draws the last step of a rule of the plane while it grows, at a share of its way from 0 to 1
+    /// Draws the last step while it grows out of the one before, at a share of its way from 0 to 1
     ///
-    /// At 0, the elements of the last replacement lie on the element that they replace; at 1, in their places.
+    /// At 0, elements lie on the ones that they replace, or grow out of points; at 1, they are in their places.
     #[arg(long, value_name = "SHARE", requires = "steps", value_parser = number::share, allow_negative_numbers = true)]
     between: Option<f64>,
     /// Draws a picture up to a share of the length of its outlines, from 0 to 1, as a pen draws them
@@ -365,13 +365,7 @@ impl Arguments {
     /// Writes what the plan asks for; returns the path, a summary and the number of bytes.
     fn grow(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
         if let (Some(share), Some(steps)) = (self.between, self.steps()) {
-            loaded.model = loaded.model.between(steps, share).ok_or_else(|| {
-                let message = format!(
-                    "--between applies to production rules of the plane, and {} is none",
-                    loaded.name
-                );
-                Failure::Usage(message)
-            })?;
+            loaded.model = loaded.model.between(steps, share);
         }
         if loaded.model.is_in_space() {
             self.tile.refuse_in_space(&loaded)?;
@@ -415,7 +409,7 @@ impl Arguments {
                 shown,
                 is_light,
             } => {
-                self.zoom.check_in_plane()?;
+                self.zoom.check_in_plane(self.between.is_some())?;
                 let loaded = loaded.turned(self.turn);
                 Drawing::new(self, loaded, *format, shown, path)?.write(*is_light)
             }

@@ -57,6 +57,7 @@ mod text;
 mod tween;
 pub(crate) mod watch;
 
+use crate::render::RenderError;
 use std::ffi::OsString;
 use std::io;
 use std::path::PathBuf;
@@ -175,6 +176,16 @@ impl Failure {
         let text = error.to_string();
         let first = text.lines().next().unwrap_or_default();
         Self::Usage(first.strip_prefix("error: ").unwrap_or(first).to_owned())
+    }
+
+    /// Returns whether the reason is a picture in which nothing is visible.
+    pub(crate) fn draws_nothing(&self) -> bool {
+        match self {
+            Self::Input(error) => error
+                .downcast_ref::<RenderError>()
+                .is_some_and(RenderError::draws_nothing),
+            _ => false,
+        }
     }
 
     /// Returns the message.

@@ -32,9 +32,12 @@ use crate::diagnostic::Diagnostic;
 use crate::geometry::{Affine as _, Bounds, Frame3, Outline as _};
 use crate::instancing::Thickness;
 use crate::lsystem::{
-    Drawn, LSystem, LSystemInSpace, NoGrowth, Placed, RewriteError, TubePart, Turtle, TurtleFrame,
+    Drawn, GrowingTurtle, LSystem, LSystemInSpace, NoGrowth, Placed, RewriteError, TubePart,
+    Turtle, TurtleFrame,
 };
+use crate::rule::{GrowthStart, RuleFrame as _};
 use crate::style::Tube;
+use crate::tween::Growing;
 
 use self::effects::Effects;
 use self::levels::{Levels, levels};
@@ -71,13 +74,19 @@ impl Graph {
                 }
             }
         }
-        let levels = |NotCompiled| {
+        let levels = || {
             let effects = Effects::of_system(system, steps)?;
             Self::of_levels(effects, steps)
         };
-        match Self::of_edges(system).or_else(levels) {
-            Ok(graph) => Ok(graph),
-            Err(NotCompiled) => Self::of_derived_word(system, steps, seed, max_elements),
+        match (Self::of_edges(system), system.growing) {
+            (Ok(graph), Some(Growing { steps, share })) => Ok(graph
+                .growing(steps, move |_, frame| {
+                    frame.grown(GrowthStart::Chord, share)
+                })),
+            (Ok(graph), None) => Ok(graph),
+            (Err(NotCompiled), None) => levels()
+                .or_else(|NotCompiled| Self::of_derived_word(system, steps, seed, max_elements)),
+            (Err(NotCompiled), Some(_)) => Self::of_derived_word(system, steps, seed, max_elements),
         }
     }
 
@@ -105,22 +114,31 @@ fn derived<F: TurtleFrame>(
     tube: Option<Tube>,
 ) -> Result<Levels<F>, CompileError> {
     let words = F::words(system);
-    let mut turtle = Turtle::<F>::new(system);
     let mut strings = Strings::<F>::new(words, tube);
     let mut instances = Vec::new();
-    words.read(steps, seed, max_elements, |symbol, arguments| {
-        turtle.read(symbol, arguments);
-        for placed in turtle.drawing.elements.drain(..) {
-            strings.place(&placed, &mut instances);
+    let mut place = |placed: &Placed<F>| strings.place(placed, &mut instances);
+    let polygons = match words.growing {
+        Some(growing) if growing.steps == steps && steps > 0 => {
+            let mut turtle = GrowingTurtle::<F>::new(system, growing.share);
+            turtle.read(system, (steps, seed, max_elements), place)?;
+            turtle.after.drawing.polygons
         }
-    })?;
+        _ => {
+            let mut turtle = Turtle::<F>::new(system);
+            words.read(steps, seed, max_elements, |symbol, arguments| {
+                turtle.read(symbol, arguments);
+                turtle.drawing.elements.drain(..).for_each(|it| place(&it));
+            })?;
+            turtle.drawing.polygons
+        }
+    };
     for (position, instance) in (0..).zip(&mut instances) {
         instance.position = position;
         if !instance.frame.map().is_finite() {
             return Err(CompileError::TooFar);
         }
     }
-    let base_elements = strings.base_elements(F::surfaces(system), turtle.drawing.polygons);
+    let base_elements = strings.base_elements(F::surfaces(system), polygons);
     let outlines = F::outlines(&base_elements);
     let initiator = Chain::loose(instances);
     let mut bounds = Bounds::EMPTY;
@@ -192,6 +210,9 @@ fn in_space(
     word: (u32, u64, u64),
     tube: Option<Tube>,
 ) -> Result<Levels<Frame3>, CompileError> {
+    if system.words.growing.is_some() {
+        return derived(system, word, tube);
+    }
     let effects = Effects::of_system(system, word.0);
     match effects.and_then(|effects| levels(effects, word.0, tube)) {
         Ok(compiled) => Ok(compiled),

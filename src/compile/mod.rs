@@ -1,6 +1,7 @@
 //! Compilation of the models of all kinds to graphs.
 
 mod distinguished;
+pub(crate) mod growing;
 mod ifs;
 mod instancing;
 mod lsystem;

@@ -8,6 +8,7 @@ use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
 use crate::geometry::Point;
 use crate::rule::{ElementContext, Part, Placement, Rule, RuleFrame, Selection};
+use crate::tween::Growing;
 
 use super::state::{Class, Dependences, ElementState};
 use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
@@ -31,6 +32,22 @@ impl<F: RuleFrame> Graph<F> {
     ///
     /// If a generator yields points that are not finite within these steps.
     pub fn compile(rule: &Arc<Rule<F>>, steps: u32) -> Result<Self, CompileError> {
+        let graph = Self::whole(rule, steps)?;
+        let Some(Growing { steps, share }) = rule.growing else {
+            return Ok(graph);
+        };
+        let starts = rule.starts_of_growth();
+        let graph = Self {
+            affine: graph.affine || !F::GROWS_SIMILAR,
+            ..graph
+        };
+        Ok(graph.growing(steps, move |base_element, frame| {
+            frame.grown(starts[base_element], share)
+        }))
+    }
+
+    /// Compiles a rule without the growth of a step.
+    fn whole(rule: &Arc<Rule<F>>, steps: u32) -> Result<Self, CompileError> {
         let dependences = Dependences::of(rule);
         if !dependences.index_is_free {
             match Compiler::new(rule, dependences, steps).run() {

@@ -81,8 +81,6 @@ impl Dependences {
                 Dependence::Free => all.index_is_free = true,
             }
         }
-        let grows = |generator: &Generator<F>| generator.growing.is_some();
-        all.step |= rule.generators().iter().any(grows);
         let selects_by_length = all.length;
         for program in rule.generators().iter().flat_map(Generator::programs) {
             all.add(program);

@@ -68,6 +68,8 @@ pub struct Graph<F: Frame = Frame2> {
     /// initiator.
     pub(crate) roots: Arc<Roots<F>>,
     pub(crate) depth: Option<u32>,
+    /// Graph that has the limit set of the model, where this one has none: between two steps.
+    pub(crate) limit: Option<Arc<Self>>,
     /// Reason why the model, as its graph does not show, has no limit set.
     pub(crate) no_limit: Option<NoLimit>,
     pub(crate) regular: bool,
@@ -105,6 +107,7 @@ impl<F: Frame> Graph<F> {
             listed: None,
             roots: Arc::default(),
             depth: None,
+            limit: None,
             no_limit: None,
             regular: true,
             counts_index: false,

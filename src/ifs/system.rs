@@ -3,6 +3,7 @@
 use super::{AffineMap, Contraction, Ifs, IfsError};
 use crate::geometry::{DAffine2, Homothety};
 use crate::metadata::Metadata;
+use crate::tween::Growing;
 
 /// A system with the data of its file that do not belong to its mathematics.
 ///
@@ -18,6 +19,8 @@ pub struct System<M: AffineMap = DAffine2> {
     pub(crate) chained: bool,
     /// Whether the maps are those of [`interpolate`](super::interpolate).
     pub(crate) interpolates: bool,
+    /// Step that is drawn while it grows, if there is one.
+    pub(crate) growing: Option<Growing>,
     pub(crate) contraction: Contraction,
 }
 
@@ -93,6 +96,7 @@ impl<M: AffineMap> System<M> {
             written: written.map(|(_, map)| map.clone()).collect(),
             chained: self.chained && maps.is_empty(),
             interpolates: self.interpolates,
+            growing: self.growing,
         })
     }
 }

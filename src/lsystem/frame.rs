@@ -107,6 +107,13 @@ pub trait TurtleFrame: RuleFrame {
 
     /// Returns the polygon with some corners; `None` without an extent.
     fn polygon(corners: &[Self::Point]) -> Option<Self::BaseElement>;
+
+    /// Returns the corners of a polygon.
+    fn corners(polygon: &Self::BaseElement) -> Vec<Self::Point>;
+
+    /// Returns the frame of an element that runs between two points, after the least turn of this one.
+    #[must_use]
+    fn spanning(&self, ends: [Self::Point; 2]) -> Self;
 }
 
 impl TurtleFrame for Frame2 {
@@ -196,6 +203,14 @@ impl TurtleFrame for Frame2 {
         let (first, others) = corners.split_first()?;
         let pieces = others.iter().copied().map(Piece::Line);
         BaseElement::new(*first, pieces.collect(), true)
+    }
+
+    fn corners(polygon: &BaseElement) -> Vec<DVec2> {
+        polygon.corners(&DAffine2::IDENTITY, 1)
+    }
+
+    fn spanning(&self, [from, to]: [DVec2; 2]) -> Self {
+        Self::between(from, to, self.direction())
     }
 }
 
@@ -394,5 +409,28 @@ impl TurtleFrame for Frame3 {
     fn polygon(corners: &[DVec3]) -> Option<Body> {
         let surfaces = triangulated(corners).into_iter().map(Into::into);
         Body::new(surfaces.collect(), corners.to_vec(), false)
+    }
+
+    fn corners(polygon: &Body) -> Vec<DVec3> {
+        polygon.face().to_vec()
+    }
+
+    fn spanning(&self, [from, to]: [DVec3; 2]) -> Self {
+        let linear = self.map().matrix3;
+        let along = to - from;
+        let [own, other] = [linear.x_axis, along].map(DVec3::normalize_or_zero);
+        let scale = along.length() / linear.x_axis.length();
+        let (axis, cosine) = (own.cross(other), own.dot(other));
+        // Rodrigues' formula; half a turn is one about the y axis of the frame.
+        let turned = |v: DVec3| v + axis.cross(v) + axis.cross(axis.cross(v)) / (1.0 + cosine);
+        let [left, up] = match cosine > -1.0 + 1e-9 {
+            true => [linear.y_axis, linear.z_axis].map(turned),
+            false => [linear.y_axis, -linear.z_axis],
+        };
+        let linear = DMat3::from_cols(along, left * scale, up * scale);
+        Self::new(
+            DAffine3::from_mat3_translation(linear, from),
+            self.direction(),
+        )
     }
 }

@@ -33,6 +33,7 @@
 mod compass;
 mod expand;
 mod frame;
+mod growing;
 mod lengths;
 mod no_growth;
 mod rewrite;
@@ -44,6 +45,7 @@ mod word;
 
 pub use compass::Compass;
 pub use frame::{Axis, Heading3, TurtleFrame};
+pub(crate) use growing::GrowingTurtle;
 pub use no_growth::NoGrowth;
 pub use rewrite::RewriteError;
 pub use space::{LSystemInSpace, Tropism, Walked};
@@ -55,6 +57,7 @@ pub use word::Word;
 use crate::diagnostic::Place;
 use crate::expression::Program;
 use crate::metadata::Metadata;
+use crate::tween::Growing;
 
 /// An L-system.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +70,8 @@ pub struct LSystem {
     pub(crate) productions: Vec<Production>,
     /// Whether the system stands for its limit set, not for its words.
     pub(crate) in_limit: bool,
+    /// Step that is drawn while it grows, if there is one.
+    pub(crate) growing: Option<Growing>,
 }
 
 /// A symbol with a number of arguments: `F` and `F(l)` are different symbols.

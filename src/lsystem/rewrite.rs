@@ -102,7 +102,7 @@ impl LSystem {
         let mut rewriter = Rewriter::new(self);
         for step in 1..=steps {
             let mut next = Word::default();
-            rewriter.step(&word, &mut next, step, max_elements, max_work)?;
+            rewriter.step(&word, &mut next, (step, max_elements, max_work), |_| {})?;
             // Without draws, a word that a step leaves unchanged never changes again.
             if next.symbols == word.symbols
                 && next.arguments == word.arguments
@@ -113,6 +113,32 @@ impl LSystem {
             word = next;
         }
         Ok(word)
+    }
+
+    /// Returns the words before and after the last of some steps, of which there is at least one.
+    ///
+    /// # Errors
+    ///
+    /// As for [`LSystem::word`].
+    pub(super) fn replaced(
+        &self,
+        steps: u32,
+        seed: u64,
+        max_elements: u64,
+    ) -> Result<Replaced, RewriteError> {
+        let most = most_modules(MAX_MODULES, max_elements);
+        if let Some(error) = self.too_long(steps, most, max_elements) {
+            return Err(error);
+        }
+        let before = self.rewritten(steps.saturating_sub(1), seed, max_elements, MAX_WORK)?;
+        let (mut after, mut ends) = (Word::default(), Vec::new());
+        let limits = (steps, max_elements, MAX_WORK);
+        Rewriter::new(self).step(&before, &mut after, limits, |end| ends.push(end))?;
+        Ok(Replaced {
+            before,
+            after,
+            ends,
+        })
     }
 
     /// Returns the deepest step, up to `steps`, whose word draws something within the limits. If no such word
@@ -237,6 +263,14 @@ impl LSystem {
     }
 }
 
+/// A word, and the one that replaces it.
+pub(super) struct Replaced {
+    pub(super) before: Word,
+    pub(super) after: Word,
+    /// Numbers of the modules that replace each module and those before it.
+    pub(super) ends: Vec<usize>,
+}
+
 /// Selection of the productions that replace modules, with a count of its work.
 pub(super) struct Rewriter<'s> {
     system: &'s LSystem,
@@ -293,13 +327,13 @@ impl<'s> Rewriter<'s> {
         Some(chosen)
     }
 
+    /// Appends the word that replaces another to `next`, and gives the length of that after each module to `replaced`.
     fn step(
         &mut self,
         word: &Word,
         next: &mut Word,
-        step: u32,
-        max_elements: u64,
-        max_work: u64,
+        (step, max_elements, max_work): (u32, u64, u64),
+        mut replaced: impl FnMut(usize),
     ) -> Result<(), RewriteError> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
@@ -336,6 +370,7 @@ impl<'s> Rewriter<'s> {
             let arguments = (next.arguments.len() as u64, most, "arguments");
             let elements = (elements, max_elements, "elements");
             check_length(step, &[modules, arguments, elements])?;
+            replaced(next.symbols.len());
         }
         self.work += surroundings.map_or(0, |around| around.looks());
         Ok(())

@@ -170,6 +170,11 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
         }
     }
 
+    /// Returns the place of the turtle.
+    pub(super) fn place(&self) -> F::Point {
+        self.state.place
+    }
+
     /// Performs the actions of the next module of a word.
     pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
         for action in &self.words.symbols[symbol].meaning {
@@ -278,7 +283,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
                 if size != 0.0 {
                     let state = self.state;
                     let frame = self.frame(&state, self.ahead(&state, size));
-                    self.place(frame, Drawn::Surface(*number), symbol, &state);
+                    self.put(frame, Drawn::Surface(*number), symbol, &state);
                 }
             }
         }
@@ -362,7 +367,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
     }
 
     /// Draws an element that no line joins.
-    fn place(&mut self, frame: F, of: Drawn, symbol: usize, state: &TurtleState<F>) {
+    fn put(&mut self, frame: F, of: Drawn, symbol: usize, state: &TurtleState<F>) {
         let TurtleState { width, colour, .. } = *state;
         self.last = Some((width, colour));
         self.drawing.elements.push(Placed {
@@ -405,6 +410,6 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
             let outline = outline.unwrap_or_else(F::line);
             self.drawing.polygons.push(outline);
         }
-        self.place(frame, Drawn::Polygon(made), symbol, &open.state);
+        self.put(frame, Drawn::Polygon(made), symbol, &open.state);
     }
 }

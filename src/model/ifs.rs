@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::compile::growing;
 use crate::geometry::{DAffine3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::{System, Verdict};
@@ -16,7 +17,7 @@ impl OfKind for Arc<System> {
     }
 
     fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
-        Ok(Graph::of_system(self))
+        Ok(growing::of_system(self, Graph::of_system(self)))
     }
 
     fn extent(&self) -> Option<Extent> {
@@ -47,9 +48,9 @@ impl OfKind for Arc<System<DAffine3>> {
 
     fn compile_in_space(&self, _steps: u32, records_last: bool) -> Option<CompiledInSpace> {
         let recorded = records_last.then(|| Graph::with_last_maps(self));
-        Some(Ok(recorded
-            .flatten()
-            .unwrap_or_else(|| Graph::of_system(self))))
+        let graph = recorded.flatten();
+        let graph = graph.unwrap_or_else(|| Graph::of_system(self));
+        Some(Ok(growing::of_system(self, graph)))
     }
 
     fn is_drawn_to_limit(&self, _has_limit: &dyn Fn() -> bool) -> bool {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::compile::growing;
 use crate::geometry::{DAffine3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::{Map, Shape};
@@ -17,7 +18,7 @@ impl OfKind for Arc<Instancing> {
     }
 
     fn compile(&self, _steps: u32, _seed: u64, _most: u64) -> Result<Graph, CompileError> {
-        Ok(Graph::of_structure(self))
+        Ok(growing::of_structure(self, Graph::of_structure(self)))
     }
 
     fn extent(&self) -> Option<Extent> {
@@ -62,7 +63,7 @@ impl OfKind for Arc<Instancing<DAffine3>> {
     }
 
     fn compile_in_space(&self, _steps: u32, _records_last: bool) -> Option<CompiledInSpace> {
-        Some(Ok(Graph::of_structure(self)))
+        Some(Ok(growing::of_structure(self, Graph::of_structure(self))))
     }
 
     fn ends(&self) -> Option<u32> {

@@ -10,6 +10,7 @@
 //! In a system and in a structure every map f becomes h⁻¹ f h, and every set its image under h⁻¹. An
 //! L-system starts at the origin and represents lengths of any exponent itself.
 
+use crate::compile::growing;
 use crate::geometry::{Bounds, DVec2, Homothety, exponent_of};
 use crate::graph::{CompileError, EXTENTS, FARTHEST, Graph, OutOfRange};
 use crate::ifs::Map;
@@ -200,7 +201,7 @@ impl Model {
         let Some(graph) = Graph::with_last_maps(system) else {
             return Ok(None);
         };
-        let graph = model.with_images(graph, Self::MAX_LISTED)?;
+        let graph = model.with_images(growing::of_system(system, graph), Self::MAX_LISTED)?;
         Ok(Some(Graph { place, ..graph }))
     }
 }

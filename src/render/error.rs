@@ -103,6 +103,14 @@ pub enum Remedy {
 }
 
 impl RenderError {
+    /// Returns whether no element is visible.
+    pub(crate) fn draws_nothing(&self) -> bool {
+        matches!(
+            self,
+            Self::NoRoom(NoRoom::Nothing) | Self::Space(SpaceError::NoRoom(NoRoom::Nothing))
+        )
+    }
+
     /// Returns the change of options with which the picture can be drawn, where there is one.
     #[must_use]
     pub fn remedy(&self) -> Option<Remedy> {

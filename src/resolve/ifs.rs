@@ -143,6 +143,7 @@ impl Resolver<OfIfs> {
             written: maps.written,
             chained,
             interpolates: matches!(document.maps, Some(MapsDocument::Interpolated(_))),
+            growing: None,
             contraction,
         })
     }

@@ -167,6 +167,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 None => None,
                 Some(initial) => Some(initial?),
             },
+            growing: None,
         };
         let tints = structure
             .instances()

@@ -94,6 +94,7 @@ impl Resolver<OfLSystem> {
             axiom: axiom?,
             productions,
             in_limit: false,
+            growing: None,
         };
         if system.has_colours() && !document.metadata.sets_colours {
             system.metadata.style.color_by = ColorBy::Tint;

@@ -113,6 +113,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             generators,
             selection,
             base_elements,
+            growing: None,
         }
     }
 }

@@ -126,8 +126,7 @@ impl<F: RuleFrame> Cover<'_, F> {
             let moves = self.generator.moves.iter();
             let moves = moves.filter(|moving| moving.points.contains(&number));
             let written = place(self.generator.points[number].as_ref(), slots, 0.0);
-            let place = moves.fold(written, |place, moving| moving.image(place, slots));
-            { self.generator.growing.as_ref() }.map_or(place, |growing| growing.range(place))
+            moves.fold(written, |place, moving| moving.image(place, slots))
         });
         let middle = [1.0, 0.0, 0.0].map(Interval::point);
         let away = far(minus(plus(from, to), middle)) / 2.0;

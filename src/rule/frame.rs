@@ -4,11 +4,17 @@ use std::fmt::Debug;
 
 use crate::expression::{Affine, Arithmetic as _, Doubles, Interval, Program};
 use crate::geometry::{
-    Attitude, BaseElement, DAffine2, DAffine3, DVec3, Frame, Frame2, Frame3, Point,
+    Affine as _, Attitude, BaseElement, DAffine2, DAffine3, DVec3, Frame, Frame2, Frame3, Point,
 };
+
+use crate::tween::{self, Grown as _};
 
 use super::body::Body;
 use super::generator::{ListedAttitude, ListedElement, Move};
+use super::growing::GrowthStart;
+
+/// Largest difference of numbers up to which a frame is that of the element that is replaced.
+pub(super) const SAME: f64 = 1e-9;
 
 /// Box that contains a point; in the plane its third side is 0.
 pub(crate) type Place = [Interval; 3];
@@ -21,6 +27,17 @@ pub trait RuleFrame: Frame {
     type Turns: Clone + Debug + PartialEq + Send + Sync;
     /// Base element: the shape that is drawn for an element.
     type BaseElement: Clone + Debug + PartialEq + Send + Sync;
+
+    /// Whether frames are similarities while they grow.
+    const GROWS_SIMILAR: bool;
+
+    /// Returns where an element with a base element begins that grows: by its shape, the place where lines, surfaces of
+    /// space, or other shapes do.
+    fn start_of_growth(base_element: &Self::BaseElement) -> GrowthStart;
+
+    /// Returns the frame on the way from the element that is replaced, the unit element, by a share from 0 to 1.
+    #[must_use]
+    fn grown(&self, start: GrowthStart, share: f64) -> Self;
 
     /// Returns the frame of a listed element; `points` are those of its initiator or generator, followed by the
     /// vectors and angles to which attitudes refer.
@@ -65,6 +82,36 @@ impl RuleFrame for Frame2 {
     type Coordinates = [Program; 2];
     type Turns = Program;
     type BaseElement = BaseElement;
+
+    const GROWS_SIMILAR: bool = true;
+
+    fn start_of_growth(base_element: &BaseElement) -> GrowthStart {
+        match base_element.is_closed() {
+            true => GrowthStart::Element,
+            false => GrowthStart::Chord,
+        }
+    }
+
+    #[inline]
+    fn grown(&self, start: GrowthStart, share: f64) -> Self {
+        let ends = self.ends();
+        let [from, to] = match start {
+            _ if share >= 1.0 => return *self,
+            GrowthStart::Point if self.map().is_near(Self::UNIT.map(), SAME) => return *self,
+            GrowthStart::Chord => ends.map(|end| tween::raised(end, share)),
+            GrowthStart::Plane => ends,
+            GrowthStart::Element => {
+                // The side of the element stays the same.
+                let [_, is_opposite, _] = self.direction().reflected();
+                tween::turned_ends(ends, is_opposite, share)
+            }
+            GrowthStart::Point => {
+                let point = tween::nearer_end(ends);
+                ends.map(|end| point.lerp(end, share))
+            }
+        };
+        Self::between(from, to, self.direction())
+    }
 
     #[inline]
     fn placed(element: &ListedElement, points: &[Self::Point]) -> Self {
@@ -125,6 +172,31 @@ impl RuleFrame for Frame3 {
     type Coordinates = [Program; 3];
     type Turns = Vec<Turn>;
     type BaseElement = Body;
+
+    const GROWS_SIMILAR: bool = false;
+
+    fn start_of_growth(base_element: &Body) -> GrowthStart {
+        if base_element.is_closed() {
+            GrowthStart::Element
+        } else if base_element.face().is_empty() {
+            GrowthStart::Chord
+        } else {
+            GrowthStart::Plane
+        }
+    }
+
+    fn grown(&self, start: GrowthStart, share: f64) -> Self {
+        let map = self.map();
+        let map = match start {
+            _ if share >= 1.0 => return *self,
+            GrowthStart::Point if map.is_near(Self::UNIT.map(), SAME) => return *self,
+            GrowthStart::Chord => map.raised(share),
+            GrowthStart::Plane => tween::lifted(map, share),
+            GrowthStart::Element => tween::shrunk(map, share),
+            GrowthStart::Point => tween::out_of(map, tween::nearer_end(self.ends()), share),
+        };
+        Self::new(map, self.direction())
+    }
 
     fn placed(element: &ListedElement, points: &[DVec3]) -> Self {
         let attitude = match &element.attitude {

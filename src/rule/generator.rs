@@ -10,7 +10,6 @@ use crate::written::WrittenPoint;
 use crate::draws::{Corner, Path, Variable};
 
 use super::frame::{RuleFrame, evaluated};
-use super::growing::Growing;
 
 /// Values that the expressions of a generator and of a selection see of the element that is replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,8 +206,6 @@ pub struct Generator<F: RuleFrame = Frame2> {
     pub(crate) points: Vec<F::Coordinates>,
     pub(crate) moves: Vec<Move<F>>,
     pub(crate) parts: Vec<Part>,
-    /// Growth of the last replacement, between two steps.
-    pub(crate) growing: Option<Growing>,
 }
 
 impl<F: RuleFrame> Generator<F> {
@@ -326,9 +323,6 @@ impl<F: RuleFrame> Generator<F> {
         points.extend(self.points.iter().map(|it| evaluated::<F>(it, scratch)));
         for moving in &self.moves {
             F::move_points(moving, scratch, points);
-        }
-        if let Some(growing) = &self.growing {
-            growing.move_points(moment.step, points);
         }
     }
 }

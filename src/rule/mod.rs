@@ -21,11 +21,13 @@ pub(crate) use generator::Origin;
 pub use generator::{
     ElementContext, Generator, ListedAttitude, ListedElement, Move, Part, Placement,
 };
+pub use growing::GrowthStart;
 pub use selection::Selection;
 
 use crate::geometry::Frame2;
 use crate::metadata::{Description, Metadata, Parameter};
 use crate::style::{Style, View};
+use crate::tween::Growing;
 
 /// Production rule, of the plane or of space: an initiator, generators with a selection, and base elements.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +40,8 @@ pub struct Rule<F: RuleFrame = Frame2> {
     pub(crate) generators: Vec<Generator<F>>,
     pub(crate) selection: Selection,
     pub(crate) base_elements: Vec<F::BaseElement>,
+    /// Step that is drawn while it grows, if there is one.
+    pub(crate) growing: Option<Growing>,
 }
 
 impl<F: RuleFrame> Rule<F> {

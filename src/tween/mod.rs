@@ -6,11 +6,14 @@
 //! value to the other. Everything else, among it directions and whether an element is fertile or visible, changes half-way.
 
 mod chain;
+mod growing;
 mod maps;
 mod rule;
 mod structure;
 mod style;
 mod system;
+
+pub(crate) use growing::{Growing, Grown, lifted, nearer_end, out_of, raised, shrunk, turned_ends};
 
 use std::ops::{Add, Mul};
 

@@ -305,6 +305,7 @@ pub(super) fn tween<F: TweenedFrame>(
         generators,
         selection: selection(&rules[selecting].selection),
         base_elements: shapes.collect(),
+        growing: None,
     })
 }
 
@@ -361,7 +362,6 @@ fn generator<F: TweenedFrame>(
         points,
         moves,
         parts,
-        growing: None,
     })
 }
 

@@ -22,6 +22,7 @@ pub(super) fn tween<M: Tweened>(
         objects: (0..count).filter_map(object).collect(),
         scene: instances(tween, [&a.scene, &b.scene]),
         initial: system::set::<M>(tween, [a.initial.as_ref(), b.initial.as_ref()]),
+        growing: None,
     }
 }
 

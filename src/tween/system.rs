@@ -38,6 +38,7 @@ pub(super) fn tween<M: Tweened>(
         written,
         chained: a.chained && b.chained,
         interpolates: false,
+        growing: None,
         contraction,
     })
 }

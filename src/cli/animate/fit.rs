@@ -113,27 +113,32 @@ fn fit_in_space(frames: &mut Frames<'_>, [width, height]: [u32; 2]) -> Result<()
         [width, height].map(|side| (f64::from(side) * shrink).ceil().max(1.0) as u32);
     let small = format!("--size={across}x{down}");
     let numbers = 0..frames.arguments.len();
+    // Frames in which nothing is visible have no middle.
     let mut middles = Vec::new();
     frames.draw(
         numbers.clone(),
-        Purpose::Pixels,
+        Purpose::Survey,
         std::slice::from_ref(&small),
         |_, done| {
-            middles.extend(done.sight.map(|sight| sight.middle));
+            middles.push(done.sight.as_ref().map(|sight| sight.middle));
             Ok(())
         },
     )?;
     #[expect(clippy::cast_precision_loss, reason = "a film has few frames")]
-    let middle = middles.iter().copied().sum::<DVec3>() / middles.len().max(1) as f64;
+    let middle = {
+        let seen = middles.iter().flatten();
+        seen.clone().copied().sum::<DVec3>() / seen.count().max(1) as f64
+    };
     let middle = middle.to_array().map(|it| it.to_string()).join(",");
     let middle = format!("--look-at={middle}");
     let mut widths = Vec::new();
     frames.draw(
         numbers,
-        Purpose::Pixels,
+        Purpose::Survey,
         &[small, middle.clone()],
-        |_, done| {
-            widths.push(done.sight.map_or(0.0, |sight| sight.across[0].length()));
+        |number, done| {
+            let sight = done.sight.as_ref().filter(|_| middles[number].is_some());
+            widths.push(sight.map_or(0.0, |sight| sight.across[0].length()));
             Ok(())
         },
     )?;

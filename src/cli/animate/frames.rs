@@ -106,7 +106,11 @@ impl Job<'_> {
             arguments.retain(|it| !it.starts_with("--svg="));
             arguments.push("--format=png".into());
         }
-        frames.runs.hold(&arguments, Arc::clone(&held))?;
+        match frames.runs.hold(&arguments, Arc::clone(&held)) {
+            // A frame may be empty where others are not.
+            Err(failure) if self.purpose == Purpose::Survey && failure.draws_nothing() => {}
+            held => held?,
+        }
         self.done = held.take();
         Ok(())
     }

@@ -120,7 +120,7 @@ pub(super) fn film<'a>(
     common.extend(half_way.and_then(|model| steps_of(arguments, model)));
     let frame = |number: u32| {
         let moment = timeline.moment(number);
-        let own = at(arguments, loaded, &moment, &timeline, course.as_ref());
+        let own = at(arguments, &moment, &timeline, course.as_ref());
         [common.as_slice(), &own].concat()
     };
     let mut frames = Frames {
@@ -231,7 +231,6 @@ fn common(arguments: &Arguments) -> Vec<String> {
 /// Returns the arguments of one frame.
 fn at(
     arguments: &Arguments,
-    loaded: &Loaded,
     moment: &Moment,
     timeline: &Timeline,
     course: Option<&Course>,
@@ -243,9 +242,7 @@ fn at(
     let seeds = arguments.seed.as_slice();
     let seed = moment.number as usize * seeds.len() / timeline.frames as usize;
     own.push(format!("--seed={}", seeds[seed]));
-    own.extend(
-        { arguments.steps.iter() }.flat_map(|it| steps(arguments, loaded, it.as_slice(), moment)),
-    );
+    own.extend({ arguments.steps.iter() }.flat_map(|it| steps(arguments, it.as_slice(), moment)));
     let share = super::super::family::plain(moment.share());
     if let Some(to) = &arguments.to {
         own.extend([format!("--to={}", to.display()), format!("--share={share}")]);
@@ -273,12 +270,12 @@ fn at(
 }
 
 /// Returns the options of the number of steps at a moment.
-fn steps(arguments: &Arguments, loaded: &Loaded, all: &[u32], moment: &Moment) -> Vec<String> {
+fn steps(arguments: &Arguments, all: &[u32], moment: &Moment) -> Vec<String> {
     let last = all.len() - 1;
     let keys: Vec<f64> = (0..all.len())
         .map(|at| f64::from(u32::try_from(at).unwrap_or(u32::MAX)))
         .collect();
-    if arguments.cuts || !grows(loaded) {
+    if arguments.cuts {
         // Each step takes an equal part of the film.
         let at = moment.share() * (keys[last] + 1.0);
         return vec![format!("--steps={}", all[index(at).min(last)])];
@@ -291,11 +288,6 @@ fn steps(arguments: &Arguments, loaded: &Loaded, all: &[u32], moment: &Moment) -
         return vec![format!("--steps={from}")];
     }
     vec![format!("--steps={to}"), format!("--between={share}")]
-}
-
-/// Returns whether a step may be drawn while it grows.
-fn grows(loaded: &Loaded) -> bool {
-    loaded.model.between(1, 1.0).is_some()
 }
 
 #[expect(

@@ -229,10 +229,6 @@ impl Plan {
             "--drawn draws a part of all lines: write a .png, .svg or .pdf of single lines",
         )?;
         refuse(
-            zoom.is_asked() && arguments.between.is_some(),
-            "--zoom draws whole steps, and --between a part of one: give only one of them",
-        )?;
-        refuse(
             zoom.is_asked() && picture.has_view(),
             "--zoom and --at cannot be combined with --view: each selects what is shown",
         )?;

@@ -53,15 +53,18 @@ impl ZoomArguments {
         })
     }
 
-    /// Returns an error for a zoom of a set of the plane without a centre.
-    pub(super) fn check_in_plane(&self) -> Result<(), Failure> {
-        match self.zoom.is_some() && self.at.is_none() {
-            true => {
-                let message = "--zoom needs --at: the centre, such as 0.(1) or 0.5,0";
-                Err(Failure::Usage(message.into()))
-            }
-            false => Ok(()),
+    /// Returns an error for a zoom of a set of the plane without a centre, and for one between steps.
+    pub(super) fn check_in_plane(&self, is_between_steps: bool) -> Result<(), Failure> {
+        if self.zoom.is_some() && self.at.is_none() {
+            let message = "--zoom needs --at: the centre, such as 0.(1) or 0.5,0";
+            return Err(Failure::Usage(message.into()));
         }
+        if self.is_asked() && is_between_steps {
+            let message =
+                "--zoom draws whole steps, and --between a part of one: give only one of them";
+            return Err(Failure::Usage(message.into()));
+        }
+        Ok(())
     }
 
     /// Returns the options that are given, with their values.

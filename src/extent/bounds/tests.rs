@@ -53,6 +53,7 @@ impl Maps {
             written: Vec::new(),
             chained: false,
             interpolates: false,
+            growing: None,
         }
     }
 

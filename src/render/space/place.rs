@@ -47,7 +47,8 @@ pub(super) fn place_with(
         let mut bounds = whole(graph, steps, rows)?;
         { others.iter() }.for_each(|point| bounds.add(rows * *point));
         if bounds.is_empty() {
-            return Err(NoRoom::Nothing.into());
+            let point = camera.look_at.ok_or(NoRoom::Nothing)?;
+            bounds.add(rows * point);
         }
         Ok(bounds)
     };

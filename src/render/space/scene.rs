@@ -330,6 +330,9 @@ where
             };
             bounding_box(&seen, &growth).ok()
         }),
-        None => seen.limit_bounds(),
+        None => match &graph.limit {
+            Some(limit) => extent_along(limit, rows, None),
+            None => seen.limit_bounds(),
+        },
     }
 }

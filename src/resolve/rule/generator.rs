@@ -112,7 +112,6 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             points,
             moves,
             parts,
-            growing: None,
         }
     }
 
