@@ -103,8 +103,9 @@ pub enum Remedy {
 }
 
 impl RenderError {
-    /// Returns whether no element is visible.
-    pub(crate) fn draws_nothing(&self) -> bool {
+    /// Returns whether the reason is that no element is visible.
+    #[must_use]
+    pub fn draws_nothing(&self) -> bool {
         matches!(
             self,
             Self::NoRoom(NoRoom::Nothing) | Self::Space(SpaceError::NoRoom(NoRoom::Nothing))
