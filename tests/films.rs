@@ -277,19 +277,33 @@ fn whole_steps_pass_into_growth() {
     let rules = [
         ("koch", 0.2),
         ("carpet", 0.2),
-        ("hexaflake", 0.2),
+        ("pentaflake", 0.2),
         ("pythagoras-squares", 1.0),
         ("koch-surface", 0.2),
         ("sphere-flake", 0.2),
         ("sierpinski-tetrahedron", 0.2),
         ("koch-lsystem", 0.2),
         ("plant-a", 0.5),
-        ("bush-in-space", 0.5),
+        ("bush-in-space", 1.0),
     ];
     for (rule, most) in rules {
         let film = [
-            "animate", rule, "--steps", "1..2", "--ease", "linear", "--frames", "1001", "--only",
-            "0..1", "--size", "96x72", "-o", "%d.png",
+            "animate",
+            rule,
+            "--steps",
+            "1..2",
+            "--ease",
+            "linear",
+            "--frames",
+            "1001",
+            "--only",
+            "0..1",
+            "--size",
+            "96x72",
+            "--color-by",
+            "none",
+            "-o",
+            "%d.png",
         ];
         succeeds(folder, &film);
         let [whole, next] = ["0.png", "1.png"].map(|name| pixels(&folder.join(name)));
