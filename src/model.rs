@@ -213,10 +213,11 @@ impl Model {
     /// that step, at 1 the step itself.
     ///
     /// Elements of rules, and those of systems whose maps are chained, rise from the element that they replace: a point (x,
-    /// y) begins at (x, 0) with x between 0 and 1, and moves in a straight line. Surfaces of rules in space begin in the
-    /// plane of the one that they replace. Solids of rules, and images of other systems and of objects with an initial set,
-    /// begin as what they replace; maps turn about their fixed points. Shapes of structures grow out of their origins.
-    /// Lines of L-systems rise from the way of the turtle along the module that is replaced.
+    /// y) begins at (x, 0) with x between 0 and 1, and moves in a straight line. Filled shapes and solids of rules begin as
+    /// the element that they replace, and surfaces that tile it begin in its plane; where it is kept, and where they are
+    /// seeds, they grow out of a point. Images of other systems, and of objects with an initial set, begin as what they
+    /// replace and turn about the fixed points of their maps. Shapes of structures grow out of their origins. Lines of
+    /// L-systems rise from the way of the turtle along the module that is replaced.
     ///
     /// The limit set, and points of random iteration, are those of the model.
     #[must_use]

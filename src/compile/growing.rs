@@ -17,15 +17,15 @@ use crate::tween::{Growing, Grown};
 
 impl<F: Frame> Graph<F> {
     /// Returns the graph whose step `steps` is drawn while it grows, resolved for this number of steps: `grown` returns the
-    /// frame of an instance that appears in this step, from the number of its base element and from its frame in the
-    /// replaced element.
+    /// frame of an instance that appears in this step, from the number of its base element, from its frame in the
+    /// replaced element, and from whether it starts a new fractal.
     ///
     /// On their way, elements are within every ball about the middle of the replaced element that contains it and their
     /// places.
     pub(super) fn growing(
         mut self,
         steps: u32,
-        grown: impl Fn(usize, &F) -> F + Send + Sync + 'static,
+        grown: impl Fn(usize, &F, bool) -> F + Send + Sync + 'static,
     ) -> Self {
         if steps == 0 {
             return self;
@@ -78,7 +78,7 @@ pub(crate) fn of_system<M: Grown>(system: &System<M>, graph: Graph<M::Frame>) ->
         return graph;
     };
     let chained = system.chained;
-    graph.growing(steps, move |_, frame| {
+    graph.growing(steps, move |_, frame, _| {
         let map = frame.map();
         M::Frame::from(match chained {
             true => map.raised(share),
@@ -98,7 +98,7 @@ pub(crate) fn of_structure<M: Grown>(
     };
     // Without shapes, objects are drawn as boxes; otherwise the first base element is the initial set.
     let has_shapes = structure.draws_anything();
-    graph.growing(steps, move |base_element, frame| {
+    graph.growing(steps, move |base_element, frame, _| {
         let map = frame.map();
         M::Frame::from(match has_shapes && base_element > 0 {
             true => map.out_of_point(share),
@@ -118,7 +118,7 @@ struct Aged<'g, F: Frame, G> {
     made: BTreeMap<(usize, u32), Replacement<F>>,
 }
 
-impl<F: Frame, G: Fn(usize, &F) -> F> Aged<'_, F, G> {
+impl<F: Frame, G: Fn(usize, &F, bool) -> F> Aged<'_, F, G> {
     /// Returns the number of an object of an age; objects that are kept have none.
     fn number(&mut self, object: usize, age: u32) -> usize {
         let age = match self.graph.objects[object].is_kept() {
@@ -164,8 +164,8 @@ impl<F: Frame, G: Fn(usize, &F) -> F> Aged<'_, F, G> {
                 if age + 1 == self.steps {
                     let (graph, grown) = (self.graph, self.grown);
                     let base_element = |object: usize| graph.objects[object].base_element;
-                    grow(&mut successor, graph.affine, |object, frame| {
-                        grown(base_element(object), frame)
+                    grow(&mut successor, graph.affine, |object, frame, is_seed| {
+                        grown(base_element(object), frame, is_seed)
                     });
                 }
                 self.chain(&mut successor.body, age + 1);
@@ -188,15 +188,21 @@ impl<F: Frame, G: Fn(usize, &F) -> F> Aged<'_, F, G> {
 }
 
 /// Replaces the frames of instances, whose objects are given by number.
-fn grow<F: Frame>(successor: &mut Successor<F>, affine: bool, grown: impl Fn(usize, &F) -> F) {
+fn grow<F: Frame>(
+    successor: &mut Successor<F>,
+    affine: bool,
+    grown: impl Fn(usize, &F, bool) -> F,
+) {
     let Successor { body, seeds } = successor;
-    let chains = seeds.iter_mut().map(|seed| &mut seed.chain);
-    for instance in chains.chain([body]).flat_map(|chain| &mut chain.instances) {
-        instance.frame = grown(instance.object, &instance.frame);
-        instance.length = match affine {
-            true => instance.frame.stretch(),
-            false => instance.frame.length(),
-        };
+    let seeds = seeds.iter_mut().map(|seed| (&mut seed.chain, true));
+    for (chain, is_seed) in seeds.chain([(body, false)]) {
+        for instance in &mut chain.instances {
+            instance.frame = grown(instance.object, &instance.frame, is_seed);
+            instance.length = match affine {
+                true => instance.frame.stretch(),
+                false => instance.frame.length(),
+            };
+        }
     }
 }
 
@@ -221,7 +227,7 @@ impl<F: Frame, G> fmt::Debug for LastGrows<F, G> {
     }
 }
 
-impl<F: Frame, G: Fn(usize, &F) -> F + Send + Sync> Source<F> for LastGrows<F, G> {
+impl<F: Frame, G: Fn(usize, &F, bool) -> F + Send + Sync> Source<F> for LastGrows<F, G> {
     fn evaluate(
         &self,
         alternatives: &[Alternative],
@@ -233,8 +239,8 @@ impl<F: Frame, G: Fn(usize, &F) -> F + Send + Sync> Source<F> for LastGrows<F, G
         self.of
             .evaluate(alternatives, path, context, buffers, successor)?;
         if context.step >= self.last {
-            grow(successor, self.affine, |object, frame| {
-                (self.grown)(self.base_elements[object], frame)
+            grow(successor, self.affine, |object, frame, is_seed| {
+                (self.grown)(self.base_elements[object], frame, is_seed)
             });
         }
         Ok(())

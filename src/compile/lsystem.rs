@@ -80,7 +80,7 @@ impl Graph {
         };
         match (Self::of_edges(system), system.growing) {
             (Ok(graph), Some(Growing { steps, share })) => Ok(graph
-                .growing(steps, move |_, frame| {
+                .growing(steps, move |_, frame, _| {
                     frame.grown(GrowthStart::Chord, share)
                 })),
             (Ok(graph), None) => Ok(graph),

@@ -7,7 +7,7 @@ use crate::draws::Path;
 use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
 use crate::geometry::Point;
-use crate::rule::{ElementContext, Part, Placement, Rule, RuleFrame, Selection};
+use crate::rule::{ElementContext, GrowthStart, Part, Placement, Rule, RuleFrame, Selection};
 use crate::tween::Growing;
 
 use super::state::{Class, Dependences, ElementState};
@@ -41,8 +41,12 @@ impl<F: RuleFrame> Graph<F> {
             affine: graph.affine || !F::GROWS_SIMILAR,
             ..graph
         };
-        Ok(graph.growing(steps, move |base_element, frame| {
-            frame.grown(starts[base_element], share)
+        Ok(graph.growing(steps, move |base_element, frame, is_seed| {
+            let start = match starts[base_element] {
+                GrowthStart::Element if is_seed => GrowthStart::Point,
+                start => start,
+            };
+            frame.grown(start, share)
         }))
     }
 
