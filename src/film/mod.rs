@@ -110,6 +110,9 @@ fn runs(pixels: &[u8]) -> impl Iterator<Item = &[[u8; 4]]> {
 
 /// Blends a pixel with white paper.
 fn on_white([red, green, blue, alpha]: [u8; 4]) -> [u8; 3] {
+    if alpha == u8::MAX {
+        return [red, green, blue];
+    }
     [red, green, blue].map(|value| {
         let [value, alpha] = [value, alpha].map(u32::from);
         u8::try_from((value * alpha + 255 * (255 - alpha) + 127) / 255).unwrap_or(u8::MAX)
