@@ -26,7 +26,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
-use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source};
+use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
 use crate::document::{Document, KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
 use crate::geometry::{DAffine2, DAffine3, Frame2, Frame3};
@@ -64,7 +64,8 @@ impl Document {
     /// Returns all mistakes and warnings if the document or a setting is invalid.
     pub fn resolve(&self, settings: &[Setting]) -> Result<(Model, Diagnostics), Diagnostics> {
         let mut all = self.warnings.clone();
-        match resolve(self.kind(), settings) {
+        let repeated = self.repeated(settings)?;
+        match resolve(repeated.as_ref().unwrap_or(self.kind()), settings) {
             Ok((model, doubts)) => {
                 all.extend(doubts);
                 Ok((model, all.without_repeats()))
@@ -134,6 +135,9 @@ fn resolved<K: Default, M: Into<Model>>(
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     let mut resolver = Resolver::<K>::default();
     let metadata = resolver.metadata(document, settings);
+    resolver
+        .used
+        .extend(document.used_by_ranges.iter().cloned());
     let model = model(&mut resolver, metadata);
     let model = match model {
         Some(model) if !resolver.diagnostics.has_errors() => model.into(),
@@ -184,6 +188,18 @@ impl<K> Resolver<K> {
         self.mistakes += 1;
         self.diagnostics
             .push(Diagnostic::error(message).at(place).hint(hint));
+    }
+
+    /// Returns a suggestion for a misspelt name, unless there are too many mistakes to show another.
+    fn suggestion<'n>(
+        &self,
+        name: &str,
+        candidates: impl IntoIterator<Item = &'n str>,
+    ) -> Option<String> {
+        if self.mistakes >= MAX_MISTAKES {
+            return None;
+        }
+        did_you_mean(name, candidates)
     }
 
     fn warn(&mut self, place: &Place, message: impl Into<String>, hint: &str) {

@@ -303,6 +303,9 @@ pub struct Style {
     pub color_by: ColorBy,
     /// Palette of the classes.
     pub palette: Palette,
+    /// Steps, or ages, of the first and of the last colour of the palette, where colours are by step or age; 0 and the
+    /// last one of the picture if `None`.
+    pub color_range: Option<[f64; 2]>,
     /// Tubes that the lines of a turtle in space are drawn as; lines without a width if `None`.
     pub tube: Option<Tube>,
 }
@@ -325,6 +328,21 @@ impl Tube {
 }
 
 impl Style {
+    /// Returns the steps or ages of the first and the last colour, if they are given and colours are by either.
+    pub(crate) fn range(&self) -> Option<[f64; 2]> {
+        let is_by = matches!(
+            self.color_by.property(),
+            ColorProperty::Step | ColorProperty::Age
+        );
+        self.color_range.filter(|_| is_by)
+    }
+
+    /// Returns the colour of a value, of which the largest that the picture has is `last`.
+    pub(crate) fn colour_of_value(&self, value: f64, last: f64) -> Colour {
+        let [first, last] = self.range().unwrap_or([0.0, last.max(1.0)]);
+        self.palette.at((value - first) / (last - first))
+    }
+
     /// Returns the colour of a face with a unit normal, if colours are by normal.
     pub(crate) fn colour_of_normal(&self, normal: DVec3) -> Option<Colour> {
         let is_asked = self.color_by == ColorBy::Normal;
@@ -343,6 +361,7 @@ impl Default for Style {
             background: None,
             color_by: ColorBy::None,
             palette: Palette::default(),
+            color_range: None,
             tube: None,
         }
     }

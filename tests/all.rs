@@ -42,6 +42,7 @@ mod random_iteration;
 mod readme;
 mod redrawn;
 mod reference;
+mod repetitions;
 mod schema;
 mod sheets;
 mod skeletons;

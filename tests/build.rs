@@ -216,7 +216,7 @@ generators:
 select:
   - {when: age >= 3 and age < 5, use: "seed: all"}
   - {use: grow}
-style: {stroke: teal, fill: "#11223344", background: white, width: {relative: 0.1}, cap: butt, join: bevel, color_by: age, palette: ["#000000", "#ff000080"]}
+style: {stroke: teal, fill: "#11223344", background: white, width: {relative: 0.1}, cap: butt, join: bevel, color_by: age, palette: ["#000000", "#ff000080"], color_range: [0, 6.5]}
 view: {window: [-1, -1, 3, 2.5], margin: 4}
 "##;
     let cup = BaseElement::new(
@@ -279,6 +279,7 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
             join: kfrac::style::Join::Bevel,
             color_by: kfrac::style::ColorBy::Age,
             palette: Palette::of_colours("", &colours),
+            color_range: Some([0.0, 6.5]),
             tube: None,
         })
         .view(&View {

@@ -153,11 +153,20 @@ fn endless_zooms_close() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let cases = [
-        ("koch", "0.(1)", "81", "243", "-60"),
-        ("koch", "0.(0)", "81", "243", "0"),
-        ("dragon", "0.(0)", "32", "45.25483399593904", "-45"),
+        ("koch", "0.(1)", "81", "243", "-60", "none"),
+        ("koch", "0.(0)", "81", "243", "0", "none"),
+        ("dragon", "0.(0)", "32", "45.25483399593904", "-45", "none"),
+        (
+            "pythagoras",
+            "0.(2)",
+            "32",
+            "45.25483399593904",
+            "45",
+            "step",
+        ),
     ];
-    for (rule, at, first, next, turn) in cases {
+    for (rule, at, first, next, turn, color_by) in cases {
+        let colours = format!("--color-by={color_by}");
         let size = ["--size", "160x120", "--detail", "0.5"];
         let film = [
             "animate",
@@ -171,13 +180,21 @@ fn endless_zooms_close() {
             "-o",
             "zoom%d.png",
         ];
-        succeeds(folder, &[&film[..], &size].concat());
+        succeeds(folder, &[&film[..], &size, &[colours.as_str()]].concat());
         let white = ["--background", "white", "-o", "one.png"];
         let frame = pixels(&folder.join("zoom0.png"));
         for (zoom, turn, most) in [(first, "0", 0.0), (next, turn, 0.6)] {
             let turn = format!("--turn={turn}");
-            let picture = ["grow", rule, "--zoom", zoom, "--at", at, &turn];
-            succeeds(folder, &[&picture[..], &size, &white].concat());
+            // A step of Pythagoras' tree is one of the square root of 2, and the palette begins with its last step that
+            // is as large as the picture, of 160 pixels to a detail of half a one.
+            let steps = |factor: f64| 2.0 * factor.log2();
+            let step = steps(zoom.parse().unwrap());
+            let range = format!("--color-range={step}..{}", step + steps(320.0));
+            let picture = ["grow", rule, "--zoom", zoom, "--at", at, &turn, &range];
+            succeeds(
+                folder,
+                &[&picture[..], &size, &white, &[colours.as_str()]].concat(),
+            );
             let own = pixels(&folder.join("one.png"));
             let apart = frame
                 .iter()
@@ -275,18 +292,18 @@ fn whole_steps_pass_into_growth() {
     let folder = folder.path();
     // The largest mean difference of a pixel, of 255: strokes round off where elements are divided.
     let rules = [
-        ("koch", 0.2),
-        ("carpet", 0.2),
-        ("pentaflake", 0.2),
-        ("pythagoras-squares", 1.0),
-        ("koch-surface", 0.2),
-        ("sphere-flake", 0.2),
-        ("sierpinski-tetrahedron", 0.2),
-        ("koch-lsystem", 0.2),
-        ("plant-a", 0.5),
-        ("bush-in-space", 1.0),
+        ("koch", "step", 0.2),
+        ("carpet", "step", 0.2),
+        ("pentaflake", "step", 0.2),
+        ("pythagoras-squares", "step", 1.0),
+        ("koch-surface", "step", 0.2),
+        ("sphere-flake", "step", 0.2),
+        ("sierpinski-tetrahedron", "step", 0.2),
+        ("koch-lsystem", "step", 0.2),
+        ("plant-a", "step", 0.5),
+        ("bush-in-space", "none", 1.0),
     ];
-    for (rule, most) in rules {
+    for (rule, color_by, most) in rules {
         let film = [
             "animate",
             rule,
@@ -301,7 +318,7 @@ fn whole_steps_pass_into_growth() {
             "--size",
             "96x72",
             "--color-by",
-            "none",
+            color_by,
             "-o",
             "%d.png",
         ];

@@ -3,9 +3,10 @@
 use crate::common::{compiled, document, resolved};
 use crate::threads::library;
 use kfrac::geometry::DVec2;
-use kfrac::grow::Growth;
-use kfrac::render::{self, Detail, Format, Options, Size};
-use kfrac::style::{ColorBy, View};
+use kfrac::graph::Graph;
+use kfrac::grow::{Growth, WalkError};
+use kfrac::render::{self, Detail, Format, NoDetail, Options, RenderError, Size};
+use kfrac::style::{ColorBy, Named, View};
 use resvg::tiny_skia::Pixmap;
 
 /// A window shows that part of the whole picture although little is visited.
@@ -58,50 +59,90 @@ fn windows_are_cut_out_of_pictures_that_are_coloured_by_index() {
 /// places: edges lie on hundredths of a pixel and on 64 samples of it.
 #[test]
 fn windows_of_the_library_are_crops_within_rounding() {
-    const WHOLE: usize = 160;
-    const PART: usize = 80;
     let mut checked = 0;
     for (name, model, graph, steps) in library(3_000) {
-        let growth = Growth::steps(steps);
-        let Ok(Some(bounds)) = kfrac::extent::bounding_box(&graph, &growth).map(Some) else {
-            continue;
-        };
-        let side = 1.1 * bounds.size().max_element();
-        if !(side > 0.0 && side.is_finite()) {
-            continue;
-        }
-        let corner = ((bounds.min() + bounds.max()) / 2.0) - DVec2::splat(side / 2.0);
-        let draw = |corner: DVec2, side: f64, pixels: usize| {
-            let options = Options::of(model.metadata())
-                .view(View {
-                    window: Some([corner.x, corner.y, side, side]),
-                    margin: Some(0.0),
-                })
-                .size(Size::Long(u32::try_from(pixels).unwrap()));
-            let drawn = render::pixels(&graph, &growth, &options);
-            drawn.unwrap_or_else(|error| panic!("{name}: {error}"))
-        };
-        let whole = draw(corner, side, WHOLE);
-        for [column, row] in [[40, 40], [17, 66]] {
-            // Rows are counted from the top.
-            let below = WHOLE - PART - row;
-            let shift = DVec2::new(column as f64, below as f64) * (side / WHOLE as f64);
-            let part = draw(corner + shift, side * PART as f64 / WHOLE as f64, PART);
-            let mut differences = Vec::with_capacity(4 * PART * PART);
-            for (line, bytes) in part.premultiplied().chunks_exact(4 * PART).enumerate() {
-                let start = 4 * ((row + line) * WHOLE + column);
-                let crop = &whole.premultiplied()[start..start + 4 * PART];
-                differences.extend(crop.iter().zip(bytes).map(|(a, b)| a.abs_diff(*b)));
-            }
-            let most = differences.iter().max().copied().unwrap_or(0);
-            let total: u64 = differences.iter().map(|it| u64::from(*it)).sum();
-            let mean = total as f64 / differences.len() as f64;
-            assert!(
-                most <= 64 && mean <= 0.2,
-                "{name} at step {steps}: {most}, {mean} in the mean"
-            );
-        }
-        checked += 1;
+        let options = Options::of(model.metadata());
+        checked += u32::from(are_crops(&name, &graph, [steps; 2], &options));
     }
     assert!(checked > 120, "{checked}");
+}
+
+/// The steps of a window that is grown to a detail, and with them its colours, are those of the whole.
+#[test]
+fn colours_of_windows_by_step_are_those_of_the_whole() {
+    let mut checked = 0;
+    for (name, model, _, _) in library(3_000) {
+        let Ok(graph) = model.compile(400) else {
+            continue;
+        };
+        if !graph.shrinks() || graph.steps_to(0.0).is_none() || graph.is_time_indexed() {
+            continue;
+        }
+        for color_by in [ColorBy::Step, ColorBy::Age] {
+            let mut options = Options::of(model.metadata()).detail(Some(Detail {
+                pixels: 3.0,
+                decides_steps: true,
+            }));
+            options.style.color_by = color_by;
+            checked += u32::from(are_crops(&name, &graph, [8, 400], &options));
+        }
+    }
+    assert!(checked > 120, "{checked}");
+}
+
+/// Checks that windows of an approximant are crops of a picture of an earlier one's box; returns whether that has a size
+/// and the steps are enough for a detail, and not too many.
+fn are_crops(name: &str, graph: &Graph, [earlier, steps]: [u32; 2], options: &Options) -> bool {
+    const WHOLE: usize = 160;
+    const PART: usize = 80;
+    let growth = Growth::steps(steps);
+    let Ok(bounds) = kfrac::extent::bounding_box(graph, &Growth::steps(earlier)) else {
+        return false;
+    };
+    let side = 1.1 * bounds.size().max_element();
+    if !(side > 0.0 && side.is_finite()) {
+        return false;
+    }
+    let corner = ((bounds.min() + bounds.max()) / 2.0) - DVec2::splat(side / 2.0);
+    let draw = |corner: DVec2, side: f64, pixels: usize| {
+        let options = options
+            .clone()
+            .view(View {
+                window: Some([corner.x, corner.y, side, side]),
+                margin: Some(0.0),
+            })
+            .size(Size::Long(u32::try_from(pixels).unwrap()));
+        match render::pixels(graph, &growth, &options) {
+            Err(
+                RenderError::NoDetail(NoDetail::TooFewSteps { .. })
+                | RenderError::Walk(WalkError::TooManyElements { .. }),
+            ) => None,
+            drawn => Some(drawn.unwrap_or_else(|error| panic!("{name}: {error}"))),
+        }
+    };
+    let Some(whole) = draw(corner, side, WHOLE) else {
+        return false;
+    };
+    for [column, row] in [[40, 40], [17, 66]] {
+        // Rows are counted from the top.
+        let below = WHOLE - PART - row;
+        let shift = DVec2::new(column as f64, below as f64) * (side / WHOLE as f64);
+        let part = draw(corner + shift, side * PART as f64 / WHOLE as f64, PART);
+        let part = part.unwrap_or_else(|| panic!("{name}: a part needs more steps"));
+        let mut differences = Vec::with_capacity(4 * PART * PART);
+        for (line, bytes) in part.premultiplied().chunks_exact(4 * PART).enumerate() {
+            let start = 4 * ((row + line) * WHOLE + column);
+            let crop = &whole.premultiplied()[start..start + 4 * PART];
+            differences.extend(crop.iter().zip(bytes).map(|(a, b)| a.abs_diff(*b)));
+        }
+        let most = differences.iter().max().copied().unwrap_or(0);
+        let total: u64 = differences.iter().map(|it| u64::from(*it)).sum();
+        let mean = total as f64 / differences.len() as f64;
+        assert!(
+            most <= 64 && mean <= 0.2,
+            "{name} at step {steps} by {}: {most}, {mean} in the mean",
+            options.style.color_by.name()
+        );
+    }
+    true
 }

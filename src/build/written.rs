@@ -138,6 +138,7 @@ pub(crate) fn style(style: &Style) -> Entries {
             .set("join", Value::Text(style.join.name().into()))
             .set("color_by", Value::Text(style.color_by.name().into()))
             .set("palette", palette(&style.palette))
+            .set_some("color_range", style.color_range.map(range))
             .set_some("tube", style.tube.map(tube))
     };
     entries(style).without(&entries(&Style::default()))
@@ -145,6 +146,10 @@ pub(crate) fn style(style: &Style) -> Entries {
 
 pub(super) fn colour_text(colour: Colour) -> Value {
     Value::Text(format!("{colour:#}"))
+}
+
+fn range(range: [f64; 2]) -> Value {
+    sequence(range.map(|end| NumberText::from(end).0))
 }
 
 fn tube(tube: Tube) -> Value {

@@ -52,6 +52,36 @@ pub(super) struct PictureArguments {
     /// Palette of --color-by
     #[arg(long, value_name = "NAME", value_parser = palette())]
     palette: Option<Palette>,
+    /// Steps of the first and the last colour of --color-by step, or ages of --color-by age, as 0..8 [default: 0 and the
+    /// last one of the picture]
+    #[arg(long, value_name = "FIRST..LAST", value_parser = ColorRange::parse, allow_hyphen_values = true)]
+    color_range: Option<ColorRange>,
+}
+
+/// Steps or ages of the first and the last colour of the palette.
+#[derive(Clone, Copy)]
+pub(super) struct ColorRange(pub(super) [f64; 2]);
+
+impl ColorRange {
+    fn parse(text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").map(|(first, last)| [first, last]);
+        let ends = ends.and_then(|ends| {
+            let [first, last] =
+                ends.map(|end| end.trim().parse::<f64>().ok().filter(|it| it.is_finite()));
+            Some([first?, last?])
+        });
+        match ends {
+            Some([first, last]) if first < last => Ok(Self([first, last])),
+            _ => Err("expected two steps, the smaller one first, as in 0..8".into()),
+        }
+    }
+}
+
+impl fmt::Display for ColorRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [first, last] = self.0;
+        write!(f, "{first}..{last}")
+    }
 }
 
 impl PictureArguments {
@@ -88,6 +118,7 @@ impl PictureArguments {
                 None => own.color_by,
             },
             palette: self.palette.clone().unwrap_or_else(|| own.palette.clone()),
+            color_range: self.color_range.map(|it| it.0).or(own.color_range),
         }
     }
 
@@ -180,6 +211,10 @@ impl PictureArguments {
         option(
             "palette",
             self.palette.as_ref().map(|palette| palette.name().into()),
+        );
+        option(
+            "color-range",
+            self.color_range.map(|range| range.to_string()),
         );
         options
     }

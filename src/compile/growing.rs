@@ -8,7 +8,8 @@ use crate::draws::Path;
 use crate::expression::Interval;
 use crate::geometry::Frame;
 use crate::graph::{
-    Alternative, Buffers, Chain, CompileError, Graph, Object, Replacement, Source, Successor,
+    Alternative, Between, Buffers, Chain, CompileError, Graph, Object, Replacement, Source,
+    Successor,
 };
 use crate::ifs::System;
 use crate::instancing::Instancing;
@@ -16,7 +17,7 @@ use crate::rule::{ElementContext, Extent, Part};
 use crate::tween::{Growing, Grown};
 
 impl<F: Frame> Graph<F> {
-    /// Returns the graph whose step `steps` is drawn while it grows, resolved for this number of steps: `grown` returns the
+    /// Returns the graph one step of which is drawn while it grows, resolved for this number of steps: `grown` returns the
     /// frame of an instance that appears in this step, from the number of its base element, from its frame in the
     /// replaced element, and from whether it starts a new fractal.
     ///
@@ -24,7 +25,7 @@ impl<F: Frame> Graph<F> {
     /// places.
     pub(super) fn growing(
         mut self,
-        steps: u32,
+        Growing { steps, share }: Growing,
         grown: impl Fn(usize, &F, bool) -> F + Send + Sync + 'static,
     ) -> Self {
         if steps == 0 {
@@ -54,7 +55,8 @@ impl<F: Frame> Graph<F> {
             });
         }
         let base_elements: Vec<_> = objects.iter().map(|it| it.base_element).collect();
-        self.limit = Some(Arc::new(self.clone()));
+        let whole = Arc::new(self.clone());
+        self.between = Some(Between { share, whole });
         let is_unresolved = objects.iter().any(Object::is_unresolved);
         self.depth = is_unresolved.then_some(steps);
         (self.objects, self.initiators) = (objects, initiators);
@@ -74,11 +76,11 @@ impl<F: Frame> Graph<F> {
 /// Returns the graph of a system, in which a step grows if the system has one that does. Images begin as the set of which
 /// they are images; those that form one line rise from its chord.
 pub(crate) fn of_system<M: Grown>(system: &System<M>, graph: Graph<M::Frame>) -> Graph<M::Frame> {
-    let Some(Growing { steps, share }) = system.growing else {
+    let Some(growing @ Growing { share, .. }) = system.growing else {
         return graph;
     };
     let chained = system.chained;
-    graph.growing(steps, move |_, frame, _| {
+    graph.growing(growing, move |_, frame, _| {
         let map = frame.map();
         M::Frame::from(match chained {
             true => map.raised(share),
@@ -93,12 +95,12 @@ pub(crate) fn of_structure<M: Grown>(
     structure: &Instancing<M>,
     graph: Graph<M::Frame>,
 ) -> Graph<M::Frame> {
-    let Some(Growing { steps, share }) = structure.growing else {
+    let Some(growing @ Growing { share, .. }) = structure.growing else {
         return graph;
     };
     // Without shapes, objects are drawn as boxes; otherwise the first base element is the initial set.
     let has_shapes = structure.draws_anything();
-    graph.growing(steps, move |base_element, frame, _| {
+    graph.growing(growing, move |base_element, frame, _| {
         let map = frame.map();
         M::Frame::from(match has_shapes && base_element > 0 {
             true => map.out_of_point(share),

@@ -79,8 +79,8 @@ impl Graph {
             Self::of_levels(effects, steps)
         };
         match (Self::of_edges(system), system.growing) {
-            (Ok(graph), Some(Growing { steps, share })) => Ok(graph
-                .growing(steps, move |_, frame, _| {
+            (Ok(graph), Some(growing @ Growing { share, .. })) => Ok(graph
+                .growing(growing, move |_, frame, _| {
                     frame.grown(GrowthStart::Chord, share)
                 })),
             (Ok(graph), None) => Ok(graph),

@@ -33,7 +33,7 @@ impl<F: RuleFrame> Graph<F> {
     /// If a generator yields points that are not finite within these steps.
     pub fn compile(rule: &Arc<Rule<F>>, steps: u32) -> Result<Self, CompileError> {
         let graph = Self::whole(rule, steps)?;
-        let Some(Growing { steps, share }) = rule.growing else {
+        let Some(growing @ Growing { share, .. }) = rule.growing else {
             return Ok(graph);
         };
         let starts = rule.starts_of_growth();
@@ -41,7 +41,7 @@ impl<F: RuleFrame> Graph<F> {
             affine: graph.affine || !F::GROWS_SIMILAR,
             ..graph
         };
-        Ok(graph.growing(steps, move |base_element, frame, is_seed| {
+        Ok(graph.growing(growing, move |base_element, frame, is_seed| {
             let start = match starts[base_element] {
                 GrowthStart::Element if is_seed => GrowthStart::Point,
                 start => start,

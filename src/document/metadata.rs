@@ -1,5 +1,7 @@
 //! Metadata of files of all kinds, as written.
 
+use std::collections::BTreeSet;
+
 use crate::diagnostic::{Place, did_you_mean};
 use crate::expression::PARTS;
 use crate::metadata::Description;
@@ -33,6 +35,8 @@ pub struct MetadataDocument {
     pub space: SpaceView,
     /// Options of the film of the file, in its order.
     pub animation: Vec<FilmOption>,
+    /// Names of parameters that ranges of repetitions use.
+    pub used_by_ranges: BTreeSet<String>,
     /// Whether all parents, components and fractals were found. Otherwise unknown names may be defined
     /// in a missing file and are not reported.
     pub complete: bool,

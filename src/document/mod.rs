@@ -22,6 +22,7 @@ mod metadata;
 pub mod node;
 mod read;
 mod reader;
+mod repeat;
 mod rule;
 mod schema;
 mod shape;
@@ -97,6 +98,39 @@ macro_rules! documents {
                 match kind { $(Kind::$kind => <$document>::TABLE,)* }
             }
 
+            /// Returns the kind of the file.
+            fn kind(&self) -> Kind {
+                match self { $(Self::$kind(_) => Kind::$kind,)* }
+            }
+
+            /// Reads a file after preceding stages, whose diagnostics are extended by those of reading.
+            fn read_after(
+                found: &mut Diagnostics,
+                kind: Kind,
+                node: &Node,
+                complete: bool,
+            ) -> Option<Self> {
+                let mut reader = Reader::after(found);
+                let read = Self::read(&mut reader, kind, node, complete);
+                found.extend(reader.diagnostics);
+                read
+            }
+
+            /// Reads a file as [`read_after`](Self::read_after) does, with its repetitions written out.
+            fn read_repeated(
+                found: &mut Diagnostics,
+                kind: Kind,
+                node: &Node,
+                complete: bool,
+            ) -> Option<Self> {
+                let all = repeat::written_out(node, found);
+                let mut read = Self::read_after(found, kind, &all.node, complete)?;
+                match &mut read {
+                    $(Self::$kind(document) => document.metadata.used_by_ranges = all.used,)*
+                }
+                Some(read)
+            }
+
             /// Reads a file whose parents and components are inlined. `complete` states that all of them were
             /// found.
             fn read(reader: &mut Reader, kind: Kind, node: &Node, complete: bool) -> Option<Self> {
@@ -130,6 +164,10 @@ documents! {
 pub struct Document {
     node: Node,
     kind: KindDocument,
+    /// Whether all parents and components were found.
+    complete: bool,
+    /// Whether lists of the file have repetitions, whose number may depend on parameters.
+    repeats: bool,
     pub(crate) warnings: Diagnostics,
 }
 
@@ -143,18 +181,43 @@ impl Document {
         let mut warnings = Diagnostics::default();
         let assembled = assemble::assemble(source, catalogue, &mut warnings);
         let parsed = assembled.and_then(|(node, kind, complete)| {
-            let mut reader = Reader::after(&warnings);
-            let kind = KindDocument::read(&mut reader, kind, &node, complete);
-            warnings.extend(reader.diagnostics);
-            Some((node, kind?))
+            let repeats = repeat::repeats(&node);
+            let kind = match repeats {
+                true => KindDocument::read_repeated(&mut warnings, kind, &node, complete),
+                false => KindDocument::read_after(&mut warnings, kind, &node, complete),
+            };
+            Some((node, kind?, complete, repeats))
         });
         match parsed {
-            Some((node, kind)) => Ok(Self {
+            Some((node, kind, complete, repeats)) => Ok(Self {
                 node,
                 kind,
+                complete,
+                repeats,
                 warnings,
             }),
             None => Err(warnings.without_repeats()),
+        }
+    }
+
+    /// Returns the content for settings of its parameters, if repetitions may depend on them; `None` if it is as written.
+    ///
+    /// # Errors
+    ///
+    /// If a repetition has a mistake for these settings.
+    pub(crate) fn repeated(
+        &self,
+        settings: &[Setting],
+    ) -> Result<Option<KindDocument>, Diagnostics> {
+        if !self.repeats || settings.is_empty() {
+            return Ok(None);
+        }
+        let mut found = Diagnostics::default();
+        let node = self.node_with(settings);
+        let kind = self.kind.kind();
+        match KindDocument::read_repeated(&mut found, kind, &node, self.complete) {
+            Some(kind) if !found.has_errors() => Ok(Some(kind)),
+            _ => Err(found),
         }
     }
 
@@ -206,6 +269,11 @@ impl Document {
     /// the file does not have are left out.
     #[must_use]
     pub fn to_yaml_with(&self, settings: &[Setting]) -> String {
+        self.node_with(settings).to_yaml()
+    }
+
+    /// Returns the values of the file with other values of its parameters.
+    fn node_with(&self, settings: &[Setting]) -> Node {
         let mut node = self.node.clone();
         for setting in settings {
             if let Some(value) = node.get_mut("params").and_then(|it| setting.of(it)) {
@@ -215,7 +283,7 @@ impl Document {
                 };
             }
         }
-        node.to_yaml()
+        node
     }
 }
 

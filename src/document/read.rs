@@ -34,6 +34,7 @@ pub use set::{DiskDocument, EllipseDocument};
 pub use solid::{CuboidDocument, EllipsoidDocument, ShaftDocument, SphereDocument};
 pub use space::InSpace;
 pub(super) use space::SPACE_OF_COMPONENT;
+pub(super) use transform::TRANSFORMS;
 
 use super::MetadataDocument;
 use super::reader::{Fields, Reader};

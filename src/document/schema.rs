@@ -12,6 +12,7 @@ use crate::catalogue::{Catalogue, Shelf};
 
 use super::KindDocument;
 use super::read::{BASE_ELEMENT, DESCRIPTION, ELEMENTS, GENERATOR, INITIATOR, PARAMETER, PARAMS};
+use super::repeat::{EACH, FOR};
 use super::shape::{Choice, Form, Needed, Shape};
 use json::{Json, Object, list};
 
@@ -132,6 +133,13 @@ impl Definitions {
 
     /// Returns the schema of the keys of a mapping and of their values.
     fn keys(&mut self, shape: &Shape) -> Object {
+        of_type("object")
+            .with("properties", self.properties(shape))
+            .with("additionalProperties", false)
+    }
+
+    /// Returns the schemas of the values by key.
+    fn properties(&mut self, shape: &Shape) -> Object {
         let mut properties = Object::default();
         for member in shape.members() {
             let form = self.form(&member.holds);
@@ -143,9 +151,7 @@ impl Definitions {
             let about = Object::default().with("description", member.about);
             properties = properties.with(member.name, about.and(form));
         }
-        of_type("object")
-            .with("properties", properties)
-            .with("additionalProperties", false)
+        properties
     }
 
     fn either(&mut self, forms: &[Form]) -> Object {
@@ -195,20 +201,78 @@ impl Definitions {
                 definitions.form(&Form::List(&Form::Number, 2, Some(3)))
             }),
             Form::List(of, least, most) => {
-                let entries = of_type("array").with("items", self.form(of));
-                let entries = entries.with_some("minItems", (*least > 0).then_some(*least));
-                entries.with_some("maxItems", *most)
+                let enough =
+                    Object::default().with_some("minItems", (*least > 0).then_some(*least));
+                if most.is_some() {
+                    let entries = of_type("array").with("items", self.form(of));
+                    return entries.and(enough).with_some("maxItems", *most);
+                }
+                let entries = of_type("array").with("items", self.entry(of));
+                if *least < 2 {
+                    return entries.and(enough);
+                }
+                // A repetition stands for any number of entries.
+                let repetition = of_type("object").with("required", list([FOR]));
+                let contains = Object::default().with("contains", repetition);
+                entries.with("anyOf", list([enough, contains]))
             }
             Form::Names(of, least) => {
                 let names = of_type("object").with("additionalProperties", self.form(of));
                 names.with_some("minProperties", (*least > 0).then_some(*least))
             }
             Form::Mapping(shape) => {
-                let name = shape.what.split(' ').skip(1).collect::<Vec<_>>().join("-");
-                self.defined(&name, |definitions| definitions.mapping(shape))
+                self.defined(&name_of(shape), |definitions| definitions.mapping(shape))
             }
             Form::Either(forms) => self.either(forms),
         }
+    }
+
+    /// Returns the schema of an entry of an open list, or of its repetition.
+    fn entry(&mut self, form: &Form) -> Object {
+        let mut all = vec![self.form(form)];
+        let forms = match form {
+            Form::Either(forms) => *forms,
+            form => std::slice::from_ref(form),
+        };
+        for form in forms {
+            if let Form::Mapping(shape) = form {
+                let name = format!("repeated-{}", name_of(shape));
+                all.push(self.defined(&name, |definitions| definitions.repeated(shape)));
+            }
+        }
+        let each = Object::default().with(FOR, self.values_by_name());
+        all.push(
+            of_type("object")
+                .with("properties", each.with(EACH, self.form(form)))
+                .with("required", list([FOR, EACH]))
+                .with("additionalProperties", false),
+        );
+        Object::default().with("anyOf", list(all))
+    }
+
+    /// Returns the schema of a mapping that is repeated.
+    fn repeated(&mut self, shape: &Shape) -> Object {
+        let names = self.values_by_name();
+        let properties = self.properties(shape).with(FOR, names);
+        of_type("object")
+            .with("properties", properties)
+            .with("additionalProperties", false)
+            .with("required", list(needed(shape, self.alone).chain([FOR])))
+            .and(alternatives(shape, true))
+    }
+
+    /// Returns the schema of the names and values of a repetition.
+    fn values_by_name(&mut self) -> Object {
+        self.defined("values-by-name", |definitions| {
+            let values = of_type("array").with("items", definitions.form(&Form::Text));
+            let range = of_type("string");
+            let either = Object::default().with("anyOf", list([range, values]));
+            let about = "The entry is repeated for every value of a name, over a range, {k: 0..11}, or a list, \
+                         {k: [1, 3, 5]}: the keys beside it, or `each`, use the name in expressions.";
+            of_type("object")
+                .with("description", about)
+                .with("additionalProperties", either)
+        })
     }
 
     /// Returns a reference to a definition, which is added at its first use.
@@ -228,11 +292,21 @@ fn names(shelves: &[Shelf]) -> Json {
     list(entries.map(|entry| entry.name))
 }
 
+/// Returns the name of the definition of a mapping.
+fn name_of(shape: &Shape) -> String {
+    shape.what.split(' ').skip(1).collect::<Vec<_>>().join("-")
+}
+
+/// Iterates over the required keys.
+fn needed(shape: &Shape, alone: bool) -> impl Iterator<Item = &'static str> {
+    let needed = move |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
+    let members = shape.members().filter(move |member| needed(member.needed));
+    members.map(|member| member.name)
+}
+
 /// Returns the constraint for required keys.
 fn required(shape: &Shape, alone: bool) -> Object {
-    let needed = |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
-    let members = shape.members().filter(|member| needed(member.needed));
-    let names: Vec<_> = members.map(|member| member.name).collect();
+    let names: Vec<_> = needed(shape, alone).collect();
     let names = (!names.is_empty()).then(|| list(names));
     Object::default().with_some("required", names)
 }

@@ -26,6 +26,9 @@ pub(super) const STYLE: Shape = Shape {
              direction.";
         palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),
             "The colours for `color_by`: a palette's name, or a list of colours that are mixed evenly.";
+        color_range: Form::List(&Form::Number, 2, Some(2)),
+            "Where colours are by step or age: that of the palette's first colour and that of its last one; 0 and the \
+             last of the picture if left out.";
         tube: Form::Either(&[Form::Whole(3, Some(48)), Form::Mapping(&TUBE)]),
             "In L-systems in space: lines are tubes of so many sides, or `{sides: 8, width: 0.1}`.";
     ]],
@@ -65,6 +68,7 @@ impl FromNode for Style {
             join: fields.read(reader, "join")?,
             color_by: fields.read(reader, "color_by")?,
             palette: fields.read(reader, "palette")?,
+            color_range: { fields.take("color_range") }.and_then(|node| range(reader, node)),
             tube: fields.optional(reader, "tube"),
         })
     }
@@ -155,6 +159,22 @@ impl FromNode for Tube {
         let width = width_of(reader)?;
         Some(Self { sides, width })
     }
+}
+
+/// Reads the steps or ages of the first and the last colour.
+fn range(reader: &mut Reader, node: &Node) -> Option<[f64; 2]> {
+    const HINT: &str = "color_range: [0, 8]";
+    let entries = reader.list(node, "a list of two numbers", HINT);
+    let ends: Option<Vec<f64>> = { entries.iter() }
+        .map(|entry| constant(reader, entry))
+        .collect();
+    let range = <[f64; 2]>::try_from(ends?).ok();
+    let range = range.filter(|[first, last]| first < last);
+    if range.is_none() && matches!(node.value, Value::Sequence(_)) {
+        let message = "a range of colours is two numbers, the smaller one first";
+        reader.error_with_hint(&node.place, message, HINT);
+    }
+    range
 }
 
 /// Reads a constant expression whose value is not negative.

@@ -1,5 +1,7 @@
 //! Radii of the subtrees of objects, computed from the graph alone, for culling.
 
+use std::collections::BTreeMap;
+
 use super::bounded::{Bounded, Fineness, Own};
 use crate::geometry::{Frame, Outline, Point};
 use crate::graph::{Graph, Object, Replacement};
@@ -152,6 +154,56 @@ impl<F: Frame> Graph<F> {
         let longest = start.map(|instance| instance.length).fold(0.0, f64::max);
         let edges = self.edges(f64::INFINITY);
         longest * libm::pow(self.longest_edge(&edges), f64::from(steps))
+    }
+
+    /// Returns the number of steps after which all elements are shorter than a length, whose binary logarithm, in
+    /// multiples of [`unit`](Self::unit), is `shortest`. `None` where the graph does not determine it with little work.
+    ///
+    /// It is exact for fixed similarities and an upper bound for other fixed maps, whose longest sides need not lie in
+    /// one direction.
+    #[must_use]
+    pub fn steps_to(&self, shortest: f64) -> Option<u32> {
+        const MAX_WORK: usize = 1 << 20;
+        let is_random =
+            |object: &Object<F>| matches!(object.replacement, Replacement::Evaluated(_));
+        if self.objects.iter().any(is_random)
+            || self.resets().contains(&true)
+            || !self.roots.elements.is_empty()
+        {
+            return None;
+        }
+        let mut ratios = BTreeMap::new();
+        for (parent, edges) in self.edges(f64::INFINITY).iter().enumerate() {
+            for edge in edges.iter().filter(|edge| self.is_fertile(edge.object)) {
+                let ratio = ratios.entry((parent, edge.object)).or_insert(0.0);
+                *ratio = edge.length.max(*ratio);
+            }
+        }
+        let ratios: Vec<_> = { ratios.into_iter() }
+            .map(|(objects, ratio)| (objects, libm::log2(ratio)))
+            .collect();
+        let mut longest = vec![f64::NEG_INFINITY; self.objects.len()];
+        for instance in &self.initiator(0).instances {
+            if self.is_fertile(instance.object) {
+                let longest = &mut longest[instance.object];
+                *longest = libm::log2(instance.length).max(*longest);
+            }
+        }
+        let mut next = longest.clone();
+        let work = ratios.len() + longest.len();
+        for step in 0..=u32::try_from(MAX_WORK / work.max(1)).unwrap_or(u32::MAX) {
+            if longest.iter().all(|length| *length < shortest) {
+                return Some(step);
+            }
+            next.fill(f64::NEG_INFINITY);
+            for ((parent, child), ratio) in &ratios {
+                if longest[*parent] >= shortest {
+                    next[*child] = next[*child].max(longest[*parent] + ratio);
+                }
+            }
+            std::mem::swap(&mut longest, &mut next);
+        }
+        None
     }
 
     /// Returns an upper bound of the length of a fertile child, as a multiple of its parent's length;

@@ -68,8 +68,8 @@ pub struct Graph<F: Frame = Frame2> {
     /// initiator.
     pub(crate) roots: Arc<Roots<F>>,
     pub(crate) depth: Option<u32>,
-    /// Graph that has the limit set of the model, where this one has none: between two steps.
-    pub(crate) limit: Option<Arc<Self>>,
+    /// State between two steps, if the last step is still growing.
+    pub(crate) between: Option<Between<F>>,
     /// Reason why the model, as its graph does not show, has no limit set.
     pub(crate) no_limit: Option<NoLimit>,
     pub(crate) regular: bool,
@@ -90,6 +90,15 @@ pub struct Graph<F: Frame = Frame2> {
     pub(crate) place: Homothety<F::Point>,
 }
 
+/// State of a graph between two steps.
+#[derive(Clone, Debug)]
+pub(crate) struct Between<F: Frame> {
+    /// Share of the last step that has grown, from 0 to 1.
+    pub(crate) share: f64,
+    /// Graph of whole steps, which has the limit set of the model.
+    pub(crate) whole: Arc<Graph<F>>,
+}
+
 impl<F: Frame> Graph<F> {
     /// Creates a graph of objects with fixed instances that are similarities, without draws, seeds and changes
     /// of appearance, resolved for any number of steps.
@@ -107,7 +116,7 @@ impl<F: Frame> Graph<F> {
             listed: None,
             roots: Arc::default(),
             depth: None,
-            limit: None,
+            between: None,
             no_limit: None,
             regular: true,
             counts_index: false,
@@ -120,6 +129,13 @@ impl<F: Frame> Graph<F> {
             middle: F::Point::ZERO,
             place: Homothety::IDENTITY,
         }
+    }
+
+    /// Returns the share of the last step that has not grown yet; 0 except between two steps.
+    pub(crate) fn lag(&self) -> f64 {
+        self.between
+            .as_ref()
+            .map_or(0.0, |between| 1.0 - between.share)
     }
 
     /// Returns the source of instances that are computed for each element.

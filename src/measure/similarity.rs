@@ -2,8 +2,6 @@
 //! Σ ratio^D over the instances has spectral radius 1. For one object this is Moran's equation
 //! (Moran 1946), Σ ratio^D = 1.
 
-use std::collections::BTreeSet;
-
 use crate::digraph::{self, parts};
 use crate::extent::{Bounded, NoLimit};
 use crate::geometry::Frame;
@@ -144,6 +142,41 @@ fn edges<F: Frame>(graph: &Graph<F>) -> Vec<Edge> {
     graph.behaviours_by_number().flat_map(of).collect()
 }
 
+/// Ends every ring of objects that pass to each other at its largest object.
+fn keep_one_of_rings(passes: &mut [Option<(usize, f64)>]) {
+    // The first object of the walk that has met an object.
+    let mut met = vec![None; passes.len()];
+    for start in 0..passes.len() {
+        let mut at = start;
+        while let (None, Some((to, _))) = (met[at], passes[at]) {
+            met[at] = Some(start);
+            at = to;
+        }
+        if met[at] == Some(start) {
+            let ring =
+                std::iter::successors(passes[at], |(to, _)| passes[*to].filter(|_| *to != at));
+            let largest = ring.map(|(to, _)| to).max();
+            largest
+                .into_iter()
+                .for_each(|largest| passes[largest] = None);
+        }
+    }
+}
+
+/// Lets an object, and those on the way, pass to the object at the end of its way at once. There are no rings.
+fn follow(passes: &mut [Option<(usize, f64)>], object: usize) {
+    let way = std::iter::successors(Some(object), |at| passes[*at].map(|(to, _)| to));
+    let mut way: Vec<usize> = way.collect();
+    way.pop();
+    let mut known = None;
+    for at in way.into_iter().rev() {
+        if let (Some((_, own)), Some((to, ratio))) = (passes[at], known) {
+            passes[at] = Some((to, own * ratio));
+        }
+        known = passes[at];
+    }
+}
+
 /// A strongly connected part of the graph: objects that reach each other.
 struct Component {
     size: usize,
@@ -155,30 +188,40 @@ impl Component {
     /// Returns the part without the objects that have one instance only: an edge to such an object is
     /// replaced by one to the object that it instances, with the product of the ratios. The dimension is
     /// unchanged.
-    fn contracted(mut self) -> Self {
+    fn contracted(self) -> Self {
+        let mut leaving = vec![0_usize; self.size];
+        self.edges.iter().for_each(|edge| leaving[edge.from] += 1);
+        let mut passes: Vec<Option<(usize, f64)>> = vec![None; self.size];
+        for edge in &self.edges {
+            if leaving[edge.from] == 1 && edge.to != edge.from {
+                passes[edge.from] = Some((edge.to, edge.ratio));
+            }
+        }
+        keep_one_of_rings(&mut passes);
         for object in 0..self.size {
-            let mut leaving = self.edges.iter().filter(|edge| edge.from == object);
-            let (Some(only), None) = (leaving.next(), leaving.next()) else {
-                continue;
-            };
-            let (to, ratio) = (only.to, only.ratio);
-            if to == object {
-                continue;
-            }
-            self.edges.retain(|edge| edge.from != object);
-            for edge in self.edges.iter_mut().filter(|edge| edge.to == object) {
-                edge.to = to;
-                edge.ratio *= ratio;
-            }
+            follow(&mut passes, object);
         }
-        let left: BTreeSet<usize> = self.edges.iter().map(|edge| edge.from).collect();
-        let number = |object: usize| left.iter().position(|&known| known == object).unwrap_or(0);
-        for edge in &mut self.edges {
-            (edge.from, edge.to) = (number(edge.from), number(edge.to));
-        }
+        let mut number = 0;
+        let numbers = passes.iter().map(|passes| {
+            number += usize::from(passes.is_none());
+            number - usize::from(passes.is_none())
+        });
+        let numbers: Vec<usize> = numbers.collect();
+        let edges = self
+            .edges
+            .into_iter()
+            .filter(|edge| passes[edge.from].is_none());
+        let edges = edges.map(|edge| {
+            let (to, ratio) = passes[edge.to].unwrap_or((edge.to, 1.0));
+            Edge {
+                from: numbers[edge.from],
+                to: numbers[to],
+                ratio: edge.ratio * ratio,
+            }
+        });
         Self {
-            size: left.len(),
-            edges: self.edges,
+            edges: edges.collect(),
+            size: number,
         }
     }
 

@@ -27,6 +27,10 @@ pub(crate) struct Classes {
     /// If the colour depends on generators or maps: the value of the first one, which is 1 if the approximant
     /// draws elements that none of them has made, such as the initiator, and 0 otherwise.
     before: u128,
+    /// Number of classes into which values are quantised if there are more.
+    most: u64,
+    /// Share of the last step that has not grown yet, in which the colours of what it brings change as well.
+    lag: f64,
 }
 
 impl Classes {
@@ -46,7 +50,8 @@ impl Classes {
     }
 
     /// Returns the classes of approximant `steps` of a graph, as far as they are known without a prepass.
-    pub(super) fn before_survey<F: Frame>(by: ColorBy, graph: &Graph<F>, steps: u32) -> Self {
+    pub(super) fn before_survey<F: Frame>(style: &Style, graph: &Graph<F>, steps: u32) -> Self {
+        let by = style.color_by;
         let before = u128::from(draws_unmade(by, graph, steps));
         let largest = match by.property() {
             ColorProperty::Step | ColorProperty::Age => u128::from(steps),
@@ -58,13 +63,19 @@ impl Classes {
             by,
             largest,
             before,
+            most: match style.range() {
+                // A few of many values may have all colours.
+                Some(_) => u64::MAX,
+                None => MAX_CLASSES,
+            },
+            lag: graph.lag(),
         }
     }
 
-    /// Returns the number of classes, at most 64.
+    /// Returns the number of classes: at most 64, unless the palette has a range.
     #[must_use]
     pub(crate) fn count(&self) -> u64 {
-        u64::try_from(self.largest).map_or(MAX_CLASSES, |largest| (largest + 1).min(MAX_CLASSES))
+        u64::try_from(self.largest).map_or(self.most, |largest| (largest + 1).min(self.most))
     }
 
     pub(super) fn all(&self) -> Range<u64> {
@@ -167,13 +178,13 @@ impl Classes {
     /// Returns the class of a value.
     #[inline]
     pub(super) fn of_value(&self, value: u128) -> u64 {
-        let most = u128::from(MAX_CLASSES);
+        let most = u128::from(self.most);
         let class = if self.largest < most {
             value
         } else {
             value.saturating_mul(most) / (self.largest + 1)
         };
-        u64::try_from(class).unwrap_or(MAX_CLASSES - 1)
+        u64::try_from(class).unwrap_or(self.most - 1)
     }
 
     /// Returns the colour of a class; `None` if the palette is not used.
@@ -182,9 +193,21 @@ impl Classes {
         if !self.by.takes_palette() {
             return None;
         }
-        let last = self.count().saturating_sub(1).max(1);
-        #[expect(clippy::cast_precision_loss, reason = "no more than 64 classes")]
-        Some(style.palette.at(class as f64 / last as f64))
+        let last = self.count() - 1;
+        // Quantised values are too many for parts of steps to matter.
+        let lag = if u128::from(last) == self.largest {
+            self.lag
+        } else {
+            0.0
+        };
+        #[expect(clippy::cast_precision_loss, reason = "there are few classes")]
+        let (value, most) = (class as f64, last as f64);
+        Some(match self.by.property() {
+            ColorProperty::Step if class == last => style.colour_of_value(most - lag, most - lag),
+            ColorProperty::Step => style.colour_of_value(value, most - lag),
+            ColorProperty::Age => style.colour_of_value((value - lag).max(0.0), most - lag),
+            _ => style.colour_of_value(value, most),
+        })
     }
 
     /// Returns whether classes never decrease in the order of a walk.

@@ -25,7 +25,7 @@ impl<'a> Colours<'a> {
         match style.color_by.property() {
             Uniform | Tint | Step | Object => Ok(Self {
                 style,
-                classes: Classes::before_survey(style.color_by, graph, steps),
+                classes: Classes::before_survey(style, graph, steps),
             }),
             _ => Err(SpaceError::ColorBy(style.color_by)),
         }

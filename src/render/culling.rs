@@ -221,7 +221,7 @@ fn outside(graph: &Graph, style: &Style, are_counted: bool) -> Option<Enter> {
     // Outside the window an outline may take any path from one end to the other: the winding numbers inside
     // are unchanged. It stays in one piece if the elements of other approximants on that path are of the same
     // class.
-    let stays_whole = Classes::before_survey(style.color_by, graph, 0).keep_fractals_whole();
+    let stays_whole = Classes::before_survey(style, graph, 0).keep_fractals_whole();
     (graph.keeps_lines() && (stays_whole || !seam_shows)).then_some(Enter::Keep)
 }
 

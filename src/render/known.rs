@@ -75,7 +75,7 @@ impl<'g> Prepass<'g> {
             ColorProperty::Fractal | ColorProperty::Index => Vec::new(),
             ColorProperty::Step => stands.values(|stands| stands.born.into()),
             ColorProperty::Object => {
-                let classes = Classes::before_survey(style.color_by, graph, steps);
+                let classes = Classes::before_survey(style, graph, steps);
                 let value = |object: usize| classes.value_of_object(&graph.objects()[object]);
                 stands.values(|stands| value(stands.object).unwrap_or(0))
             }

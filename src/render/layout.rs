@@ -100,7 +100,7 @@ impl<'a> Layout<'a> {
             (None, None) => surveyor.prepass(Culling::unbounded())?,
         };
         if options.detail.is_some_and(|detail| detail.decides_steps) {
-            let fewer = surveyor.growth.steps - prepass.steps;
+            let fewer = surveyor.growth.steps - surveyor.steps_of_whole(&prepass);
             prepass = prepass.sooner(&surveyor.growth, fewer);
             surveyor.growth.steps -= fewer;
         }
@@ -130,6 +130,15 @@ impl<'a> Surveyor<'a> {
     fn canvas(&self, prepass: &Prepass<'a>) -> Result<Canvas, RenderError> {
         let Options { view, size, .. } = self.options;
         Ok(Canvas::of(std::slice::from_ref(prepass), view, *size)?)
+    }
+
+    /// Returns the number of steps after which the whole set is finer than the detail, where the graph determines it, so
+    /// that ages and the range of colours do not depend on the window; otherwise, that of the part that was walked.
+    fn steps_of_whole(&self, prepass: &Prepass<'a>) -> u32 {
+        let shortest = prepass.culling().shortest().filter(|it| *it > 0.0);
+        let of_whole = shortest.and_then(|it| self.graph.steps_to(libm::log2(it)));
+        let of_whole = of_whole.filter(|steps| *steps <= self.limit);
+        of_whole.unwrap_or(prepass.steps)
     }
 
     /// Returns an error if the detail decides the number of steps and the prepass reached the limit of steps.

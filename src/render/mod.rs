@@ -15,8 +15,8 @@
 //! steps, maps or generators, subtrees without elements of the class that is painted. None of this changes a
 //! pixel, and neither threads nor timing show in any byte. A window is the crop of the whole picture of the same scale
 //! and number of steps but for rounding: places are in hundredths of a pixel, and edges are cut at the border. Where a
-//! detail decides the number of steps, it depends on the window, and so do colours by step. In PNGs, small
-//! runs of elements in equal positions may be drawn as sprites, with small differences: see `png::sprites`. Code for
+//! detail decides the number of steps, it is that of the whole, and so are colours by step and age, but for random elements and
+//! seeds placed as the initiator. In PNGs, small runs of elements in equal positions may be drawn as sprites, with small differences: see `png::sprites`. Code for
 //! pixels alone lies in `png`, behind one method of surfaces.
 
 mod bands;

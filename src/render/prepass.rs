@@ -140,7 +140,7 @@ impl<'g> Prepass<'g> {
             last_index: None,
             goes_on: false,
             used: Vec::new(),
-            classes: Classes::before_survey(style.color_by, graph, steps),
+            classes: Classes::before_survey(style, graph, steps),
         }
     }
 
@@ -260,11 +260,10 @@ impl<'g> Prepass<'g> {
 
     /// Returns the prepass of the approximant `fewer` steps earlier, which consists of the same elements.
     pub(super) fn sooner(mut self, growth: &Growth<'_>, fewer: u32) -> Self {
-        let Style { color_by, .. } = self.style;
-        if *color_by == ColorBy::Age {
+        if self.style.color_by == ColorBy::Age {
             self.used.drain(..(fewer as usize).min(self.used.len()));
         }
-        self.classes = Classes::before_survey(*color_by, self.graph, growth.steps - fewer);
+        self.classes = Classes::before_survey(self.style, self.graph, growth.steps - fewer);
         self
     }
 

@@ -11,7 +11,7 @@ use crate::style::{ColorBy, Style, View, Width};
 use crate::zoom::{self, Address, Factor, ZoomWindow};
 
 use super::canvas::{Canvas, Size};
-use super::culling::starts_rings;
+use super::culling::{NEARLY, starts_rings};
 use super::error::{NoZoom, RenderError};
 use super::layout::Layout;
 use super::options::{Detail, Options};
@@ -123,6 +123,7 @@ impl Zoomed {
             Width::Relative(width) => (0.0, width * graph.unit() * relative_overhang(style)),
         };
         let size = canvas.size();
+        let pixels = options.detail.map_or(1.0, |detail| detail.pixels);
         let window = ZoomWindow {
             // A window that is turned lies in the square around its circle.
             size: match target.turn == 0.0 {
@@ -133,7 +134,7 @@ impl Zoomed {
             margin: stroke + 2.0,
             relative_stroke,
             areas: style.fill.is_some() && starts_rings(graph) && graph.keeps_lines(),
-            shortest: options.detail.map_or(1.0, |detail| detail.pixels),
+            shortest: pixels,
             factor: target.factor.clone(),
             at: target.at.clone(),
         };
@@ -145,10 +146,19 @@ impl Zoomed {
             cancel: growth.cancel,
         };
         let found = zoom::zoom(model, graph, &zoom_growth, &window)?;
-        let steps = match (steps, graph.depth()) {
-            (Some(_), _) => growth.steps,
-            (None, Some(depth)) => depth,
-            (None, None) => found.deepest.saturating_add(growth.steps),
+        // Colours by step are those of the whole at this magnification, as far as it determines them.
+        let of_whole = || {
+            let pixel = canvas.scale() * graph.unit();
+            let shortest = libm::log2(NEARLY * pixels / pixel) - target.factor.log2();
+            graph.steps_to(shortest)
+        };
+        let (steps, decides_steps) = match (steps, graph.depth()) {
+            (Some(_), _) => (growth.steps, false),
+            (None, Some(depth)) => (depth, true),
+            (None, None) => match of_whole() {
+                Some(steps) => (steps.max(found.deepest), false),
+                None => (found.deepest.saturating_add(growth.steps), true),
+            },
         };
         let [width, height] = size.map(f64::from);
         let options = Options {
@@ -157,10 +167,10 @@ impl Zoomed {
                 margin: None,
             },
             size: Size::Exactly(size[0], size[1]),
-            detail: Some(options.detail.unwrap_or(Detail {
-                pixels: 1.0,
-                decides_steps: true,
-            })),
+            detail: Some(Detail {
+                pixels,
+                decides_steps,
+            }),
             ..options.clone()
         };
         Ok(Self {

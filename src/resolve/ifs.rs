@@ -2,7 +2,6 @@
 
 mod scatter;
 
-use crate::diagnostic::did_you_mean;
 use crate::document::{
     EdgeDocument, IfsDocument, MapDocument, MapsDocument, VerticesDocument, Written, WrittenNumber,
 };
@@ -232,7 +231,7 @@ impl Resolver<OfIfs> {
         if found.is_none() {
             let s = if names.len() == 1 { "" } else { "s" };
             let message = format!("there is no map '{name}'");
-            let hint = did_you_mean(name, names.iter().copied().flatten())
+            let hint = { self.suggestion(name, names.iter().copied().flatten()) }
                 .unwrap_or_else(|| format!("there are {} map{s}, numbered from 1", names.len()));
             self.error_with_hint(&called.place, message, hint);
         }

@@ -7,7 +7,7 @@ mod maps;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::diagnostic::{Place, did_you_mean, listed};
+use crate::diagnostic::{Place, listed};
 use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
     ShapeDocument, TransformDocument, UnionDocument,
@@ -311,7 +311,8 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                     .objects
                     .iter()
                     .map(|object| object.name.value.as_str());
-                let hint = did_you_mean(name, names.clone().chain(M::PRIMITIVES.iter().copied()))
+                let all = names.clone().chain(M::PRIMITIVES.iter().copied());
+                let hint = { self.suggestion(name, all) }
                     .unwrap_or_else(|| format!("the objects are: {}", listed(names)));
                 let message = format!("there is no object '{name}'");
                 self.error_with_hint(place, message, hint);

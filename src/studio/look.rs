@@ -64,7 +64,14 @@ mod decimal {
 }
 
 /// Options of the plane and of space.
-const BOTH: [&str; 5] = ["stroke", "fill", "background", "color-by", "palette"];
+const BOTH: [&str; 6] = [
+    "stroke",
+    "fill",
+    "background",
+    "color-by",
+    "palette",
+    "color-range",
+];
 /// Options of the plane alone.
 const PLANE: [&str; 5] = ["stroke-width", "cap", "join", "margin", "turn"];
 /// Options of space alone.

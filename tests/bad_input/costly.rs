@@ -102,7 +102,7 @@ fn components_count_as_often_as_they_are_named() {
     let text = format!("initiator: segment\ngenerators:\n{generators}select: {{by_index: [g0]}}\n");
     refused(
         text.as_bytes(),
-        "with its components the rule holds more than 250,000 values",
+        "with its components and repetitions the file holds more than 250,000 values",
     );
 }
 

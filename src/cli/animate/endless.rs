@@ -14,6 +14,8 @@ pub(super) struct Period {
     pub(super) digits: [f64; 2],
     /// Degrees by which the picture is turned meanwhile.
     pub(super) turn: f64,
+    /// Number of steps.
+    pub(super) steps: f64,
 }
 
 /// Least magnification at the start: the ends of the set are out of sight.
@@ -43,11 +45,10 @@ pub(super) fn period(arguments: &Arguments, loaded: &Loaded) -> Result<Period, F
     let map = |periods: usize| {
         affine(&frames[start + periods * repeated.len()]) * affine(&frames[start]).inverse()
     };
-    let mut map = [map(1), map(2)];
-    if map[0].matrix2.determinant() < 0.0 {
-        map[0] = map[1];
-    }
-    let [across, up] = [map[0].matrix2.x_axis, map[0].matrix2.y_axis];
+    let is_mirrored = map(1).matrix2.determinant() < 0.0;
+    let once = if is_mirrored { 2 } else { 1 };
+    let map = map(once);
+    let [across, up] = [map.matrix2.x_axis, map.matrix2.y_axis];
     let is_similarity = (across.length() - up.length()).abs() < 1e-9 * across.length()
         && across.dot(up).abs() < 1e-9 * across.length_squared();
     let ratio = across.length();
@@ -58,9 +59,12 @@ pub(super) fn period(arguments: &Arguments, loaded: &Loaded) -> Result<Period, F
     }
     let digits = -libm::log10(ratio);
     let before = (LEAST_DIGITS / digits).ceil() * digits;
+    #[expect(clippy::cast_precision_loss, reason = "addresses are short")]
+    let steps = (once * repeated.len()) as f64;
     Ok(Period {
         digits: [before, before + digits],
         turn: -libm::atan2(across.y, across.x).to_degrees(),
+        steps,
     })
 }
 

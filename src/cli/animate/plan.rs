@@ -54,6 +54,8 @@ struct Course {
     digits: [f64; 2],
     /// Degrees at the start and at the end.
     turn: [f64; 2],
+    /// Number of steps by which a zoom without end goes on.
+    steps: Option<f64>,
 }
 
 impl Course {
@@ -64,16 +66,19 @@ impl Course {
             Some(Zooms::One(factor)) => Some(Self {
                 digits: [digits(factor); 2],
                 turn: [0.0; 2],
+                steps: None,
             }),
             Some(Zooms::Range([first, last])) => Some(Self {
                 digits: [digits(first), digits(last)],
                 turn: [0.0; 2],
+                steps: None,
             }),
             Some(Zooms::Loop) => {
                 let period = endless::period(arguments, loaded)?;
                 Some(Self {
                     digits: period.digits,
                     turn: [0.0, period.turn],
+                    steps: Some(period.steps),
                 })
             }
         })
@@ -118,9 +123,12 @@ pub(super) fn film<'a>(
     let course = Course::of(arguments, loaded)?;
     let mut common = common(arguments);
     common.extend(half_way.and_then(|model| steps_of(arguments, model)));
+    let ranges = ranges(arguments, loaded, course.as_ref());
     let frame = |number: u32| {
         let moment = timeline.moment(number);
-        let own = at(arguments, &moment, &timeline, course.as_ref());
+        let mut own = at(arguments, &moment, &timeline, course.as_ref());
+        let range = ranges.as_ref().map(|range| range.at(&moment));
+        own.extend(range);
         [common.as_slice(), &own].concat()
     };
     let mut frames = Frames {
@@ -226,6 +234,53 @@ fn common(arguments: &Arguments) -> Vec<String> {
     common.extend_from_slice(arguments.others.arguments());
     common.extend(["--threads=1", "--output=-"].map(String::from));
     common
+}
+
+/// Returns the steps of the first and the last colour in frames that differ in their steps, unless they are given: elements
+/// keep their colours as growth goes on, and in a zoom without end, colours go along with the magnification.
+fn ranges(arguments: &Arguments, loaded: &Loaded, course: Option<&Course>) -> Option<Ranges> {
+    let style = &loaded.model.metadata().style;
+    if arguments.others.gives("color-range") || style.color_range.is_some() {
+        return None;
+    }
+    if let Some(
+        course @ Course {
+            steps: Some(steps), ..
+        },
+    ) = course
+    {
+        let detail = arguments.others.value("detail");
+        let detail = detail.and_then(|it| it.parse().ok()).unwrap_or(1.0);
+        let seen = libm::log10(arguments.size.size.long_side() / detail);
+        let [first, last] = course.digits;
+        let of_digit = steps / (last - first);
+        return Some(Ranges {
+            first: course.digits.map(|digits| digits * of_digit),
+            length: (seen * of_digit).max(1.0),
+        });
+    }
+    let most = arguments.steps.as_ref()?.as_slice().iter().max()?;
+    Some(Ranges {
+        first: [0.0; 2],
+        length: f64::from(*most).max(1.0),
+    })
+}
+
+/// Steps of the palette in the course of a film.
+struct Ranges {
+    /// Step of the first colour, at the start and at the end.
+    first: [f64; 2],
+    /// Number of steps to the last colour.
+    length: f64,
+}
+
+impl Ranges {
+    fn at(&self, moment: &Moment) -> String {
+        let [from, to] = self.first;
+        let first = from + (to - from) * moment.share();
+        let [first, last] = [first, first + self.length].map(super::super::family::plain);
+        format!("--color-range={first}..{last}")
+    }
 }
 
 /// Returns the arguments of one frame.

@@ -80,6 +80,8 @@ const INSTANCE: Shape = Shape {
                 "The object that it is one of; with its level in brackets, if it has one. In space, sphere, \
                  plane, cylinder and cone are objects unless the file has others of these names.";
             tint: Form::Mapping(&TINT), "What it colours all that is in it with.";
+            repeat: Form::Mapping(&LOOP),
+                "Further instances, each transformed once more than the one before: {count: 12, rotate: 30}.";
         ],
         &FORMS,
         &OF_FRACTAL,
@@ -87,6 +89,20 @@ const INSTANCE: Shape = Shape {
     ],
     alternatives: &[],
     hint: "the name of an object, {object: up, scale: 1/2}, or {segment: [[0, 0], [0, 1]]}",
+};
+
+/// Keys of repeated instances, which are written out before they are read.
+const LOOP: Shape = Shape {
+    what: "a loop",
+    keys: &[
+        &keys![
+            needed count: Form::Number, "The number of instances, the first included."
+                => "a repetition needs a `count`";
+        ],
+        &TRANSFORMS,
+    ],
+    alternatives: &[],
+    hint: "repeat: {count: 12, rotate: 30}",
 };
 
 mapping! {

@@ -1,5 +1,7 @@
 //! Reading of metadata, which files of all kinds have.
 
+use std::collections::BTreeSet;
+
 use crate::diagnostic::Diagnostics;
 use crate::document::animation::{ANIMATION, read_animation};
 use crate::document::metadata::MetadataDocument;
@@ -67,6 +69,7 @@ pub(in crate::document) fn read_metadata(
         animation: { fields.take("animation") }
             .map(|node| read_animation(reader, node))
             .unwrap_or_default(),
+        used_by_ranges: BTreeSet::new(),
         complete: false,
         place: fields.place.clone(),
     }

@@ -9,7 +9,7 @@ use super::ifs::read_matrix;
 use super::space::{self, FACTORS_HINT, TURN};
 
 /// Keys that transform.
-pub(super) const TRANSFORMS: [Member; 5] = keys![
+pub(in crate::document) const TRANSFORMS: [Member; 5] = keys![
     =SCALE;
     =ROTATE;
     =TRANSLATE;

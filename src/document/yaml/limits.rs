@@ -98,8 +98,9 @@ impl Budget {
         } else {
             return Ok(());
         };
-        let message = format!("with its components the rule holds more than {most}");
-        let hint = "each counts as often as it is named";
+        let message =
+            format!("with its components and repetitions the file holds more than {most}");
+        let hint = "each counts as often as it is named or repeated";
         Err(Diagnostic::error(message).at(place).hint(hint))
     }
 

@@ -302,7 +302,9 @@ impl<'a> Cells<'a> {
         let is_shown = |[from, to]: [DVec2; 2]| shown.meets(&Bounds::new(from, to));
         let mut layers = Vec::new();
         if plan.by_steps {
-            layers = labelled(&fields, graph, &options.style, is_shown);
+            // As in approximants, colours do not depend on the window.
+            let last = shortest.and_then(|it| graph.steps_to(libm::log2(it)));
+            layers = labelled(&fields, graph, &options.style, last, is_shown);
             let shift = to_pixels(&canvas, pixels, &fields);
             let marks = layers.iter_mut().flat_map(|(_, marks)| marks);
             marks.flatten().for_each(|end| *end += shift);
@@ -349,19 +351,22 @@ fn to_pixels(canvas: &Canvas, pixels: f64, fields: &[Field]) -> DVec2 {
     DVec2::new(way.x, -way.y)
 }
 
-/// Returns the marks by class, in the order of the classes; labels are steps.
+/// Returns the marks by class, in the order of the classes; labels are steps, the last of which is that of the whole set
+/// where it is known.
 fn labelled(
     fields: &[Field],
     graph: &Graph,
     style: &Style,
+    last: Option<u32>,
     is_shown: impl Fn([DVec2; 2]) -> bool,
 ) -> Vec<(Colour, Vec<[DVec2; 2]>)> {
     let mut marks: Vec<(u16, [DVec2; 2])> = Vec::new();
     for row in fields.iter().flat_map(Field::rows) {
         row.visit_labels(|label, ends| marks.extend(is_shown(ends).then_some((label, ends))));
     }
-    let last = marks.iter().map(|(label, _)| *label).max().unwrap_or(0);
-    let classes = Classes::before_survey(style.color_by, graph, last.into());
+    let labels = marks.iter().map(|(label, _)| u32::from(*label));
+    let last = labels.chain(last).max().unwrap_or(0);
+    let classes = Classes::before_survey(style, graph, last);
     let mut layers: Vec<(Colour, Vec<[DVec2; 2]>)> = { classes.all() }
         .map(|class| {
             (

@@ -92,7 +92,7 @@ impl LimitStyle {
             Width::Relative(_) => return None,
         };
         // Steps are distinguished within a layer.
-        let classes = Classes::before_survey(style.color_by, graph, 0);
+        let classes = Classes::before_survey(style, graph, 0);
         let layers = layers(graph, &classes)?;
         let own = if all_closed && !outlines {
             style.polygons()

@@ -355,7 +355,7 @@ fn ranks_may_be_larger_than_any_walk_counts() {
         assert_eq!(cells.0.len(), 64);
         let graph = model.compile(36).unwrap();
         let growth = Growth::steps(36);
-        let mut classes = Classes::before_survey(ColorBy::Index, &graph, 36);
+        let mut classes = Classes::before_survey(&style, &graph, 36);
         classes = classes.after_survey(1, 64);
         for (class, middle) in (0..).zip(cells.0) {
             let [x, y] = [middle.x - 1e-10, middle.y - 1e-10];

@@ -249,7 +249,10 @@ fn draw(
         ClassBy::FirstMap | ClassBy::LastMap => {
             graph.origins() + usize::from(scene::draws_unmade(graph))
         }
-        ClassBy::Step => steps.unwrap_or(16).min(64) as usize + 1,
+        ClassBy::Step => {
+            let least = if style.range().is_some() { 64 } else { 16 };
+            steps.unwrap_or(least).min(64) as usize + 1
+        }
         ClassBy::Normal => NORMALS,
     };
     let has_faces = scene::has_faces(graph, steps);
@@ -263,7 +266,10 @@ fn draw(
     };
     let lit = (is_lit || by_normal).then(|| Lit::new(&space.camera, light, known));
     let lit = lit.transpose().map_err(SpaceError::from)?;
-    let inks = shade::colours(style, class_by, classes);
+    let mut inks = shade::colours(style, class_by, classes);
+    if let (ClassBy::Step, Some(steps)) = (class_by, steps) {
+        shade::let_grow(&mut inks, style, steps, graph.lag());
+    }
     let pad = solid::pad(graph);
     // Stamps are shared by tiles.
     let has_stamps = class_by != ClassBy::Tint && lit.is_none_or(|lit| lit.bits().is_some());

@@ -65,7 +65,7 @@ pub fn colours_of_maps(
         return vec![shade::ink(style)];
     }
     let maps = Maps::of(graph, system);
-    let colour = |map| class_colour(&style.palette, maps.number(map), maps.count + maps.before);
+    let colour = |map| class_colour(style, maps.number(map), maps.count + maps.before);
     (0..system.classes()).map(colour).collect()
 }
 

@@ -330,8 +330,8 @@ where
             };
             bounding_box(&seen, &growth).ok()
         }),
-        None => match &graph.limit {
-            Some(limit) => extent_along(limit, rows, None),
+        None => match &graph.between {
+            Some(between) => extent_along(&between.whole, rows, None),
             None => seen.limit_bounds(),
         },
     }

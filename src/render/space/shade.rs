@@ -2,7 +2,7 @@
 
 use tiny_skia::PremultipliedColorU8;
 
-use crate::style::{Colour, Palette, Shade, Style};
+use crate::style::{Colour, Shade, Style};
 
 use super::buffer::{EMPTY, SAMPLES, STEPS};
 use super::lit::{Lit, intensity};
@@ -22,8 +22,19 @@ pub(super) fn colours(style: &Style, by: ClassBy, most: usize) -> Vec<Colour> {
     match by {
         ClassBy::Nothing | ClassBy::Tint => vec![ink(style)],
         _ => (0..most.max(1))
-            .map(|class| class_colour(&style.palette, class, most))
+            .map(|class| class_colour(style, class, most))
             .collect(),
+    }
+}
+
+/// Sets the colours of classes, which are steps, where `lag` of the last of them has not grown yet.
+pub(super) fn let_grow(inks: &mut [Colour], style: &Style, steps: u32, lag: f64) {
+    if lag == 0.0 || steps as usize >= inks.len() {
+        return;
+    }
+    let last = f64::from(steps) - lag;
+    for (step, ink) in (0..=steps).zip(inks) {
+        *ink = style.colour_of_value(f64::from(step).min(last), last);
     }
 }
 
@@ -99,9 +110,8 @@ impl Inks {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "there are few classes")]
-pub(super) fn class_colour(palette: &Palette, class: usize, most: usize) -> Colour {
-    let last = most.saturating_sub(1).max(1);
-    palette.at(class as f64 / last as f64)
+pub(super) fn class_colour(style: &Style, class: usize, most: usize) -> Colour {
+    style.colour_of_value(class as f64, most.saturating_sub(1) as f64)
 }
 
 /// Rounds a premultiplied colour.

@@ -1,6 +1,5 @@
 //! The turtle's interpretation of symbols.
 
-use crate::diagnostic::did_you_mean;
 use crate::document::{ActionDocument, ModuleDocument, SymbolDocument, WrittenNumber};
 use crate::expression::{Program, Scope};
 use crate::lsystem::{Action, Symbol};
@@ -75,7 +74,7 @@ impl Resolver<OfLSystem> {
         if known.is_none() && !self.incomplete {
             let message = format!("there is no surface '{written}'");
             let names = self.kind.surfaces.iter().map(String::as_str);
-            let hint = did_you_mean(written, names).unwrap_or_else(|| {
+            let hint = self.suggestion(written, names).unwrap_or_else(|| {
                 "list it under `surfaces`, or name a base element of the library: ~(leaf)".into()
             });
             self.error_with_hint(&name.place, message, hint);

@@ -1,6 +1,6 @@
 //! Resolution of the selection of generators.
 
-use crate::diagnostic::{did_you_mean, listed};
+use crate::diagnostic::listed;
 use crate::document::{CaseDocument, Entry, RuleDocument, SelectDocument, Written, WrittenNumber};
 use crate::expression::Scope;
 
@@ -18,7 +18,8 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             && self.mistakes < MAX_MISTAKES
         {
             let known = self.kind.generator_names.iter().map(String::as_str);
-            let hint = did_you_mean(&name.value, known.clone())
+            let hint = self
+                .suggestion(&name.value, known.clone())
                 .unwrap_or_else(|| format!("the generators are: {}", listed(known)));
             let message = format!("there is no generator '{}'", name.value);
             self.error_with_hint(&name.place, message, hint);
