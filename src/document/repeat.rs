@@ -145,10 +145,15 @@ impl Expansion<'_> {
             let message = format!("a repetition has from 1 to {MAX_COPIES} copies, not {count}");
             return self.error(&repetition.place, message, HINT);
         }
-        let step = in_order(step);
         let (transforms, mut rest): (Vec<_>, Vec<_>) =
             own.iter().cloned().partition(|(key, _)| is_transform(key));
+        let mut lists = transforms.iter().chain(&step);
+        if let Some((_, list)) = lists.find(|(_, list)| list.value == Value::Sequence(Vec::new())) {
+            let message = "there is no transform in this list".into();
+            return self.error(&list.place, message, HINT);
+        }
         rest.retain(|(key, _)| key.name != REPEAT);
+        let step = in_order(step);
         let mut transforms = in_order(transforms);
         for _ in 0..count {
             let mut keys = rest.clone();
@@ -227,12 +232,14 @@ impl Expansion<'_> {
             };
             entries.retain(|(key, _)| key.name != FOR);
             let each = { entries.iter() }.position(|(key, _)| key.name == EACH);
-            let copy = match each {
-                Some(each) => entries.swap_remove(each).1,
-                None => Node {
-                    place: copy.place,
-                    value: Value::Mapping(entries),
-                },
+            if let Some(each) = each {
+                let copy = self.node(&entries[each].1);
+                all.push(copy);
+                continue;
+            }
+            let copy = Node {
+                place: copy.place,
+                value: Value::Mapping(entries),
             };
             self.entry(&copy, all);
         }

@@ -16,7 +16,7 @@ use crate::fast_hash::FastMap;
 use crate::output_file::OutputFile;
 
 /// Largest size of all frames together that wait for the palette in memory, compressed.
-const MAX_HELD: usize = 1 << 26;
+const MAX_HELD: usize = 1 << 23;
 
 /// Number of pixels from which a palette is chosen.
 const SAMPLES: usize = 1 << 20;

@@ -22,13 +22,15 @@ pub(super) enum Share {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Classes {
     by: ColorBy,
-    /// Largest value that is distinguished; values start at 0.
+    /// Least value that is distinguished from larger ones.
+    least: u128,
+    /// Largest value that is distinguished from smaller ones.
     largest: u128,
+    /// Largest step or age.
+    end: u32,
     /// If the colour depends on generators or maps: the value of the first one, which is 1 if the approximant
     /// draws elements that none of them has made, such as the initiator, and 0 otherwise.
     before: u128,
-    /// Number of classes into which values are quantised if there are more.
-    most: u64,
     /// Share of the last step that has not grown yet, in which the colours of what it brings change as well.
     lag: f64,
 }
@@ -59,23 +61,27 @@ impl Classes {
             ColorProperty::Direction => 3,
             _ => 0,
         };
+        let [least, largest] = match style.range() {
+            Some(range) => distinguished(range, steps).map(u128::from),
+            None => [0, largest],
+        };
         Self {
             by,
+            least,
             largest,
+            end: steps,
             before,
-            most: match style.range() {
-                // A few of many values may have all colours.
-                Some(_) => u64::MAX,
-                None => MAX_CLASSES,
-            },
             lag: graph.lag(),
         }
     }
 
-    /// Returns the number of classes: at most 64, unless the palette has a range.
+    /// Returns the number of classes, at most 64.
     #[must_use]
     pub(crate) fn count(&self) -> u64 {
-        u64::try_from(self.largest).map_or(self.most, |largest| (largest + 1).min(self.most))
+        let values = self.largest - self.least;
+        u64::try_from(values).map_or(MAX_CLASSES, |values| {
+            values.saturating_add(1).min(MAX_CLASSES)
+        })
     }
 
     pub(super) fn all(&self) -> Range<u64> {
@@ -130,10 +136,10 @@ impl Classes {
 
     /// Returns the values of a class, in steps.
     fn values(&self, class: u64) -> Option<RangeInclusive<u32>> {
-        let first = (0..=self.largest).find(|&step| self.of_value(step) >= class)?;
-        let mut steps = (0..=self.largest).rev();
-        let last = steps.find(|&step| self.of_value(step) <= class)?;
-        Some(u32::try_from(first).ok()?..=u32::try_from(last).ok()?)
+        let of_step = |step: u32| self.of_value(step.into());
+        let first = (0..=self.end).find(|&step| of_step(step) >= class)?;
+        let last = (0..=self.end).rev().find(|&step| of_step(step) <= class)?;
+        Some(first..=last)
     }
 
     /// Returns the portion of a run's elements that is in a class.
@@ -178,13 +184,15 @@ impl Classes {
     /// Returns the class of a value.
     #[inline]
     pub(super) fn of_value(&self, value: u128) -> u64 {
-        let most = u128::from(self.most);
-        let class = if self.largest < most {
+        let most = u128::from(MAX_CLASSES);
+        let [value, values] =
+            [value.clamp(self.least, self.largest), self.largest].map(|it| it - self.least);
+        let class = if values < most {
             value
         } else {
-            value.saturating_mul(most) / (self.largest + 1)
+            value.saturating_mul(most) / (values + 1)
         };
-        u64::try_from(class).unwrap_or(self.most - 1)
+        u64::try_from(class).unwrap_or(MAX_CLASSES - 1)
     }
 
     /// Returns the colour of a class; `None` if the palette is not used.
@@ -193,20 +201,26 @@ impl Classes {
         if !self.by.takes_palette() {
             return None;
         }
-        let last = self.count() - 1;
-        // Quantised values are too many for parts of steps to matter.
-        let lag = if u128::from(last) == self.largest {
-            self.lag
-        } else {
-            0.0
-        };
+        let last_class = self.count() - 1;
+        let values = self.largest - self.least;
+        #[expect(clippy::cast_precision_loss, reason = "colours need few digits")]
+        let [least, last, step] = [
+            self.least as f64,
+            self.largest as f64,
+            values as f64 / last_class.max(1) as f64,
+        ];
         #[expect(clippy::cast_precision_loss, reason = "there are few classes")]
-        let (value, most) = (class as f64, last as f64);
+        let value = least + class as f64 * step;
+        let is_newest = class == last_class && self.largest == u128::from(self.end);
         Some(match self.by.property() {
-            ColorProperty::Step if class == last => style.colour_of_value(most - lag, most - lag),
-            ColorProperty::Step => style.colour_of_value(value, most - lag),
-            ColorProperty::Age => style.colour_of_value((value - lag).max(0.0), most - lag),
-            _ => style.colour_of_value(value, most),
+            ColorProperty::Step if is_newest => {
+                style.colour_of_value(last - self.lag, last - self.lag)
+            }
+            ColorProperty::Step => style.colour_of_value(value, last - self.lag),
+            ColorProperty::Age => {
+                style.colour_of_value((value - self.lag).max(0.0), last - self.lag)
+            }
+            _ => style.colour_of_value(value, last),
         })
     }
 
@@ -225,6 +239,17 @@ impl Classes {
         use ColorProperty::{Age, Fractal, Tint, Uniform};
         matches!(self.by.property(), Uniform | Tint | Age | Fractal)
     }
+}
+
+/// Returns the least and the largest step or age that a range of colours distinguishes, of those from 0 to `end`.
+fn distinguished([first, last]: [f64; 2], end: u32) -> [u32; 2] {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts to integers saturate"
+    )]
+    let [first, last] = [first.floor() as u32, last.ceil() as u32].map(|step| step.min(end));
+    [first, last.max(first)]
 }
 
 /// Returns the number of the generator or map that made an object, if the colour depends on it.
