@@ -58,32 +58,6 @@ pub(super) struct PictureArguments {
     color_range: Option<ColorRange>,
 }
 
-/// Steps or ages of the first and the last colour of the palette.
-#[derive(Clone, Copy)]
-pub(super) struct ColorRange(pub(super) [f64; 2]);
-
-impl ColorRange {
-    fn parse(text: &str) -> Result<Self, String> {
-        let ends = text.split_once("..").map(|(first, last)| [first, last]);
-        let ends = ends.and_then(|ends| {
-            let [first, last] =
-                ends.map(|end| end.trim().parse::<f64>().ok().filter(|it| it.is_finite()));
-            Some([first?, last?])
-        });
-        match ends {
-            Some([first, last]) if first < last => Ok(Self([first, last])),
-            _ => Err("expected two steps, the smaller one first, as in 0..8".into()),
-        }
-    }
-}
-
-impl fmt::Display for ColorRange {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [first, last] = self.0;
-        write!(f, "{first}..{last}")
-    }
-}
-
 impl PictureArguments {
     /// Returns the style of the rule with the options applied.
     pub(super) fn style(&self, metadata: &Metadata) -> Style {
@@ -217,6 +191,32 @@ impl PictureArguments {
             self.color_range.map(|range| range.to_string()),
         );
         options
+    }
+}
+
+/// Steps or ages of the first and the last colour of the palette.
+#[derive(Clone, Copy)]
+struct ColorRange([f64; 2]);
+
+impl ColorRange {
+    fn parse(text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").map(|(first, last)| [first, last]);
+        let ends = ends.and_then(|ends| {
+            let [first, last] =
+                ends.map(|end| end.trim().parse::<f64>().ok().filter(|it| it.is_finite()));
+            Some([first?, last?])
+        });
+        match ends {
+            Some([first, last]) if first < last => Ok(Self([first, last])),
+            _ => Err("expected two steps, the smaller one first, as in 0..8".into()),
+        }
+    }
+}
+
+impl fmt::Display for ColorRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [first, last] = self.0;
+        write!(f, "{first}..{last}")
     }
 }
 

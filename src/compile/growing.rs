@@ -13,7 +13,7 @@ use crate::graph::{
 };
 use crate::ifs::System;
 use crate::instancing::Instancing;
-use crate::rule::{ElementContext, Extent, Part};
+use crate::rule::{ElementContext, Extent, GrowthStart, Part, Rule, RuleFrame};
 use crate::tween::{Growing, Grown};
 
 impl<F: Frame> Graph<F> {
@@ -71,6 +71,26 @@ impl<F: Frame> Graph<F> {
         });
         self
     }
+}
+
+/// Returns the graph of a rule, in which a step grows if the rule has one that does. Elements begin where
+/// [`Rule::starts_of_growth`] has them, and seeds of filled shapes and solids as points.
+pub(super) fn of_rule<F: RuleFrame>(rule: &Rule<F>, graph: Graph<F>) -> Graph<F> {
+    let Some(growing @ Growing { share, .. }) = rule.growing else {
+        return graph;
+    };
+    let starts = rule.starts_of_growth();
+    let graph = Graph {
+        affine: graph.affine || !F::GROWS_SIMILAR,
+        ..graph
+    };
+    graph.growing(growing, move |base_element, frame, is_seed| {
+        let start = match starts[base_element] {
+            GrowthStart::Element if is_seed => GrowthStart::Point,
+            start => start,
+        };
+        frame.grown(start, share)
+    })
 }
 
 /// Returns the graph of a system, in which a step grows if the system has one that does. Images begin as the set of which

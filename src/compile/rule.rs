@@ -7,9 +7,9 @@ use crate::draws::Path;
 use crate::expression::Dependence;
 use crate::fast_hash::FastMap;
 use crate::geometry::Point;
-use crate::rule::{ElementContext, GrowthStart, Part, Placement, Rule, RuleFrame, Selection};
-use crate::tween::Growing;
+use crate::rule::{ElementContext, Part, Placement, Rule, RuleFrame, Selection};
 
+use super::growing;
 use super::state::{Class, Dependences, ElementState};
 use crate::graph::{Alternative, CompileError, Graph, Object, Replacement, Successor};
 
@@ -32,22 +32,7 @@ impl<F: RuleFrame> Graph<F> {
     ///
     /// If a generator yields points that are not finite within these steps.
     pub fn compile(rule: &Arc<Rule<F>>, steps: u32) -> Result<Self, CompileError> {
-        let graph = Self::whole(rule, steps)?;
-        let Some(growing @ Growing { share, .. }) = rule.growing else {
-            return Ok(graph);
-        };
-        let starts = rule.starts_of_growth();
-        let graph = Self {
-            affine: graph.affine || !F::GROWS_SIMILAR,
-            ..graph
-        };
-        Ok(graph.growing(growing, move |base_element, frame, is_seed| {
-            let start = match starts[base_element] {
-                GrowthStart::Element if is_seed => GrowthStart::Point,
-                start => start,
-            };
-            frame.grown(start, share)
-        }))
+        Ok(growing::of_rule(rule, Self::whole(rule, steps)?))
     }
 
     /// Compiles a rule without the growth of a step.
@@ -60,15 +45,7 @@ impl<F: RuleFrame> Graph<F> {
                 Ok(graph) => return Ok(graph),
             }
         }
-        let counted = Dependences {
-            age: false,
-            step: false,
-            length: false,
-            modulus: 1,
-            index_is_free: true,
-            counts_index: true,
-        };
-        match Compiler::new(rule, counted, steps).run() {
+        match Compiler::new(rule, Dependences::counted(), steps).run() {
             Ok(graph) => Ok(graph),
             Err(Stop::Error(error)) => Err(error),
             Err(Stop::Irregular) => unreachable!("counted rules have one object a class"),

@@ -61,6 +61,18 @@ pub(super) struct Dependences {
 const LARGEST_MODULUS: u32 = 64;
 
 impl Dependences {
+    /// Returns the dependences of a graph whose walks count indices: nothing is resolved.
+    pub(super) fn counted() -> Self {
+        Self {
+            age: false,
+            step: false,
+            length: false,
+            modulus: 1,
+            index_is_free: true,
+            counts_index: true,
+        }
+    }
+
     pub(super) fn of<F: RuleFrame>(rule: &Rule<F>) -> Self {
         let mut all = Self {
             age: false,

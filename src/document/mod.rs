@@ -123,7 +123,7 @@ macro_rules! documents {
                 node: &Node,
                 complete: bool,
             ) -> Option<Self> {
-                let all = repeat::written_out(node, found);
+                let all = repeat::written_out(node, found)?;
                 let mut read = Self::read_after(found, kind, &all.node, complete)?;
                 match &mut read {
                     $(Self::$kind(document) => document.metadata.used_by_ranges = all.used,)*

@@ -53,20 +53,23 @@ pub(super) struct WrittenOut {
     pub(super) used: BTreeSet<String>,
 }
 
-/// Writes out all repetitions of a file. Mistakes are reported, and their entries left out.
-pub(super) fn written_out(file: &Node, diagnostics: &mut Diagnostics) -> WrittenOut {
+/// Writes out all repetitions of a file. Reports mistakes and returns `None`: without their entries, lists would seem to have
+/// other mistakes.
+pub(super) fn written_out(file: &Node, diagnostics: &mut Diagnostics) -> Option<WrittenOut> {
     let mut expansion = Expansion {
         parameters: file.get("params"),
         has_instances: matches!(file.get("kind").map(|kind| &kind.value), Some(Value::Text(kind)) if kind == Kind::Instancing.name()),
         values: BTreeMap::new(),
         budget: Budget::default(),
         is_full: false,
-        diagnostics,
+        mistakes: Diagnostics::default(),
     };
     expansion.budget.own(Size::of(file));
     let node = expansion.node(file);
     let used = expansion.values.into_keys().collect();
-    WrittenOut { node, used }
+    let is_sound = expansion.mistakes.is_empty();
+    diagnostics.extend(expansion.mistakes);
+    is_sound.then_some(WrittenOut { node, used })
 }
 
 struct Expansion<'f> {
@@ -79,7 +82,7 @@ struct Expansion<'f> {
     budget: Budget,
     /// Whether the file has become too large, which is reported once.
     is_full: bool,
-    diagnostics: &'f mut Diagnostics,
+    mistakes: Diagnostics,
 }
 
 impl Expansion<'_> {
@@ -185,7 +188,7 @@ impl Expansion<'_> {
         let room = self.budget.component(Size::of(copy), place);
         if let Err(error) = room {
             if !std::mem::replace(&mut self.is_full, true) {
-                self.diagnostics.push(error);
+                self.mistakes.push(error);
             }
             return false;
         }
@@ -231,9 +234,8 @@ impl Expansion<'_> {
                 continue;
             };
             entries.retain(|(key, _)| key.name != FOR);
-            let each = { entries.iter() }.position(|(key, _)| key.name == EACH);
-            if let Some(each) = each {
-                let copy = self.node(&entries[each].1);
+            if let Some((_, each)) = entries.iter().find(|(key, _)| key.name == EACH) {
+                let copy = self.node(each);
                 all.push(copy);
                 continue;
             }
@@ -267,6 +269,11 @@ impl Expansion<'_> {
                 message.into(),
                 "{for: {k: 0..4}, each: [cos(72*k), sin(72*k)]}",
             );
+            return None;
+        }
+        if let Some(Value::Mapping(_)) = entry.get(EACH).map(|each| &each.value) {
+            let message = "`each` is no mapping: its keys stand beside `for`";
+            self.error(&entry.place, message.into(), HINT);
             return None;
         }
         Some(entry.clone())
@@ -362,7 +369,7 @@ impl Expansion<'_> {
     }
 
     fn error(&mut self, place: &Place, message: String, hint: &str) {
-        self.diagnostics
+        self.mistakes
             .push(Diagnostic::error(message).at(place).hint(hint));
     }
 }

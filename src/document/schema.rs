@@ -155,6 +155,11 @@ impl Definitions {
     }
 
     fn either(&mut self, forms: &[Form]) -> Object {
+        let alternatives = self.alternatives(forms.iter());
+        Object::default().with("anyOf", list(alternatives))
+    }
+
+    fn alternatives<'f>(&mut self, forms: impl Iterator<Item = &'f Form>) -> Vec<Object> {
         let mut alternatives = Vec::new();
         for form in forms {
             if let Form::File(shelf) = form {
@@ -164,7 +169,7 @@ impl Definitions {
                 alternatives.push(self.form(form));
             }
         }
-        Object::default().with("anyOf", list(alternatives))
+        alternatives
     }
 
     /// Returns the schema of a value.
@@ -227,52 +232,63 @@ impl Definitions {
         }
     }
 
-    /// Returns the schema of an entry of an open list, or of its repetition.
+    /// Returns the schema of an entry of an open list, or of its repetition: a mapping has `for` beside its own keys, and
+    /// another value is that of `each` beside `for`.
     fn entry(&mut self, form: &Form) -> Object {
-        let mut all = vec![self.form(form)];
         let forms = match form {
             Form::Either(forms) => *forms,
             form => std::slice::from_ref(form),
         };
+        let mut all = Vec::new();
         for form in forms {
             if let Form::Mapping(shape) = form {
-                let name = format!("repeated-{}", name_of(shape));
-                all.push(self.defined(&name, |definitions| definitions.repeated(shape)));
+                let name = format!("entry-{}", name_of(shape));
+                all.push(self.defined(&name, |definitions| definitions.listed(shape)));
             }
         }
-        let each = Object::default().with(FOR, self.values_by_name());
-        all.push(
-            of_type("object")
-                .with("properties", each.with(EACH, self.form(form)))
-                .with("required", list([FOR, EACH]))
-                .with("additionalProperties", false),
-        );
-        Object::default().with("anyOf", list(all))
+        let others = || {
+            forms
+                .iter()
+                .filter(|form| !matches!(form, Form::Mapping(_)))
+        };
+        if others().next().is_some() {
+            let each = Object::default().with("anyOf", list(self.alternatives(others())));
+            let properties = self.repetition().with(EACH, each);
+            all.extend(self.alternatives(others()));
+            all.push(
+                of_type("object")
+                    .with("properties", properties)
+                    .with("required", list([FOR, EACH]))
+                    .with("additionalProperties", false),
+            );
+        }
+        match <[Object; 1]>::try_from(all) {
+            Ok([one]) => one,
+            Err(all) => Object::default().with("anyOf", list(all)),
+        }
     }
 
-    /// Returns the schema of a mapping that is repeated.
-    fn repeated(&mut self, shape: &Shape) -> Object {
-        let names = self.values_by_name();
-        let properties = self.properties(shape).with(FOR, names);
+    /// Returns the schema of a mapping in a list, which may be repeated.
+    fn listed(&mut self, shape: &Shape) -> Object {
+        let properties = self.properties(shape).and(self.repetition());
         of_type("object")
             .with("properties", properties)
             .with("additionalProperties", false)
-            .with("required", list(needed(shape, self.alone).chain([FOR])))
+            .and(required(shape, self.alone))
             .and(alternatives(shape, true))
     }
 
-    /// Returns the schema of the names and values of a repetition.
-    fn values_by_name(&mut self) -> Object {
-        self.defined("values-by-name", |definitions| {
+    /// Returns the schema of `for` by its key.
+    fn repetition(&mut self) -> Object {
+        let values = self.defined("values-by-name", |definitions| {
             let values = of_type("array").with("items", definitions.form(&Form::Text));
-            let range = of_type("string");
-            let either = Object::default().with("anyOf", list([range, values]));
-            let about = "The entry is repeated for every value of a name, over a range, {k: 0..11}, or a list, \
-                         {k: [1, 3, 5]}: the keys beside it, or `each`, use the name in expressions.";
-            of_type("object")
-                .with("description", about)
-                .with("additionalProperties", either)
-        })
+            let either = Object::default().with("anyOf", list([of_type("string"), values]));
+            of_type("object").with("additionalProperties", either)
+        });
+        let about = "The entry is repeated for every value of a name, over a range, {k: 0..11}, or a list, \
+                     {k: [1, 3, 5]}. The keys beside it, or `each`, use the name in expressions.";
+        let names = Object::default().with("description", about);
+        Object::default().with(FOR, names.with("allOf", list([values])))
     }
 
     /// Returns a reference to a definition, which is added at its first use.
@@ -297,16 +313,11 @@ fn name_of(shape: &Shape) -> String {
     shape.what.split(' ').skip(1).collect::<Vec<_>>().join("-")
 }
 
-/// Iterates over the required keys.
-fn needed(shape: &Shape, alone: bool) -> impl Iterator<Item = &'static str> {
-    let needed = move |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
-    let members = shape.members().filter(move |member| needed(member.needed));
-    members.map(|member| member.name)
-}
-
 /// Returns the constraint for required keys.
 fn required(shape: &Shape, alone: bool) -> Object {
-    let names: Vec<_> = needed(shape, alone).collect();
+    let needed = |needed| needed == Needed::Always || (alone && needed == Needed::Alone);
+    let members = shape.members().filter(|member| needed(member.needed));
+    let names: Vec<_> = members.map(|member| member.name).collect();
     let names = (!names.is_empty()).then(|| list(names));
     Object::default().with_some("required", names)
 }

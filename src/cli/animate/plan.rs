@@ -123,7 +123,7 @@ pub(super) fn film<'a>(
     let course = Course::of(arguments, loaded)?;
     let mut common = common(arguments);
     common.extend(half_way.and_then(|model| steps_of(arguments, model)));
-    let ranges = ranges(arguments, loaded, course.as_ref());
+    let ranges = color_ranges(arguments, loaded, course.as_ref());
     let frame = |number: u32| {
         let moment = timeline.moment(number);
         let mut own = at(arguments, &moment, &timeline, course.as_ref());
@@ -238,43 +238,41 @@ fn common(arguments: &Arguments) -> Vec<String> {
 
 /// Returns the steps of the first and the last colour in frames that differ in their steps, unless they are given: elements
 /// keep their colours as growth goes on, and in a zoom without end, colours go along with the magnification.
-fn ranges(arguments: &Arguments, loaded: &Loaded, course: Option<&Course>) -> Option<Ranges> {
+fn color_ranges(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    course: Option<&Course>,
+) -> Option<ColorRanges> {
     let style = &loaded.model.metadata().style;
     if arguments.others.gives("color-range") || style.color_range.is_some() {
         return None;
     }
-    if let Some(
-        course @ Course {
-            steps: Some(steps), ..
-        },
-    ) = course
-    {
+    if let Some((steps, [first, last])) = course.and_then(|it| Some((it.steps?, it.digits))) {
         let detail = arguments.others.value("detail");
         let detail = detail.and_then(|it| it.parse().ok()).unwrap_or(1.0);
         let seen = libm::log10(arguments.size.size.long_side() / detail);
-        let [first, last] = course.digits;
         let of_digit = steps / (last - first);
-        return Some(Ranges {
-            first: course.digits.map(|digits| digits * of_digit),
+        return Some(ColorRanges {
+            first: [first, last].map(|digits| digits * of_digit),
             length: (seen * of_digit).max(1.0),
         });
     }
     let most = arguments.steps.as_ref()?.as_slice().iter().max()?;
-    Some(Ranges {
+    Some(ColorRanges {
         first: [0.0; 2],
         length: f64::from(*most).max(1.0),
     })
 }
 
 /// Steps of the palette in the course of a film.
-struct Ranges {
+struct ColorRanges {
     /// Step of the first colour, at the start and at the end.
     first: [f64; 2],
     /// Number of steps to the last colour.
     length: f64,
 }
 
-impl Ranges {
+impl ColorRanges {
     fn at(&self, moment: &Moment) -> String {
         let [from, to] = self.first;
         let first = from + (to - from) * moment.share();
