@@ -49,7 +49,8 @@ fn assert_same(name: &str, graphs: [&Graph; 2], set: Subset<'_>) {
         return;
     }
     let [a, b] = [0, 1].map(|which| *subjects[which].bounds());
-    let size = a.size().max_element();
+    // A set may be a single point.
+    let size = (a.size().max_element()).max(a.min().abs().max_element());
     for (a, b) in [(a.min(), b.min()), (a.max(), b.max())] {
         let off = (a - b).abs().max_element();
         assert!(off <= 1e-9 * size, "{name}: {a} and {b}");

@@ -105,3 +105,23 @@ generator:
 ";
     assert!(converts(rule) > 1);
 }
+
+/// Found at random: the limit set of a single map is a point, where boxes differ by roundings.
+#[test]
+fn limit_sets_may_be_points() {
+    let rule = "\
+initiator:
+  closed: false
+  elements:
+    - [0, 0]
+    - {to: [1/7, 0], from: [0, 2/5], visible: false, connected: false}
+generator:
+  parts:
+    - seeds: true
+      closed: false
+      elements:
+        - [0, 0]
+        - {to: [1/7, 1/4], direction: 2}
+";
+    assert!(converts(rule) > 1);
+}
