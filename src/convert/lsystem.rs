@@ -7,6 +7,8 @@
 mod bracketed;
 mod chain;
 
+use glam::DVec2;
+
 use crate::build::written::Entries;
 
 use super::rule::similarity;
@@ -47,11 +49,17 @@ fn letter_of<S: PartialEq>(symbols: &mut Vec<S>, symbol: S) -> Result<char, Refu
     }))
 }
 
-/// Converts an angle to degrees, rounded to a simple fraction that differs only by rounding.
-fn degrees(radians: f64) -> f64 {
+/// Returns the turn from a direction to another in radians, from −π to π; precise for small turns too.
+fn turn(from: DVec2, to: DVec2) -> f64 {
+    // A reversal is a turn to the left: the sum is never −0.
+    libm::atan2(from.perp_dot(to) + 0.0, from.dot(to))
+}
+
+/// Returns the turn from a direction to another in degrees, rounded to a simple fraction that differs only by rounding.
+fn degrees(from: DVec2, to: DVec2) -> f64 {
     const MAX_PARTS: u32 = 60;
     const ROUNDING: f64 = 1e-12;
-    let angle = radians.to_degrees();
+    let angle = turn(from, to).to_degrees();
     let simple = (1..=MAX_PARTS).map(f64::from).find_map(|part| {
         let nearest = (angle * part).round() / part;
         ((nearest - angle).abs() <= ROUNDING * 360.0).then_some(nearest)

@@ -113,7 +113,7 @@ impl Writer<'_> {
         let mut way = String::new();
         let mut heading = DVec2::X;
         let mut turn = |way: &mut String, wanted: DVec2| {
-            let angle = degrees(heading.angle_to(wanted));
+            let angle = degrees(heading, wanted);
             heading = wanted;
             if angle != 0.0 {
                 let (sign, angle) = if angle < 0.0 {
@@ -167,7 +167,7 @@ fn meaning(shape: &BaseElement) -> Result<Value, Refusal> {
     let mut go = |actions: &mut Vec<Value>, how: &str, to: DVec2| {
         let along = to - at;
         if along != DVec2::ZERO {
-            let angle = degrees(heading.angle_to(along));
+            let angle = degrees(heading, along);
             if angle != 0.0 {
                 actions.push(action("turn", angle));
             }
@@ -189,7 +189,7 @@ fn meaning(shape: &BaseElement) -> Result<Value, Refusal> {
         actions.push(word("close"));
     }
     go(&mut actions, "move", DVec2::X);
-    let angle = degrees(heading.angle_to(DVec2::X));
+    let angle = degrees(heading, DVec2::X);
     if angle != 0.0 {
         actions.push(action("turn", angle));
     }

@@ -9,7 +9,7 @@ use crate::geometry::DVec2;
 
 use super::super::number;
 use super::super::structure::{PlacedObject, Structure};
-use super::{degrees, letter, letter_of};
+use super::{degrees, letter, letter_of, turn};
 
 /// Relative tolerance of comparisons.
 const ROUNDING: f64 = 1e-9;
@@ -57,7 +57,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
         return None;
     }
     let turns = |lines: &[ChainLine], start: DVec2| -> Vec<f64> {
-        let turned = lines.iter().map(|line| start.angle_to(line.along));
+        let turned = lines.iter().map(|line| turn(start, line.along));
         turned.map(|angle| angle / std::f64::consts::TAU).collect()
     };
     let scene_turns = turns(&scene, first);
@@ -102,7 +102,7 @@ pub(super) fn write(structure: &Structure) -> Option<Entries> {
     let drawn = (1..done).try_fold(Entries::default(), |entries, number| {
         Some(entries.add(letter(number).ok()?, Value::Text("draw".into())))
     })?;
-    let heading = degrees(DVec2::X.angle_to(first));
+    let heading = degrees(DVec2::X, first);
     let starts = (heading != 0.0).then(|| number::value(heading));
     let longer = (first.length() - 1.0).abs() > ROUNDING;
     Some(
