@@ -5,8 +5,10 @@
 //! that is reached.
 
 mod appearance;
+mod drift;
 
 pub use appearance::{Appearance, Thickness};
+pub use drift::Drift;
 
 use std::sync::Arc;
 
@@ -67,13 +69,43 @@ pub enum Master<M: AffineMap = DAffine2> {
     Shape(M::Set),
 }
 
-/// Colour with its coverage (Hart 1992, section 5).
+/// Colour with its coverage (Hart 1992, section 5), and the drift of the colours that it yields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tint {
     /// Colour; its opacity is ignored.
     pub colour: Colour,
     /// Coverage, from 0 (transparent) to 1 (opaque).
     pub alpha: f64,
+    /// Drift of the colours of the instance and of its contents.
+    pub drift: Drift,
+}
+
+impl Tint {
+    /// Creates the tint of a colour with its coverage, from 0 to 1, without drift.
+    #[must_use]
+    pub fn cover(colour: Colour, alpha: f64) -> Self {
+        Self {
+            colour,
+            alpha,
+            drift: Drift::default(),
+        }
+    }
+
+    /// Returns the bit patterns of the colour, the coverage and the drift, as a key.
+    pub(crate) fn bits(self) -> [u64; 6] {
+        let [red, green, blue, _] = self.colour.rgba();
+        let colour = u32::from_be_bytes([0, red, green, blue]);
+        let [hue, saturation, lightness, opacity] = self.drift.changes().map(f64::to_bits);
+        let alpha = self.alpha.to_bits();
+        [
+            u64::from(colour),
+            alpha,
+            hue,
+            saturation,
+            lightness,
+            opacity,
+        ]
+    }
 }
 
 impl<M: AffineMap> Instancing<M> {

@@ -112,6 +112,7 @@ fn colours_are_those_of_plain_svg() {
         ("dragon-ifs", ColorBy::LastMap),
         ("dragon-ifs", ColorBy::FirstMap),
         ("pound-sign-tinted", ColorBy::Tint),
+        ("sunflower", ColorBy::Tint),
         ("plant-with-flowers", ColorBy::Tint),
     ] {
         let steps = 4;

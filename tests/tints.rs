@@ -6,7 +6,7 @@ use crate::common::{document, document_of};
 use kfrac::grow::Growth;
 use kfrac::model::Model;
 use kfrac::render::{self, Format, Options, Size};
-use kfrac::style::ColorBy;
+use kfrac::style::{ColorBy, Colour};
 
 fn picture(model: &Model, steps: u32, change: impl FnOnce(&mut Options)) -> Vec<u8> {
     let graph = model.compile(steps).unwrap();
@@ -101,11 +101,57 @@ fn colours_that_are_asked_for_are_not_tinted() {
     assert_eq!(bare.metadata().style.color_by, ColorBy::None);
 }
 
+/// Drifts add up along the path of an instance: ten squares, each turned by 36 degrees of hue against the one before.
+#[test]
+fn drifts_add_up_inwards() {
+    let row = |tint: &str, scene: &str| {
+        model(&format!(
+            "kind: instancing
+objects:
+  square: [{{polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}}]
+  row(0): [square]
+  row(n): [square, {{object: row(n - 1), scale: 0.9, translate: [1, 0], tint: {{{tint}}}}}]
+scene: [{{object: row(9), tint: {{{scene}}}}}]
+style: {{fill: navy}}
+"
+        ))
+    };
+    let turned = |degrees: i32| {
+        let colour = Colour::parse(&format!("hsl({degrees}, 100%, 50%)")).unwrap();
+        colour.to_string()
+    };
+    // The scene covers the colour of the style, and the row starts from it.
+    let text = svg(&row("hue: 36", "color: red"), 12);
+    let expected: Vec<_> = (0..10).map(|number| turned(36 * number)).collect();
+    assert_eq!(values(&text, "<path fill=\""), expected);
+    // Shares of the way to white leave 0.8^k of it.
+    let text = svg(&row("lightness: 0.2", "color: black, alpha: 1"), 12);
+    let grey = |number: i32| {
+        let value = (255.0 * (1.0 - 0.8f64.powi(number))).round();
+        format!("rgb({value}, {value}, {value})")
+    };
+    let expected: Vec<_> = (0..10)
+        .map(|number| Colour::parse(&grey(number)).unwrap().to_string())
+        .collect();
+    assert_eq!(values(&text, "<path fill=\""), expected);
+    let text = svg(&row("opacity: -1/2", "color: red"), 12);
+    assert_eq!(
+        values(&text, "fill-opacity=\"").len(),
+        9,
+        "all but the first are translucent: {text}"
+    );
+    // A drift of the scene starts from the colour of the style.
+    let text = svg(&row("hue: 0", "hue: 120, lightness: 0.5"), 12);
+    assert_eq!(values(&text, "<path fill=\""), ["#ff4040"]);
+    let text = svg(&row("saturation: -1", "hue: 120, lightness: -1"), 12);
+    assert_eq!(values(&text, "<path fill=\""), ["#000000"]);
+}
+
 /// Elements arrive in blocks where nothing is cut, one by one where a detail cuts, and from spans on several
 /// threads.
 #[test]
 fn however_a_structure_is_walked_its_colours_are_the_same() {
-    for name in ["pound-sign-tinted", "ternary-tree-levels"] {
+    for name in ["pound-sign-tinted", "ternary-tree-levels", "sunflower"] {
         let model = document(name).resolve(&[]).unwrap().0;
         let steps = model.metadata().steps.unwrap();
         for format in [Format::Svg, Format::Png] {

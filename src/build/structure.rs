@@ -70,6 +70,7 @@ macro_rules! transforms {
 #[must_use]
 pub struct InstanceBuilder {
     entries: Entries,
+    tint: Entries,
     transforms: Transforms,
 }
 
@@ -78,22 +79,45 @@ impl InstanceBuilder {
     pub fn of(object: impl Into<String>) -> Self {
         Self {
             entries: Entries::default().set("object", Value::Text(object.into())),
+            tint: Entries::default(),
             transforms: Transforms::default(),
         }
     }
 
     transforms!();
 
+    fn tinted(self, key: &str, value: Value) -> Self {
+        Self {
+            tint: self.tint.set(key, value),
+            ..self
+        }
+    }
+
     /// Tints the content of the instance with a colour; `alpha` is the strength of the tint, from 0 to
     /// 1.
     pub fn tint(self, colour: Colour, alpha: impl Into<NumberText>) -> Self {
-        let tint = Entries::default()
-            .set("color", colour_text(colour))
-            .set("alpha", alpha.into().0);
-        Self {
-            entries: self.entries.set("tint", tint.value()),
-            ..self
-        }
+        self.tinted("color", colour_text(colour))
+            .tinted("alpha", alpha.into().0)
+    }
+
+    /// Adds degrees to the hue of the content.
+    pub fn hue(self, degrees: impl Into<NumberText>) -> Self {
+        self.tinted("hue", degrees.into().0)
+    }
+
+    /// Moves the saturation of the content a share of the way to 1, or to 0 if the share is negative.
+    pub fn saturation(self, share: impl Into<NumberText>) -> Self {
+        self.tinted("saturation", share.into().0)
+    }
+
+    /// Moves the lightness of the content a share of the way to white, or to black if the share is negative.
+    pub fn lightness(self, share: impl Into<NumberText>) -> Self {
+        self.tinted("lightness", share.into().0)
+    }
+
+    /// Moves the opacity of the content a share of the way to 1, or to 0 if the share is negative.
+    pub fn opacity(self, share: impl Into<NumberText>) -> Self {
+        self.tinted("opacity", share.into().0)
     }
 }
 
@@ -101,6 +125,7 @@ impl From<SetBuilder> for InstanceBuilder {
     fn from(set: SetBuilder) -> Self {
         Self {
             entries: set.0,
+            tint: Entries::default(),
             transforms: Transforms::default(),
         }
     }
@@ -124,8 +149,11 @@ impl UnionBuilder {
     pub fn with(mut self, instance: impl Into<InstanceBuilder>) -> Self {
         let InstanceBuilder {
             entries,
+            tint,
             transforms,
         } = instance.into();
+        let tint = (!tint.is_empty()).then(|| tint.value());
+        let entries = entries.set_some("tint", tint);
         self.instances.push(transforms.add_to(entries).value());
         self
     }

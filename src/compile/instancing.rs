@@ -146,7 +146,7 @@ struct Compiler<'s, M: AffineMap> {
     /// Numbers of base elements, by their outlines.
     outlines: BTreeMap<Vec<u64>, usize>,
     /// Numbers of objects, by canonical object or shape, and by tint.
-    numbers: BTreeMap<(CanonicalNode, [u64; 2]), usize>,
+    numbers: BTreeMap<(CanonicalNode, Option<[u64; 6]>), usize>,
     /// Canonical object of every object of the graph.
     of: Vec<Option<usize>>,
 }
@@ -218,7 +218,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
             Master::Shape(shape) => CanonicalNode::Shape(self.base_element(shape)),
         };
         let made = self.objects.len();
-        let key = (kind, tint_bits(instance.tint));
+        let key = (kind, instance.tint.map(Tint::bits));
         let number = *self.numbers.entry(key).or_insert(made);
         if number == made {
             let (base_element, visible, of) = match kind {
@@ -247,13 +247,4 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         }
         number
     }
-}
-
-/// Returns a key of a tint.
-fn tint_bits(tint: Option<Tint>) -> [u64; 2] {
-    tint.map_or([0; 2], |tint| {
-        let [red, green, blue, _] = tint.colour.rgba();
-        let colour = u32::from_be_bytes([1, red, green, blue]);
-        [u64::from(colour), tint.alpha.to_bits()]
-    })
 }

@@ -70,7 +70,7 @@ impl<M: AffineMap> Structure<M> {
                 Replacement::Kept | Replacement::Unresolved
             );
             let paint = object.paint.filter(|_| ends);
-            let paint = paint.map(|colour| Tint { colour, alpha: 1.0 });
+            let paint = paint.map(|colour| Tint::cover(colour, 1.0));
             PlacedObject {
                 map: *instance.frame.map(),
                 shape: object.base_element,

@@ -1,8 +1,9 @@
-//! Appearance of instances: tints composed by Hart's equations, and stroke widths.
+//! Appearance of instances: tints composed by Hart's equations, drifts of colours, and stroke widths.
 
 use crate::style::Colour;
 
 use super::Tint;
+use super::drift::Drifted;
 
 /// Change of the width of strokes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +14,8 @@ pub enum Thickness {
     Set(f64),
 }
 
-/// Appearance: tints composed from the outside in, the outermost on top (Hart 1992, section 5), and the
-/// width of strokes, for which the innermost setting applies.
+/// Appearance: tints composed from the outside in, the outermost on top (Hart 1992, section 5), the drift of the
+/// colours that result, and the width of strokes, for which the innermost setting applies.
 ///
 /// Guarantee: composition is associative up to rounding, and [`Appearance::NONE`] is its identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,16 +30,19 @@ pub struct Appearance {
     sets_width: bool,
     /// Whether the colour replaces that of the contents, unaffected by the tints of enclosing instances.
     paints: bool,
+    /// Drift of the colour that the tints yield.
+    drift: Drifted,
 }
 
 impl Appearance {
-    /// Identity: neither tint nor change of width.
+    /// Identity: neither tint nor drift nor change of width.
     pub const NONE: Self = Self {
         colour: [0.0; 3],
         alpha: 0.0,
         width: 1.0,
         sets_width: false,
         paints: false,
+        drift: Drifted::NONE,
     };
 
     /// Creates the appearance of a single tint.
@@ -53,6 +57,7 @@ impl Appearance {
         Self {
             colour: [red, green, blue].map(|value| alpha * f32::from(value) / 255.0),
             alpha,
+            drift: Drifted::of(tint.drift),
             ..Self::NONE
         }
     }
@@ -81,7 +86,7 @@ impl Appearance {
     pub fn of_paint(colour: Colour) -> Self {
         Self {
             paints: true,
-            ..Self::of(Tint { colour, alpha: 1.0 })
+            ..Self::of(Tint::cover(colour, 1.0))
         }
     }
 
@@ -95,11 +100,11 @@ impl Appearance {
     }
 
     /// Returns the bit patterns of all fields, as a key.
-    pub(crate) fn bits(self) -> [u32; 6] {
+    pub(crate) fn bits(self) -> ([u32; 6], [u32; 7]) {
         let [red, green, blue] = self.colour.map(f32::to_bits);
         let flags = u32::from(self.sets_width) | u32::from(self.paints) << 1;
         let (alpha, width) = (self.alpha.to_bits(), self.width.to_bits());
-        [red, green, blue, alpha, width, flags]
+        ([red, green, blue, alpha, width, flags], self.drift.bits())
     }
 
     /// Returns the width of strokes as a multiple of the style's.
@@ -110,7 +115,7 @@ impl Appearance {
     }
 
     /// Composes this appearance with one inside it: c = c_o + (1 − α_o) α_i c_i and α = α_o + α_i (1 −
-    /// α_o), equations (9) and (10) of the paper.
+    /// α_o), equations (9) and (10) of the paper. The inner drift starts from the outer one.
     #[inline]
     #[must_use]
     pub fn over(self, inner: Self) -> Self {
@@ -130,6 +135,7 @@ impl Appearance {
                 self.width * inner.width
             },
             sets_width: self.sets_width || inner.sets_width,
+            drift: outer.drift.then(inner.drift),
         }
     }
 
@@ -142,26 +148,24 @@ impl Appearance {
     )]
     pub fn on(self, colour: Colour) -> Colour {
         let whole = |value: f32| (255.0 * value + 0.5) as u8;
-        let own = Self::of(Tint {
-            colour,
-            alpha: colour.opacity(),
-        });
+        let own = Self::of(Tint::cover(colour, colour.opacity()));
         let Self { colour, alpha, .. } = self.over(own);
-        let rgb = colour.map(|value| if alpha > 0.0 { value / alpha } else { 0.0 });
-        let [red, green, blue] = rgb.map(whole);
-        Colour::of_rgba([red, green, blue, whole(alpha)])
+        let [red, green, blue] = colour.map(|value| if alpha > 0.0 { value / alpha } else { 0.0 });
+        let drifted = self.drift.on([red, green, blue, alpha]);
+        Colour::of_rgba(drifted.map(whole))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Appearance, Thickness, Tint};
+    use crate::instancing::Drift;
     use crate::style::Colour;
 
     fn appearance(rgb: [u8; 3], alpha: f64) -> Appearance {
         let [red, green, blue] = rgb;
         let colour = Colour::of_rgba([red, green, blue, 255]);
-        Appearance::of(Tint { colour, alpha })
+        Appearance::of(Tint::cover(colour, alpha))
     }
 
     #[test]
@@ -205,5 +209,27 @@ mod tests {
         }
         let teal = Colour::of_rgba([0, 128, 127, 77]);
         assert_eq!(Appearance::NONE.on(teal), teal);
+    }
+    #[test]
+    fn drifts_change_what_tints_yield() {
+        let warmer = Appearance::of(Tint {
+            drift: Drift {
+                hue: 60.0,
+                ..Drift::default()
+            },
+            ..Tint::cover(Colour::BLACK, 0.0)
+        });
+        let red = appearance([255, 0, 0], 1.0);
+        for both in [warmer.over(red), red.over(warmer)] {
+            assert_eq!(both.on(Colour::BLACK).rgba(), [255, 255, 0, 255]);
+        }
+        let twice = warmer.over(red).over(warmer);
+        assert_eq!(twice.on(Colour::BLACK).rgba(), [0, 255, 0, 255]);
+        // A paint is not affected by what lies around it.
+        let paint = Appearance::of_paint(Colour::of_rgba([255, 0, 0, 255]));
+        assert_eq!(
+            warmer.over(paint).on(Colour::BLACK).rgba(),
+            [255, 0, 0, 255]
+        );
     }
 }

@@ -3,6 +3,7 @@
 
 mod loops;
 mod maps;
+mod tint;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -13,12 +14,13 @@ use crate::document::{
     ShapeDocument, TransformDocument, UnionDocument,
 };
 use crate::expression::{Program, Scope};
-use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
+use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance};
 use crate::metadata::Metadata;
-use crate::style::{ColorBy, Colour};
+use crate::style::ColorBy;
 
 use super::Resolver;
 pub(super) use maps::StructureMap;
+use tint::PreparedTint;
 
 /// Maximum number of objects after the expansion of levels.
 const MAX_OBJECTS: usize = 20_000;
@@ -84,7 +86,7 @@ struct Union<M: StructureMap> {
 struct Prepared<M: StructureMap> {
     master: Option<PreparedMaster<M>>,
     transforms: Arc<[M::Written]>,
-    tint: Option<(Colour, Program)>,
+    tint: Option<PreparedTint>,
     place: Place,
 }
 
@@ -266,13 +268,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 })
             }
         });
-        let tint = document.tint.as_ref().and_then(|tint| {
-            let alpha = match &tint.alpha {
-                Some(alpha) => self.program(alpha, scope),
-                None => Program::constant(1.0),
-            };
-            Some((tint.colour?, alpha))
-        });
+        let tint = { document.tint.as_ref() }.map(|tint| self.tint(tint, scope));
         Prepared {
             master,
             transforms: self.transforms(&document.transforms, scope),
@@ -346,16 +342,8 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 self.error(&prepared.place, message);
                 continue;
             }
-            let tint = prepared.tint.as_ref().map(|(colour, alpha)| Tint {
-                colour: *colour,
-                alpha: alpha.eval(&slots),
-            });
-            if let Some(tint) = tint.filter(|tint| !(0.0..=1.0).contains(&tint.alpha)) {
-                let message = format!("the alpha of this tint is {}", tint.alpha);
-                let hint = "it is a number from 0, nothing, to 1, all";
-                self.error_with_hint(&prepared.place, message, hint);
-                continue;
-            }
+            let tint = { prepared.tint.as_ref() }
+                .and_then(|tint| self.tint_at(tint, &slots, &prepared.place));
             let masters = match &prepared.master {
                 Some(PreparedMaster::Shape(shape)) => {
                     M::parts(shape).into_iter().map(Master::Shape).collect()

@@ -1,7 +1,7 @@
 //! Tweens of structures of objects.
 
 use crate::ifs::PointOf;
-use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
+use crate::instancing::{Drift, Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
 
 use super::maps::Tweened;
 use super::{Side, Tween, style, system};
@@ -58,10 +58,7 @@ fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectIns
         _ => None,
     };
     let tint = match both.map(|it| it.tint) {
-        [Some(a), Some(b)] => Some(Tint {
-            colour: style::colour(tween, [a.colour, b.colour]),
-            alpha: tween.between([a.alpha, b.alpha]),
-        }),
+        [Some(a), Some(b)] => Some(tint(tween, [a, b])),
         [Some(a), None] => Some(fading(a, tween.of(0))),
         [None, Some(b)] => Some(fading(b, tween.of(1))),
         [None, None] => None,
@@ -74,10 +71,21 @@ fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectIns
     }
 }
 
-/// Returns a tint with a share of its coverage.
+/// Returns the tint between two.
+fn tint(tween: Tween, both: [Tint; 2]) -> Tint {
+    let [a, b] = both.map(|it| it.drift.changes());
+    Tint {
+        colour: style::colour(tween, both.map(|it| it.colour)),
+        alpha: tween.between(both.map(|it| it.alpha)),
+        drift: Drift::of(std::array::from_fn(|at| tween.between([a[at], b[at]]))),
+    }
+}
+
+/// Returns a tint with a share of its coverage and of its drift.
 fn fading(tint: Tint, share: f64) -> Tint {
     Tint {
         alpha: tint.alpha * share,
+        drift: tint.drift.times(share),
         ..tint
     }
 }

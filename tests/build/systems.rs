@@ -114,7 +114,7 @@ kind: instancing
 params: {levels: 3}
 objects:
   wood: [{polyline: [[0, 0], [0, 1], [1, 1]]}]
-  tree(0): [{disk: {centre: [0, 0], radius: 1}, tint: {color: teal, alpha: 1/2}}]
+  tree(0): [{disk: {centre: [0, 0], radius: 1}, tint: {color: teal, alpha: 1/2, hue: 10}}]
   tree(n):
     union:
       - wood
@@ -139,7 +139,8 @@ initial: {segment: [[0, 0], [0, 1]]}
         )
         .matrix([(1.0, 0.1), (0.0, 1.0)]);
     let leaf = InstanceBuilder::from(SetBuilder::disk((0, 0), 1))
-        .tint(Colour::parse("teal").unwrap(), 0.5);
+        .tint(Colour::parse("teal").unwrap(), 0.5)
+        .hue(10);
     let built = StructureBuilder::new(InstanceBuilder::of("tree(levels)"))
         .parameter(Parameter::new("levels", 3.0))
         .object(

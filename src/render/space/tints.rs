@@ -143,7 +143,7 @@ mod tests {
         assert_eq!(pixmap.width(), u32::from(SIDE));
         let tint = |[red, green, blue]: [u8; 3]| {
             let colour = Colour::of_rgba([red, green, blue, 255]);
-            Appearance::of(Tint { colour, alpha: 0.5 })
+            Appearance::of(Tint::cover(colour, 0.5))
         };
         for (at, pixel) in (0u16..).zip(pixmap.pixels()) {
             let [x, y] = [at % 40, 39 - at / 40].map(|at| u8::try_from(at).unwrap());
