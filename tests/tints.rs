@@ -7,6 +7,7 @@ use kfrac::grow::Growth;
 use kfrac::model::Model;
 use kfrac::render::{self, Format, Options, Size};
 use kfrac::style::{ColorBy, Colour};
+use kfrac::tween::TweenBy;
 
 fn picture(model: &Model, steps: u32, change: impl FnOnce(&mut Options)) -> Vec<u8> {
     let graph = model.compile(steps).unwrap();
@@ -145,6 +146,24 @@ style: {{fill: navy}}
     assert_eq!(values(&text, "<path fill=\""), ["#ff4040"]);
     let text = svg(&row("saturation: -1", "hue: 120, lightness: -1"), 12);
     assert_eq!(values(&text, "<path fill=\""), ["#000000"]);
+}
+
+#[test]
+fn drifts_pass_from_one_value_to_the_other() {
+    let square = |tint: &str| {
+        let square = format!("{{polygon: [[0, 0], [1, 0], [1, 1]]{tint}}}");
+        model(&format!(
+            "kind: instancing\nobjects: {{a: [{square}]}}\nscene: [a]\n\
+             style: {{fill: red, color_by: tint}}\n"
+        ))
+    };
+    let turned = square(", tint: {hue: 120}");
+    let blue = square(", tint: {color: blue}");
+    // Half of the turn, of red, or of half red and half blue.
+    for (other, expected) in [(square(""), "#ffff00"), (blue, "#800000")] {
+        let between = turned.toward(&other, 0.5, TweenBy::Polar).unwrap();
+        assert_eq!(values(&svg(&between, 2), "<path fill=\""), [expected]);
+    }
 }
 
 /// Elements arrive in blocks where nothing is cut, one by one where a detail cuts, and from spans on several

@@ -2,7 +2,7 @@
 
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;
-use crate::instancing::{Drift, Tint};
+use crate::instancing::Tint;
 
 use super::convertible::Convertible;
 use super::number::value;
@@ -91,20 +91,9 @@ fn instance<M: Convertible>(
         .value())
 }
 
-/// Returns a tint without what changes nothing.
 fn tint(tint: Tint) -> Value {
-    let covers = tint.alpha > 0.0 || tint.drift == Drift::default();
-    let changes = ["hue", "saturation", "lightness", "opacity"].into_iter();
-    let changes = changes.zip(tint.drift.changes());
-    changes
-        .filter(|(_, change)| *change != 0.0)
-        .fold(Entries::default(), |all, (key, change)| {
-            all.set(key, value(change))
-        })
-        .set_some(
-            "color",
-            covers.then(|| Value::Text(format!("{:#}", tint.colour))),
-        )
-        .set_some("alpha", covers.then(|| value(tint.alpha)))
+    Entries::default()
+        .set("color", Value::Text(format!("{:#}", tint.colour)))
+        .set("alpha", value(tint.alpha))
         .value()
 }

@@ -3,7 +3,7 @@
 use crate::style::Colour;
 
 use super::Tint;
-use super::drift::Drifted;
+use super::drift::DriftProduct;
 
 /// Change of the width of strokes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Appearance {
     /// Whether the colour replaces that of the contents, unaffected by the tints of enclosing instances.
     paints: bool,
     /// Drift of the colour that the tints yield.
-    drift: Drifted,
+    drift: DriftProduct,
 }
 
 impl Appearance {
@@ -42,7 +42,7 @@ impl Appearance {
         width: 1.0,
         sets_width: false,
         paints: false,
-        drift: Drifted::NONE,
+        drift: DriftProduct::NONE,
     };
 
     /// Creates the appearance of a single tint.
@@ -57,7 +57,7 @@ impl Appearance {
         Self {
             colour: [red, green, blue].map(|value| alpha * f32::from(value) / 255.0),
             alpha,
-            drift: Drifted::of(tint.drift),
+            drift: DriftProduct::of(tint.drift),
             ..Self::NONE
         }
     }

@@ -1,7 +1,5 @@
 //! Drifts: changes of hue, saturation, lightness and opacity that add up from the scene inwards.
 
-use std::fmt;
-
 /// Change of the colours of an instance and of its contents, relative to the colours that they have without it, as in
 /// Context Free. A drift inside another starts where that one ends.
 ///
@@ -41,15 +39,15 @@ impl Drift {
 }
 
 /// Product of drifts: a turn of the hue, and a map x ↦ scale · x + shift for each other part of a colour.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Drifted {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct DriftProduct {
     /// Turn of the hue in degrees, from 0 inclusive to 360 exclusive.
     hue: f32,
     /// Scale and shift of saturation, lightness and opacity.
     parts: [[f32; 2]; 3],
 }
 
-impl Drifted {
+impl DriftProduct {
     /// Identity.
     pub(super) const NONE: Self = Self {
         hue: 0.0,
@@ -64,8 +62,10 @@ impl Drifted {
     pub(super) fn of(drift: Drift) -> Self {
         let [hue, parts @ ..] = drift.changes();
         let part = |change: f64| [1.0 - change.abs(), change.max(0.0)].map(|it| it as f32);
+        // Tiny negative turns round to 360.
+        let hue = Some(hue.rem_euclid(360.0) as f32).filter(|hue| *hue < 360.0);
         Self {
-            hue: hue.rem_euclid(360.0) as f32,
+            hue: hue.unwrap_or(0.0),
             parts: parts.map(part),
         }
     }
@@ -108,19 +108,9 @@ impl Drifted {
     }
 }
 
-/// Writes the factors and shifts that differ from the identity's.
-impl fmt::Debug for Drifted {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self == Self::NONE {
-            true => f.write_str("none"),
-            false => write!(f, "hue + {}, {:?}", self.hue, self.parts),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Drift, Drifted};
+    use super::{Drift, DriftProduct};
 
     fn close(a: [f32; 4], b: [f32; 4]) {
         for (a, b) in a.into_iter().zip(b) {
@@ -131,7 +121,7 @@ mod tests {
     #[test]
     fn parts_move_towards_their_ends() {
         let red = [1.0, 0.0, 0.0, 1.0];
-        let drifted = |changes| Drifted::of(Drift::of(changes)).on(red);
+        let drifted = |changes| DriftProduct::of(Drift::of(changes)).on(red);
         close(drifted([120.0, 0.0, 0.0, 0.0]), [0.0, 1.0, 0.0, 1.0]);
         close(drifted([-120.0, 0.0, 0.0, 0.0]), [0.0, 0.0, 1.0, 1.0]);
         close(drifted([0.0, -0.5, 0.0, 0.0]), [0.75, 0.25, 0.25, 1.0]);
@@ -139,7 +129,7 @@ mod tests {
         close(drifted([0.0, 0.0, -0.5, -0.25]), [0.5, 0.0, 0.0, 0.75]);
         close(drifted([0.0, 0.0, 1.0, 1.0]), [1.0; 4]);
         // Black has a hue of 0 and no saturation, as in Context Free.
-        let of_black = Drifted::of(Drift::of([60.0, 1.0, 0.5, 0.0])).on([0.0, 0.0, 0.0, 1.0]);
+        let of_black = DriftProduct::of(Drift::of([60.0, 1.0, 0.5, 0.0])).on([0.0, 0.0, 0.0, 1.0]);
         close(of_black, [1.0, 1.0, 0.0, 1.0]);
     }
 
@@ -150,13 +140,16 @@ mod tests {
             [170.0, -0.6, 0.4, -0.5],
             [-35.0, 0.25, 0.1, -0.1],
         ]
-        .map(|changes| Drifted::of(Drift::of(changes)));
+        .map(|changes| DriftProduct::of(Drift::of(changes)));
         let colour = [0.2, 0.7, 0.4, 0.5];
         close(a.then(b).then(c).on(colour), a.then(b.then(c)).on(colour));
         close(a.then(b).on(colour), b.on(a.on(colour)));
-        for both in [a.then(Drifted::NONE), Drifted::NONE.then(a)] {
+        for both in [a.then(DriftProduct::NONE), DriftProduct::NONE.then(a)] {
             assert_eq!(both, a);
         }
-        assert_eq!(Drifted::NONE.on(colour), colour);
+        assert_eq!(DriftProduct::NONE.on(colour), colour);
+        let turn = |hue: f64| DriftProduct::of(Drift::of([hue, 0.0, 0.0, 0.0]));
+        assert_eq!(turn(-1e-9), DriftProduct::NONE);
+        assert_eq!(turn(200.0).then(turn(160.0)), DriftProduct::NONE);
     }
 }

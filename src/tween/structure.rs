@@ -71,11 +71,16 @@ fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectIns
     }
 }
 
-/// Returns the tint between two.
+/// Returns the tint between two. The colour of one that covers nothing does not count.
 fn tint(tween: Tween, both: [Tint; 2]) -> Tint {
     let [a, b] = both.map(|it| it.drift.changes());
+    let colours = both.map(|it| it.colour);
     Tint {
-        colour: style::colour(tween, both.map(|it| it.colour)),
+        colour: match both.map(|it| it.alpha > 0.0) {
+            [true, false] => colours[0],
+            [false, true] => colours[1],
+            _ => style::colour(tween, colours),
+        },
         alpha: tween.between(both.map(|it| it.alpha)),
         drift: Drift::of(std::array::from_fn(|at| tween.between([a[at], b[at]]))),
     }

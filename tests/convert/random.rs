@@ -86,63 +86,50 @@ fn random_systems_keep_their_sets() {
     all_convert(24, &systems, 1.0);
 }
 
-/// Found at random: one of two fertile elements is not drawn, beside an element that is kept.
-#[test]
-fn objects_without_shapes_are_drawn_beside_elements_that_are_kept() {
-    let rule = "\
-initiator:
-  closed: true
-  elements:
-    - [0, 0]
-    - {to: [1/7, 0], from: [0, 2/5], fertile: false, connected: false}
-generator:
-  parts:
-    - seeds: true
-      elements:
-        - [0, 0]
-        - {to: [9/14, -1/4], visible: false}
-        - {to: [7/40, 0], direction: 3}
-";
-    assert!(converts(rule) > 1);
-}
-
-/// Found at random: the limit set of a single map is a point, where boxes differ by roundings.
-#[test]
-fn limit_sets_may_be_points() {
-    let rule = "\
+/// Returns a rule whose initiator has one element and whose generator seeds elements, both as lists in YAML.
+fn seeding(element: &str, elements: &[&str]) -> String {
+    let elements: String = { elements.iter() }
+        .map(|element| format!("        - {element}\n"))
+        .collect();
+    format!(
+        "\
 initiator:
   closed: false
   elements:
     - [0, 0]
-    - {to: [1/7, 0], from: [0, 2/5], visible: false, connected: false}
+    - {element}
 generator:
   parts:
     - seeds: true
-      closed: false
       elements:
         - [0, 0]
-        - {to: [1/7, 1/4], direction: 2}
-";
-    assert!(converts(rule) > 1);
+{elements}"
+    )
+}
+
+/// Found at random: one of two fertile elements is not drawn, beside an element that is kept.
+#[test]
+fn objects_without_shapes_are_drawn_beside_elements_that_are_kept() {
+    let kept = "{to: [1/7, 0], from: [0, 2/5], fertile: false, connected: false}";
+    let elements = [
+        "{to: [9/14, -1/4], visible: false}",
+        "{to: [7/40, 0], direction: 3}",
+    ];
+    let rule = seeding(kept, &elements).replacen("closed: false", "closed: true", 1);
+    assert!(converts(&rule) > 1);
+}
+
+const UNSEEN: &str = "{to: [1/7, 0], from: [0, 2/5], visible: false, connected: false}";
+
+/// Found at random: the limit set of a single map is a point, where boxes differ by roundings.
+#[test]
+fn limit_sets_may_be_points() {
+    assert!(converts(&seeding(UNSEEN, &["{to: [1/7, 1/4], direction: 2}"])) > 1);
 }
 
 /// Found at random: angles that are arc cosines of ratios next to 1 are off by the root of a rounding.
 #[test]
 fn directions_that_differ_by_a_rounding_make_no_turn() {
-    let rule = "\
-initiator:
-  closed: false
-  elements:
-    - [0, 0]
-    - {to: [1/7, 0], from: [0, 2/5], visible: false, connected: false}
-generator:
-  parts:
-    - seeds: true
-      closed: false
-      elements:
-        - [0, 0]
-        - {to: [1/7, 0], from: [0, 2/5], fertile: false, visible: false, connected: false}
-        - [1, 0]
-";
-    assert!(converts(rule) > 1);
+    let kept = "{to: [1/7, 0], from: [0, 2/5], fertile: false, visible: false, connected: false}";
+    assert!(converts(&seeding(UNSEEN, &[kept, "[1, 0]"])) > 1);
 }

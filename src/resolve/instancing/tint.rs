@@ -27,9 +27,10 @@ impl<K> Resolver<K> {
             ..
         } = document;
         let changes = [hue, saturation, lightness, opacity];
-        let alpha = match &document.alpha {
-            Some(alpha) => self.program(alpha, scope),
-            None => Program::constant(f64::from(u8::from(document.colour.is_some()))),
+        let alpha = match (&document.alpha, document.colour) {
+            (Some(alpha), _) => self.program(alpha, scope),
+            (None, Some(_)) => Program::constant(1.0),
+            (None, None) => Program::constant(0.0),
         };
         let drift = changes.map(|change| match change {
             Some(change) => self.program(change, scope),
