@@ -319,6 +319,12 @@ impl Model {
             {
                 self.of_zoom()
             }
+            Self::LSystemInSpace(system)
+                if system.tube().is_none()
+                    && system.words().without_appearance() == *system.words() =>
+            {
+                self.of_zoom()
+            }
             _ => Cow::Borrowed(self),
         }
     }

@@ -9,11 +9,13 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::convert::{ConvertError, Keeps, Refusal, convert};
 use kfrac::document::Document;
 use kfrac::extent::NoLimit;
+use kfrac::geometry::{Bounds, DVec3};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::lsystem::NoGrowth;
 use kfrac::measure::{Precision, Subject, Subset, hausdorff, similarity_dimension};
 use kfrac::model::{Kind, Model};
+use kfrac::style::ColorBy;
 
 fn model(document: &Document) -> Model {
     let resolved = document.resolve(&[]);
@@ -560,4 +562,120 @@ condensation:
             assert!(refused.to_string().contains("lies in space"), "{refused}");
         }
     }
+}
+
+fn bounds_in_space(model: &Model) -> Bounds<DVec3> {
+    let limit = model.of_limit();
+    let graph = limit.graph_in_space(64).unwrap().unwrap();
+    graph.limit_bounds().unwrap()
+}
+
+fn assert_near(name: &str, own: Bounds<DVec3>, found: Bounds<DVec3>) {
+    let size = own.size().max_element();
+    for (a, b) in [(own.min(), found.min()), (own.max(), found.max())] {
+        assert!(a.abs_diff_eq(b, 1e-9 * size), "{name}: {a} and {b}");
+    }
+}
+
+#[test]
+fn rules_in_space_become_systems_and_structures() {
+    let mut converted = 0;
+    for name in ["koch-surface", "menger-cubes", "koch-icosahedron"] {
+        let model = document(name).resolve(&[]).unwrap().0;
+        assert!(matches!(model, Model::RuleInSpace(_)), "{name}");
+        for kind in [Kind::Ifs, Kind::Instancing] {
+            let other = convert(&model, kind, Keeps::Limit);
+            let other = other.unwrap_or_else(|error| panic!("{name}: {error}"));
+            let other = other.resolve(&[]).unwrap().0;
+            assert_near(name, bounds_in_space(&model), bounds_in_space(&other));
+            converted += 1;
+        }
+    }
+    assert_eq!(converted, 6);
+}
+
+/// Steps of L-systems in space are structures of tubes, polygons and surfaces with as many elements in one box.
+#[test]
+fn l_systems_in_space_become_structures() {
+    let catalogue = Catalogue::embedded();
+    let entries = catalogue.entries().into_iter();
+    let mut converted = Vec::new();
+    for entry in entries.filter(|entry| entry.shelf == Shelf::LSYSTEMS) {
+        let source = catalogue.component(entry.shelf, &entry.name).unwrap();
+        let model = model(&Document::read(&source, &catalogue).unwrap());
+        if !model.is_in_space() {
+            continue;
+        }
+        let structure = match convert(&model, Kind::Instancing, Keeps::Approximants) {
+            Ok(document) => document.resolve(&[]).unwrap().0,
+            Err(error) => {
+                let text = error.to_string();
+                let reasons = ["random", "tropism", "'$'", "250,000 values"];
+                assert!(
+                    reasons.iter().any(|it| text.contains(it)),
+                    "{}: {text}",
+                    entry.name
+                );
+                continue;
+            }
+        };
+        let steps = model.resolved_steps_in_space(None);
+        let drawn = |model: &Model| {
+            let growth = Growth::steps(steps);
+            let drawn = model.drawn_in_space(Some(steps), &growth, ColorBy::None);
+            let graph = drawn.unwrap().unwrap().graph;
+            let count = graph.check_size(steps, u64::MAX).unwrap();
+            (graph.bounds(steps).unwrap(), count)
+        };
+        let ((own, own_count), (found, count)) = (drawn(&model), drawn(&structure));
+        assert_near(&entry.name, own, found);
+        assert_eq!(own_count, count, "{}", entry.name);
+        converted.push(entry.name);
+    }
+    assert!(converted.len() >= 9, "{converted:?}");
+}
+
+/// Limit sets of L-systems in space are recurrent systems: Hilbert's curve fills a cube, and systems of the plane draw what
+/// they draw in the plane.
+#[test]
+fn l_systems_in_space_become_systems() {
+    let hilbert = document("hilbert-lsystem-in-space").resolve(&[]).unwrap().0;
+    for kind in [Kind::Ifs, Kind::Instancing] {
+        let system = convert(&hilbert, kind, Keeps::Limit).unwrap();
+        let found = bounds_in_space(&system.resolve(&[]).unwrap().0);
+        let sides = found.size();
+        assert!(sides.abs_diff_eq(DVec3::ONE, 1e-12), "{sides}");
+    }
+    let mut flat = 0;
+    for name in [
+        "dragon-lsystem",
+        "hilbert-lsystem",
+        "peano-lsystem",
+        "plant-b",
+        "koch-lsystem",
+    ] {
+        let plane = document(name);
+        let model = plane.resolve(&[]).unwrap().0;
+        let limit = model.of_limit();
+        let own = limit.compile(8).unwrap().limit_bounds().unwrap();
+        let text = format!("space: 3\n{}", plane.to_yaml());
+        let system = convert(
+            &document_of(&text).resolve(&[]).unwrap().0,
+            Kind::Ifs,
+            Keeps::Limit,
+        );
+        let system = system.unwrap_or_else(|error| panic!("{name}: {error}"));
+        let found = bounds_in_space(&system.resolve(&[]).unwrap().0);
+        // A set of edge rewriting ends where the first step does, and others begin as its first part does.
+        let scale = own.size().max_element() / found.size().max_element();
+        let sides = found.size() * scale;
+        let same = own.size().distance(sides.truncate()) <= 1e-6 * own.size().length();
+        assert!(
+            same && sides.z <= 1e-9,
+            "{name}: {} and {sides}",
+            own.size()
+        );
+        flat += 1;
+    }
+    assert_eq!(flat, 5);
 }

@@ -1,4 +1,4 @@
-//! Figures of production rules, systems and structures: their content and its legibility.
+//! Figures of production rules, systems, structures and L-systems: their content and its legibility.
 
 mod svg;
 
@@ -148,6 +148,53 @@ fn every_structure_of_the_library_can_be_read() {
             assert!(panels.count() >= 1, "{name}: {}", object.name);
         }
     }
+}
+
+#[test]
+fn every_l_system_of_the_library_can_be_read() {
+    for name in names(Shelf::LSYSTEMS) {
+        let document = document(&name);
+        let (size, paths) = svg::read(&svg_of(&document));
+        assert_can_be_read(&name, size, &paths);
+        let labels = labels(&paths);
+        let said = |text: &str| {
+            let mut labels = labels.iter().filter_map(|path| path.label.as_deref());
+            labels.any(|label| label.starts_with(text))
+        };
+        assert!(said("axiom") && said("production"), "{name}");
+        for production in &document.lsystem().unwrap().productions {
+            assert!(said(production.predecessor.place.text()), "{name}");
+        }
+    }
+}
+
+#[test]
+fn productions_are_drawn_with_the_arguments_that_they_are_applied_to_first() {
+    let text = "kind: lsystem
+axiom: A(2)
+angle: 90
+productions: ['A(x) : x > 1 -> F(x)[+B]A(x/2)', 'A(x) : x <= 1 -> F(x)', 'B -> ']";
+    let (_, paths) = svg::read(&svg_of(&document_of(text)));
+    let labels: Vec<_> = labels(&paths);
+    let said: Vec<_> = labels.iter().filter_map(|it| it.label.as_deref()).collect();
+    for label in [
+        "A(x) : x > 1 -> F(x)[+B]A(x/2)",
+        "A(x) : x <= 1 -> F(x)",
+        "B ->",
+        "productions",
+        "+ and - turn by 90 degrees",
+    ] {
+        assert!(said.contains(&label), "{label}: {said:?}");
+    }
+    // A is at the start of the axiom, of two words that it is replaced in, and at the end of one that replaces it.
+    assert_eq!(said.iter().filter(|it| **it == "A").count(), 4);
+    // Lines of two steps are twice as long as those of one.
+    let lengths: Vec<i64> = { paths.iter().filter(|path| is_element(path)) }
+        .flat_map(|path| &path.lines)
+        .map(|[from, to]| (from[0] - to[0]).abs().max((from[1] - to[1]).abs()))
+        .collect();
+    assert_eq!(lengths.len(), 2, "{lengths:?}");
+    assert!((lengths[0] - 2 * lengths[1]).abs() <= 2, "{lengths:?}");
 }
 
 #[test]

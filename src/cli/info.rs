@@ -185,7 +185,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         check_steps(steps)?;
         let bounds = graph.bounds(steps);
-        let own = info(&loaded, [&graph, &graph], steps, bounds, |_, _| None);
+        let limit = loaded.other_limit_in_space()?;
+        let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
+        let own = info(&loaded, graphs, steps, bounds, |_, _| None);
         let surfaces = match loaded.model.rule_in_space() {
             // An element may consist of several surfaces.
             Some(rule) if graph.is_plain() => {

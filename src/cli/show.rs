@@ -9,7 +9,7 @@ use crate::catalogue::{Catalogue, Shelf};
 use crate::figure::rule;
 use crate::model::Kind;
 use crate::render::space::Camera;
-use crate::render::{self, RenderError, Size};
+use crate::render::{self, Size};
 use crate::style::Named;
 
 use super::component::Component;
@@ -18,11 +18,11 @@ use super::picture;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, camera, format, help, length, output, text};
 
-/// Draws a rule as a figure: initiator, generators, base element; maps; objects
+/// Draws a rule as a figure: initiator, generators, base element; maps; objects; productions
 ///
 /// A component of the library is drawn alone. Fertile elements are marked with an asterisk, directions with
 /// their number; selection and random functions are written out (in the style of Kaandorp 1987, figures 1 to
-/// 13).
+/// 13). Productions of L-systems are drawn as the turtle draws what they replace, and what it becomes.
 #[derive(clap::Args)]
 #[command(after_long_help = help::styled(MORE))]
 pub(super) struct Arguments {
@@ -57,6 +57,8 @@ Examples:
       Draws a rule with the given parameter, as a PNG on white
   kfrac show menger --from 20,30
       Draws the maps of a system in space as they are seen from a direction
+  kfrac show hilbert-lsystem
+      Draws the productions of an L-system
   kfrac show generators/dragon
       Draws the generator alone, into dragon-generator.svg
 ";
@@ -87,16 +89,8 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let Loaded {
             model, document, ..
         } = &loaded;
-        rule::write(model, document, alone, &options, out).map_err(|error| match error {
-            RenderError::NoFigure(_) => {
-                let name = &loaded.name;
-                anyhow::anyhow!(
-                    "{error}: `kfrac cat {name}` shows them, and `kfrac sheet {name}` what they draw"
-                )
-                .into()
-            }
-            error => output::explain(error, path),
-        })
+        rule::write(model, document, alone, &options, out)
+            .map_err(|error| output::explain(error, path))
     })?;
     if !arguments.quiet {
         text::print_message(&format!(

@@ -161,7 +161,8 @@ fn derived<F: TurtleFrame>(
 
 impl Graph<Frame3> {
     /// Compiles an L-system in space for a number of steps: to objects by module and level, otherwise from the elements
-    /// that the turtle draws of the derived word. Lines have no width.
+    /// that the turtle draws of the derived word. Lines have no width. The graph of a system that stands for its limit set
+    /// has that set, or the reason why there is none.
     ///
     /// # Errors
     ///
@@ -172,8 +173,18 @@ impl Graph<Frame3> {
         seed: u64,
         max_elements: u64,
     ) -> Result<Self, CompileError> {
+        let reason = match system.words.in_limit {
+            true => match Self::limit_of_lsystem(system) {
+                Ok(graph) => return Ok(graph),
+                Err(reason) => Some(reason.into()),
+            },
+            false => None,
+        };
         let (graph, _) = in_space(system, (steps, seed, max_elements), None)?;
-        Ok(graph)
+        Ok(Self {
+            no_limit: reason,
+            ..graph
+        })
     }
 
     /// Compiles an L-system in space as it is drawn after a number of steps: lines are tubes if the style asks for them,
@@ -240,6 +251,17 @@ impl LSystem {
                 .hint("a condition keeps a module as it is: A(x) : x != 0 -> A(1/x)"),
             _ => diagnostic,
         }
+    }
+}
+
+impl LSystemInSpace {
+    /// Checks that the words of the system approach a limit set, as [`LSystem::check_growth`] does.
+    ///
+    /// # Errors
+    ///
+    /// The reason why they do not, or why that is not decided.
+    pub fn check_growth(&self) -> Result<(), NoGrowth> {
+        Graph::limit_of_lsystem(self).map(drop)
     }
 }
 

@@ -2,7 +2,9 @@
 
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;
-use crate::geometry::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Round, Solid};
+use crate::geometry::{
+    DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, MAX_HULL_POINTS, Round, Solid,
+};
 use crate::ifs::{AffineMap, OutlineOf};
 use crate::rule::BaseElement;
 
@@ -202,25 +204,32 @@ fn of_round(round: Round, map: &DAffine3) -> Option<Entries> {
     Some(Entries::default().set(name, form.value()))
 }
 
-/// Writes the image of a polyhedron: a polygon, or a box along the axes. `None` for other images.
+/// Writes the image of a polyhedron: a point, a line, a polygon, a box along the axes, or a convex hull. `None` for one of
+/// too many corners.
 fn of_polyhedron(solid: &Solid, map: &DAffine3) -> Option<Entries> {
-    let faces = solid.polygons();
-    if let [face] = &faces[..] {
-        let corners = face.iter().map(|it| place(map.transform_point3(*it)));
-        return Some(Entries::default().set("polygon", sequence(corners)));
+    let placed = |corner: &DVec3| map.transform_point3(*corner);
+    let points = |corners: &[DVec3]| sequence(corners.iter().map(|it| place(placed(it))));
+    let (corners, faces) = (solid.corners(), solid.polygons());
+    let entry = |name, value| Some(Entries::default().set(name, value));
+    match (corners, &faces[..]) {
+        ([point], _) => return entry("point", place(placed(point))),
+        ([_, _], _) => return entry("segment", points(corners)),
+        (_, [face]) => return entry("polygon", points(face)),
+        _ => {}
     }
-    let corners: Vec<DVec3> = { solid.corners().iter() }
-        .map(|it| map.transform_point3(*it))
-        .collect();
-    let low = corners.iter().copied().reduce(DVec3::min)?;
-    let high = corners.iter().copied().reduce(DVec3::max)?;
+    let placed: Vec<DVec3> = corners.iter().map(placed).collect();
+    let low = placed.iter().copied().reduce(DVec3::min)?;
+    let high = placed.iter().copied().reduce(DVec3::max)?;
     let is_end = |corner: &DVec3| {
         let ends = corner.cmpeq(low) | corner.cmpeq(high);
         ends.all()
     };
-    let is_box = corners.len() == 8 && faces.len() == 6 && corners.iter().all(is_end);
-    let form = Entries::default()
-        .set("from", place(low))
-        .set("to", place(high));
-    is_box.then(|| Entries::default().set("box", form.value()))
+    if corners.len() == 8 && faces.len() == 6 && placed.iter().all(is_end) {
+        let form = Entries::default()
+            .set("from", place(low))
+            .set("to", place(high));
+        return entry("box", form.value());
+    }
+    let is_hull = !faces.is_empty() && corners.len() <= MAX_HULL_POINTS as usize;
+    is_hull.then(|| Entries::default().set("hull", points(corners)))
 }

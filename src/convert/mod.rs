@@ -30,10 +30,12 @@ use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::document::node::{Node, Value};
 use crate::extent::NoLimit;
-use crate::geometry::{DAffine2, DAffine3, Frame3};
+use crate::geometry::{DAffine2, DAffine3};
 use crate::graph::{CompileError, Graph};
+use crate::grow::Growth;
 use crate::metadata::Metadata;
-use crate::model::{Kind, Model};
+use crate::model::{DrawnError, Kind, Model};
+use crate::style::ColorBy;
 
 use structure::Structure;
 
@@ -67,6 +69,9 @@ pub enum ConvertError {
     /// A generator has a point that is not finite.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// A model in space cannot be drawn.
+    #[error(transparent)]
+    Drawn(#[from] DrawnError),
     /// The document that was written cannot be read back.
     #[error("what it becomes cannot be read back: {}", first_message(.0))]
     NotReadBack(Diagnostics),
@@ -98,19 +103,15 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     if model.kind() == to {
         return Err(Refusal::SameKind(to).into());
     }
-    if let Some(graph) = model.compile_in_space(false) {
-        let own = in_space(model, &graph, to, keeps)?;
-        return read_back(model, to, own);
-    }
     let limit = match keeps {
         Keeps::Limit => model.of_zoom(),
         Keeps::Approximants => Cow::Borrowed(model),
     };
     let model = &*limit;
-    let steps = match model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
-        Some(deepest) => model.metadata().steps.unwrap_or(deepest),
-        None => STEPS,
-    };
+    if model.is_in_space() {
+        return read_back(model, to, in_space(model, to, keeps)?);
+    }
+    let steps = steps(model);
     let graph = model.compile_listed(steps, 0, Model::MAX_LISTED)?;
     // A time-indexed structure has no limit set, but is finite after its steps.
     let ends = graph.is_time_indexed() && graph.is_plain() && to == Kind::Instancing;
@@ -146,27 +147,47 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
     read_back(model, to, (writer(to).1)(&structure, keeps)?)
 }
 
+/// Returns the number of steps for which a model is compiled.
+fn steps(model: &Model) -> u32 {
+    match model.as_kind().deepest(DEEPEST, MAX_ELEMENTS) {
+        Some(deepest) => model.metadata().steps.unwrap_or(deepest),
+        None => STEPS,
+    }
+}
+
 /// Converts a model in space to the keys of another kind.
-fn in_space(
-    model: &Model,
-    graph: &Graph<Frame3>,
-    to: Kind,
-    keeps: Keeps,
-) -> Result<Entries, ConvertError> {
+fn in_space(model: &Model, to: Kind, keeps: Keeps) -> Result<Entries, ConvertError> {
     let write: Writer<DAffine3> = match to {
         Kind::Ifs => ifs::write,
         Kind::Instancing => instancing::write,
         Kind::Rule | Kind::LSystem => return Err(Refusal::InSpace(to).into()),
     };
-    let ends = graph.depth().is_some() && to == Kind::Instancing;
+    let steps = steps(model);
+    let Some(graph) = model.graph_in_space(steps) else {
+        return Err(CompileError::InSpace.into());
+    };
+    let graph = graph?;
+    let ends = graph.is_time_indexed() || graph.depth().is_some();
+    let ends = ends && graph.is_plain() && to == Kind::Instancing;
     if !ends {
+        if let Model::LSystemInSpace(system) = model {
+            system
+                .check_growth()
+                .map_err(|reason| Refusal::from(NoLimit::from(reason)))?;
+        }
         graph.limit().map_err(Refusal::from)?;
     }
     let structure = match model {
         Model::IfsInSpace(system) if keeps == Keeps::Limit => {
             Structure::of_ifs(system.ifs(), graph.base_elements().to_vec())
         }
-        _ => Structure::of_graph(graph, STEPS, keeps, &[])?,
+        _ => {
+            // Elements have an instance for each of their surfaces, and lines may be tubes.
+            let (growth, limited) = (Growth::steps(steps), ends.then_some(steps));
+            let drawn = model.drawn_in_space(limited, &growth, ColorBy::None);
+            let graph = drawn.transpose()?.map_or(graph, |drawn| drawn.graph);
+            Structure::of_graph(&graph, steps, keeps, &[])?
+        }
     };
     let space = Entries::default().set("space", number::value(3.0));
     Ok(space.and(write(&structure, keeps)?))
@@ -174,7 +195,12 @@ fn in_space(
 
 /// Returns the document of the keys of a kind, which is read back.
 fn read_back(model: &Model, to: Kind, own: Entries) -> Result<Document, ConvertError> {
-    let text = Node::from(headed(model.metadata(), to, own).value()).to_yaml();
+    let mut metadata = model.metadata().clone();
+    if model.kind() == Kind::LSystem {
+        // The tubes of lines are sets.
+        metadata.style.tube = None;
+    }
+    let text = Node::from(headed(&metadata, to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());
     let document = read.map_err(ConvertError::NotReadBack)?;
     match document.resolve(&[]) {

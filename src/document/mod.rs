@@ -248,6 +248,15 @@ impl Document {
         }
     }
 
+    /// Returns the L-system as written; `None` for other kinds.
+    #[must_use]
+    pub fn lsystem(&self) -> Option<&LSystemDocument> {
+        match &self.kind {
+            KindDocument::LSystem(system) => Some(system),
+            _ => None,
+        }
+    }
+
     /// Returns the paths of the files from which the document was read: its own, and those of its
     /// parents, components and data. Embedded files and texts that are not files are listed by their
     /// names.

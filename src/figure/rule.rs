@@ -1,4 +1,4 @@
-//! Production rules as figures, in the manner of Kaandorp 1987 (figures 1 to 13): initiator,
+//! Rules, systems, structures and L-systems as figures; production rules in the manner of Kaandorp 1987 (figures 1 to 13): initiator,
 //! generators and base element side by side.
 //!
 //! Fertile sides are marked with asterisks, directions by their numbers. A generator is drawn over the side
@@ -10,6 +10,7 @@ mod components;
 mod ink;
 mod key;
 mod lines;
+mod lsystem;
 mod marks;
 mod page;
 mod panel;
@@ -24,7 +25,7 @@ use std::num::NonZero;
 
 use crate::catalogue::Shelf;
 use crate::document::Document;
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2, Frame2, Frame3};
 use crate::model::Model;
 use crate::parallel::Team;
 use crate::render::space::{Camera, SpaceError};
@@ -73,14 +74,14 @@ impl Default for RuleFigureOptions {
     }
 }
 
-/// Draws the figure of a rule, a system or a structure and writes it; returns width and height in pixels.
+/// Draws the figure of a rule, a system, a structure or an L-system and writes it; returns width and height in pixels.
 ///
-/// `document` is the document that `model` was resolved from: expressions of rules are shown as written in it. With
-/// `alone`, only the components of that shelf are shown.
+/// `document` is the document that `model` was resolved from: expressions of rules and productions are shown as written in
+/// it. With `alone`, only the components of that shelf are shown.
 ///
 /// # Errors
 ///
-/// Returns an error if there is no figure of the kind, if the camera is not valid, if the picture is too large, or if
+/// Returns an error if the document is of another kind than the model, if the camera is not valid, if the picture is too large, or if
 /// `out` fails.
 pub fn write(
     model: &Model,
@@ -90,21 +91,21 @@ pub fn write(
     out: &mut impl Write,
 ) -> Result<[u32; 2], RenderError> {
     let title = &options.labels.title;
-    let page = match (model, document.rule()) {
-        (Model::Rule(rule), Some(document)) => page::page(rule, document, alone, (), title),
-        (Model::Ifs(system), _) => system::page(system, title),
-        (Model::IfsInSpace(system), _) => {
-            let view = options.camera.rotation().map_err(SpaceError::from)?;
-            space::page(system, view, title)
+    let view = || options.camera.rotation().map_err(SpaceError::from);
+    let page = match (model, document.rule(), document.lsystem()) {
+        (Model::Rule(rule), Some(document), _) => page::page(rule, document, alone, (), title),
+        (Model::RuleInSpace(rule), Some(document), _) => {
+            page::page(rule, document, alone, view()?, title)
         }
-        (Model::Instancing(structure), _) => structure::page(structure, (), title),
-        (Model::InstancingInSpace(structure), _) => {
-            let view = options.camera.rotation().map_err(SpaceError::from)?;
-            structure::page(structure, view, title)
+        (Model::Ifs(system), ..) => system::page(system, title),
+        (Model::IfsInSpace(system), ..) => space::page(system, view()?, title),
+        (Model::Instancing(structure), ..) => structure::page(structure, (), title),
+        (Model::InstancingInSpace(structure), ..) => structure::page(structure, view()?, title),
+        (Model::LSystem(system), _, Some(document)) => {
+            lsystem::page::<Frame2>(system, document, (), title)
         }
-        (Model::RuleInSpace(rule), Some(document)) => {
-            let view = options.camera.rotation().map_err(SpaceError::from)?;
-            page::page(rule, document, alone, view, title)
+        (Model::LSystemInSpace(system), _, Some(document)) => {
+            lsystem::page::<Frame3>(system, document, view()?, title)
         }
         _ => return Err(RenderError::NoFigure(model.kind())),
     };

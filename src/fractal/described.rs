@@ -1,5 +1,7 @@
 //! Description of a fractal: its sizes step by step, its extent, its dimension, its file.
 
+use std::borrow::Cow;
+
 use crate::diagnostic::Diagnostics;
 use crate::estimate::{Estimator, SizeEstimate};
 use crate::extent::Bounded;
@@ -56,12 +58,19 @@ impl Fractal {
         self.check_cancelled()?;
         if self.model.is_in_space() {
             let graph = self.graph_in_space("it has a description, too")?;
-            return Ok(info(graph, graph, self.steps_in_space(graph)));
+            let limit = match self.model.of_limit() {
+                Cow::Borrowed(_) => None,
+                Cow::Owned(model) => model.graph_in_space_for(0, self.seed, self.max_elements),
+            };
+            let limit = limit.transpose();
+            let limit = limit.map_err(|error| self.model.diagnostic(&error))?;
+            let steps = self.steps_in_space(graph);
+            return Ok(info(graph, limit.as_ref().unwrap_or(graph), steps));
         }
         let (graph, steps) = (self.graph()?, self.steps_grown()?);
         let limit = match self.model.of_limit() {
-            std::borrow::Cow::Borrowed(_) => None,
-            std::borrow::Cow::Owned(model) => {
+            Cow::Borrowed(_) => None,
+            Cow::Owned(model) => {
                 let limit = model.compile_for(steps, self.seed, self.max_elements);
                 Some(limit.map_err(|error| self.model.diagnostic(&error))?)
             }

@@ -232,11 +232,11 @@ impl Fractal {
     pub fn dimension(&self) -> Result<Dimension, Error> {
         const STEPS: u32 = 64;
         self.check_cancelled()?;
-        if let Some(graph) = self.model.graph_in_space(STEPS) {
+        let model = self.model.of_limit();
+        if let Some(graph) = model.graph_in_space(STEPS) {
             let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
             return self.dimension_of(&graph);
         }
-        let model = self.model.of_limit();
         let graph = model.compile_normalised(STEPS, self.seed, self.max_elements);
         let graph = graph.map_err(|error| self.model.diagnostic(&error))?;
         self.dimension_of(&graph)

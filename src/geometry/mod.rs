@@ -43,7 +43,7 @@ pub use mesh::Mesh;
 pub use point::Point;
 pub use polygon::{MAX_POINTS, PolygonError, polygon};
 pub use round::Round;
-pub use solid::{HalfSpace, Side, Solid};
+pub use solid::{HalfSpace, MAX_HULL_POINTS, Side, Solid};
 
 pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;

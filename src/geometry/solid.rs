@@ -11,7 +11,7 @@ use super::linear::eigen;
 use super::{Bounds, Frame, Frame3, Outline, Round, convex_hull};
 
 /// Largest number of points of which a convex hull is computed; more are enclosed by a box.
-const MAX_POINTS: usize = 100;
+pub const MAX_HULL_POINTS: u32 = 100;
 
 /// Tolerance of comparisons, relative to the size of a solid.
 const ROUNDING: f64 = 1e-10;
@@ -105,7 +105,7 @@ impl Solid {
             return Self::cuboid(&Bounds::new(DVec3::ZERO, DVec3::ZERO));
         }
         let size = bounds.size().max_element();
-        if points.len() > MAX_POINTS {
+        if points.len() > MAX_HULL_POINTS as usize {
             return Self::cuboid(&bounds);
         }
         if size <= 0.0 {

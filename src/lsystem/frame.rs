@@ -36,6 +36,9 @@ pub trait TurtleFrame: RuleFrame {
     /// Returns the symbols, words and productions of a system.
     fn words(system: &Self::System) -> &LSystem;
 
+    /// Returns numbers that are the same for headings that differ by rounding errors only.
+    fn key(compass: Compass, heading: Self::Heading) -> [i64; 6];
+
     /// Returns the start heading.
     fn start(system: &Self::System, compass: Compass) -> Self::Heading;
 
@@ -124,6 +127,10 @@ impl TurtleFrame for Frame2 {
 
     fn words(system: &LSystem) -> &LSystem {
         system
+    }
+
+    fn key(_: Compass, heading: u64) -> [i64; 6] {
+        [heading.cast_signed(), 0, 0, 0, 0, 0]
     }
 
     fn start(system: &LSystem, compass: Compass) -> u64 {
@@ -261,6 +268,17 @@ impl Heading3 {
     }
 }
 
+/// Returns the rotation near a product of rotations, whose rounding errors would double with every product of equal ones.
+fn rotation_near(product: DMat3) -> DMat3 {
+    const ROUNDING: f64 = 1e-13;
+    let square = product.transpose() * product;
+    match square.abs_diff_eq(DMat3::IDENTITY, ROUNDING) {
+        true => product,
+        // A step of Newton's method for the polar decomposition (Higham 1986).
+        false => product * (DMat3::IDENTITY * 3.0 - square) * 0.5,
+    }
+}
+
 /// Returns the vector with the opposite y coordinate if `mirrored`.
 fn flipped(v: DVec3, mirrored: bool) -> DVec3 {
     if mirrored {
@@ -281,6 +299,14 @@ impl TurtleFrame for Frame3 {
 
     fn words(system: &LSystemInSpace) -> &LSystem {
         &system.words
+    }
+
+    fn key(compass: Compass, heading: Heading3) -> [i64; 6] {
+        const PARTS: f64 = 1e8;
+        let rotation = heading.rotation(compass).to_cols_array();
+        #[expect(clippy::cast_possible_truncation, reason = "entries are at most 1")]
+        let key = |number: usize| (rotation[number] * PARTS).round() as i64;
+        [0, 1, 2, 3, 4, 5].map(key)
     }
 
     fn start(system: &LSystemInSpace, compass: Compass) -> Heading3 {
@@ -342,7 +368,7 @@ impl TurtleFrame for Frame3 {
             };
         }
         Heading3 {
-            turned: heading.rotation(compass) * turn.turned,
+            turned: rotation_near(heading.rotation(compass) * turn.turned),
             about_up: turn.about_up,
         }
     }

@@ -1,5 +1,7 @@
 //! Reasons why approximants of an L-system approach no limit set.
 
+use super::Walked;
+
 /// Reason why the words of an L-system, drawn smaller from step to step, approach no one set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -19,6 +21,9 @@ pub enum NoGrowth {
          determine"
     )]
     Actions,
+    /// The turtle moves in space as its words determine only one after the other.
+    #[error("{0}, so that no map determines the pictures of its modules")]
+    Walked(Walked),
     /// Directions of modules do not recur.
     #[error("the turns of its turtle do not recur, so that every step draws other directions")]
     Turns,

@@ -85,6 +85,14 @@ impl LSystemInSpace {
         self.words.metadata.style.tube
     }
 
+    /// Returns the system that stands for its limit set, without actions on width and colour, and without tubes.
+    pub(crate) fn in_limit(&self) -> Self {
+        let mut limit = self.clone();
+        limit.words = self.words.in_limit();
+        limit.words.metadata.style.tube = None;
+        limit
+    }
+
     /// Returns why the system cannot be compiled to a graph, as far as its symbols and productions show it.
     #[must_use]
     pub fn walked(&self) -> Option<Walked> {

@@ -175,6 +175,19 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
         self.state.place
     }
 
+    /// Returns the place of the turtle, and that after a step ahead.
+    pub(crate) fn pose(&self) -> [F::Point; 2] {
+        let TurtleState {
+            place,
+            heading,
+            mirrored,
+            step,
+            ..
+        } = self.state;
+        let ahead = F::outward(self.compass, heading, mirrored, F::Point::AXES[0]);
+        [place, place + ahead * step]
+    }
+
     /// Performs the actions of the next module of a word.
     pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
         for action in &self.words.symbols[symbol].meaning {

@@ -1,5 +1,6 @@
 //! Graphs of models in space as they are drawn.
 
+use std::borrow::Cow;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -65,8 +66,8 @@ pub enum DrawnError {
 impl Model {
     /// Returns the graph of a model in space as it is drawn after a number of steps, or in the limit, in colours by a
     /// property; `None` for a model of the plane. A rule whose elements depend on draws or on more than place and age, or whose
-    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements. An L-system has its last
-    /// step instead of a limit; lines are tubes if its style asks for them.
+    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements. An L-system without a limit
+    /// set has its last step instead. Lines of its steps are tubes if its style asks for them.
     ///
     /// Objects of a system record the map that is applied last if colours depend on it, unless there are too many for it.
     ///
@@ -80,8 +81,21 @@ impl Model {
         color_by: ColorBy,
     ) -> Option<Result<DrawnInSpace, DrawnError>> {
         let records = None;
-        match self {
+        let limit = match steps {
+            Some(_) => Cow::Borrowed(self),
+            None => self.of_zoom(),
+        };
+        match &*limit {
             Self::RuleInSpace(rule) => Some(drawn(rule, steps, growth, color_by)),
+            Self::LSystemInSpace(system) if !limit.as_kind().starts_anew() => {
+                let graph = Graph::of_lsystem_in_space(system, 0, 0, growth.max_elements);
+                let drawn = graph.map(|graph| DrawnInSpace {
+                    graph,
+                    steps,
+                    records,
+                });
+                Some(drawn.map_err(DrawnError::from))
+            }
             Self::LSystemInSpace(system) => {
                 let steps = steps.unwrap_or(growth.steps);
                 let (seed, most) = (growth.seed, growth.max_elements);
@@ -93,8 +107,8 @@ impl Model {
                 });
                 Some(drawn.map_err(DrawnError::from))
             }
-            _ => {
-                let graph = self.compile_in_space(color_by == ColorBy::LastMap)?;
+            model => {
+                let graph = model.compile_in_space(color_by == ColorBy::LastMap)?;
                 Some(Ok(DrawnInSpace {
                     graph,
                     steps,

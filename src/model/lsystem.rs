@@ -55,8 +55,13 @@ impl OfKind for Arc<LSystemInSpace> {
         self.words.diagnostic(error)
     }
 
+    fn of_limit(&self) -> Option<Model> {
+        let words = &self.words;
+        (words.is_deterministic() && !words.in_limit).then(|| LSystemInSpace::in_limit(self).into())
+    }
+
     fn starts_anew(&self) -> bool {
-        true
+        !self.words.in_limit || self.check_growth().is_err()
     }
 
     fn deepest(&self, most_steps: u32, max_elements: u64) -> Option<u32> {

@@ -15,11 +15,15 @@ impl Model {
     }
 
     /// Returns the number of steps to which a picture of a model in space is drawn, where a number is `asked` for or a
-    /// detail is; `None` for the limit set, which L-systems do not have.
+    /// detail is; `None` for the limit set, which L-systems have only if their lines have no width and colour of their own.
     #[must_use]
     pub fn drawn_steps_in_space(&self, asked: Option<u32>, has_detail: bool) -> Option<u32> {
         match self {
-            Self::LSystemInSpace(_) => Some(self.resolved_steps_in_space(asked)),
+            Self::LSystemInSpace(_) => {
+                let is_limit =
+                    asked.is_none() && has_detail && !self.of_detail().as_kind().starts_anew();
+                (!is_limit).then(|| self.resolved_steps_in_space(asked))
+            }
             _ => asked.or(self.metadata().steps.filter(|_| !has_detail)),
         }
     }

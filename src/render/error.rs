@@ -42,8 +42,8 @@ pub enum RenderError {
     /// A set in space cannot be drawn.
     #[error(transparent)]
     Space(#[from] SpaceError),
-    /// There is no figure of a kind.
-    #[error("there is no figure of an {}'s productions", .0.noun())]
+    /// A figure was asked for of a model whose document is of another kind.
+    #[error("the document of the {} is of another kind", .0.noun())]
     NoFigure(Kind),
     /// The picture cannot be written.
     #[error(transparent)]

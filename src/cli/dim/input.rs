@@ -46,7 +46,7 @@ fn compiled(loaded: &Loaded) -> Result<(Graph, u32), Failure> {
 
 /// Returns the exact dimensions of a rule's limit.
 pub(super) fn exact(loaded: &Loaded) -> Result<GraphDimensions, Failure> {
-    Ok(match loaded.in_space(None)? {
+    Ok(match loaded.limit_in_space()? {
         Some(graph) => dimensions_of_graph(&graph),
         None => dimensions_of_graph(&compiled(loaded)?.0),
     })
@@ -177,7 +177,7 @@ pub(super) fn of_rule(arguments: &Arguments, loaded: Loaded) -> Result<Measured,
         is_exact: arguments.exact,
         ..Measured::of_loaded(loaded)
     };
-    if let Some(graph) = loaded.in_space(None)? {
+    if let Some(graph) = loaded.limit_in_space()? {
         let weighted = match &loaded.model {
             Model::IfsInSpace(system) => Some(system.ifs()),
             _ => None,

@@ -50,7 +50,9 @@ pub(crate) fn hold(
         let last = last(&graph, proposed, most);
         let graph = loaded.in_space(Some(last))?.unwrap_or(graph);
         let bounds = graph.bounds(last);
-        let info = info(&loaded, [&graph, &graph], last, bounds, |_, _| None);
+        let limit = loaded.other_limit_in_space()?;
+        let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
+        let info = info(&loaded, graphs, last, bounds, |_, _| None);
         return described(&info, proposed);
     }
     let proposed = steps::choose(None, &loaded)?;

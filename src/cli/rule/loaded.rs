@@ -195,9 +195,30 @@ impl Loaded {
         &self,
         steps: Option<u32>,
     ) -> Result<Option<Graph<Frame3>>, Failure> {
+        self.in_space_of(&self.model, steps)
+    }
+
+    /// Returns the graph of the model in space that has the limit set; `None` if it is the model itself.
+    pub(in crate::cli) fn other_limit_in_space(&self) -> Result<Option<Graph<Frame3>>, Failure> {
+        match self.model.of_limit() {
+            Cow::Borrowed(_) => Ok(None),
+            Cow::Owned(model) => self.in_space_of(&model, None),
+        }
+    }
+
+    /// Returns the graph that has the limit set of a model in space; `None` for a set of the plane.
+    pub(in crate::cli) fn limit_in_space(&self) -> Result<Option<Graph<Frame3>>, Failure> {
+        self.in_space_of(&self.model.of_limit(), None)
+    }
+
+    fn in_space_of(
+        &self,
+        model: &Model,
+        steps: Option<u32>,
+    ) -> Result<Option<Graph<Frame3>>, Failure> {
         let (seed, max_elements) = self.listed();
         let steps = self.model.resolved_steps_in_space(steps);
-        let graph = self.model.graph_in_space_for(steps, seed, max_elements);
+        let graph = model.graph_in_space_for(steps, seed, max_elements);
         graph.transpose().map_err(|error| self.failure(&error))
     }
 

@@ -1,12 +1,13 @@
 //! Reading of sets: condensation sets, initial sets and primitives.
 
-use crate::document::ifs::{FormDocument, FractalDocument, ShapeDocument};
+use crate::document::ifs::{FormDocument, FractalDocument, ShapeDocument, SolidDocument};
 use crate::document::mapping::{FromNode, mapping};
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, KeySet, Member, Shape, alternative, keys};
 use crate::document::{KindDocument, Written, WrittenNumber, WrittenPoint};
 use crate::expression::PARTS;
+use crate::geometry::MAX_HULL_POINTS;
 use crate::kind::Kind;
 use crate::metadata::MAX_STEPS;
 
@@ -46,7 +47,7 @@ const HINT_IN_SPACE: &str = "{sphere: {centre: [0, 0, 0], radius: 1}}, \
                              {cylinder: {from: [0, 0, 0], to: [0, 1, 0], radius: 1}}, {polygon: [...]}, ...";
 
 /// Alternative keys for the geometry of a set.
-pub(super) const FORMS: [Member; 14] = keys![
+pub(super) const FORMS: [Member; 15] = keys![
     point: Form::Point, "A point: a dot as wide as a line.";
     segment: Form::List(&Form::Point, 2, Some(2)), "A line from one point to another.";
     polyline: Form::List(&Form::Point, 2, None), "A line through points.";
@@ -60,6 +61,7 @@ pub(super) const FORMS: [Member; 14] = keys![
     cone: Form::Mapping(&SHAFT), "In space, a solid cone; `to` is its apex.";
     box: Form::Mapping(&CUBOID), "In space, a box along the axes.";
     solid: Form::Words(&SOLIDS), "In space, the solid whose corners are those of `vertices`.";
+    hull: Form::List(&Form::Place, 3, Some(MAX_HULL_POINTS)), "In space, the convex hull of points.";
     mesh: Form::Either(&[Form::MeshFile, Form::Mapping(&MESH)]),
         "In space, the faces of a mesh: the name of a file .obj, .stl or .ply, or its points and faces.";
     fractal: Form::Grown,
@@ -119,7 +121,8 @@ const ALTERNATIVES: [KeySet; COUNT] = [
     alternative(&[NAMES[10]], &others::<OTHERS>(10)),
     alternative(&[NAMES[11]], &others::<OTHERS>(11)),
     alternative(&[NAMES[12]], &others::<OTHERS>(12)),
-    alternative(&[NAMES[13]], &others::<{ COUNT - 1 }>(13)),
+    alternative(&[NAMES[13]], &others::<OTHERS>(13)),
+    alternative(&[NAMES[14]], &others::<{ COUNT - 1 }>(14)),
 ];
 
 /// Number of keys that exclude each other, but for `fractal` and those that accompany it.
@@ -191,6 +194,10 @@ pub(super) fn read_set(reader: &mut Reader, fields: &Fields<'_>) -> ShapeDocumen
             .map(|ellipse| FormDocument::Ellipse(Box::new(ellipse))),
         "fractal" => read_fractal(reader, fields, node),
         "segment" | "polyline" | "polygon" => read_outline(reader, name, node),
+        "hull" => {
+            let points = read_points(reader, name, node);
+            points.map(|points| FormDocument::Solid(Box::new(SolidDocument::Hull(points))))
+        }
         _ => read_solid_set(reader, name, node).map(|solid| FormDocument::Solid(Box::new(solid))),
     };
     ShapeDocument { form, place }
@@ -221,29 +228,30 @@ fn misplaced(name: &str, is_in_space: bool) -> Option<(String, &'static str)> {
 }
 
 fn read_outline(reader: &mut Reader, name: &str, node: &Node) -> Option<FormDocument> {
-    let (least, most) = match name {
-        "segment" => (2, 2),
-        "polyline" => (2, usize::MAX),
-        _ => (3, usize::MAX),
+    Some(FormDocument::Outline {
+        points: read_points(reader, name, node)?,
+        closed: name == "polygon",
+    })
+}
+
+/// Reads the points of a set. Reports a number of points that the set does not have.
+fn read_points(reader: &mut Reader, name: &str, node: &Node) -> Option<Vec<WrittenPoint>> {
+    let (numbers, needs) = match name {
+        "segment" => (2..=2, "two points"),
+        "polyline" => (2..=usize::MAX, "two points or more"),
+        "hull" => (3..=MAX_HULL_POINTS as usize, "from 3 to 100 points"),
+        _ => (3..=usize::MAX, "three points or more"),
     };
     let hint = hint(reader);
     let points = reader.list(node, "a list of points", hint);
-    if !(least..=most).contains(&points.len()) {
+    if !numbers.contains(&points.len()) {
         if matches!(node.value, Value::Sequence(_)) {
-            let needs = match name {
-                "segment" => "two points",
-                "polyline" => "two points or more",
-                _ => "three points or more",
-            };
             let message = format!("a {name} has {needs}, not {}", points.len());
             reader.error_with_hint(&node.place, message, hint);
         }
         return None;
     }
-    Some(FormDocument::Outline {
-        points: points.iter().map(|point| reader.point(point)).collect(),
-        closed: name == "polygon",
-    })
+    Some(points.iter().map(|point| reader.point(point)).collect())
 }
 
 /// Reads a fractal whose file has been inlined in place of its name.

@@ -81,7 +81,7 @@ pub(super) struct PanelElement<'a> {
 }
 
 /// Factors of a panel's size and of its marks' size, tried in this order until marks cover nothing.
-const ATTEMPTS: [(f64, f64); 9] = [
+pub(super) const ATTEMPTS: [(f64, f64); 9] = [
     (1.0, 1.0),
     (1.0, 0.85),
     (1.25, 0.85),
@@ -94,7 +94,7 @@ const ATTEMPTS: [(f64, f64); 9] = [
 ];
 
 /// Factors where every attempt leaves marks that cover something.
-const LAST_ATTEMPT: (f64, f64) = (2.0, 0.6);
+pub(super) const LAST_ATTEMPT: (f64, f64) = (2.0, 0.6);
 
 impl Panel<'_> {
     /// Draws the panel.
@@ -118,19 +118,9 @@ impl Panel<'_> {
         };
         let mut items = self.lines(&drawn, &map);
         items.extend(placed.block.items);
-        // Equal room on either side keeps the drawing in the middle.
         let size = map.matrix2 * (bounds.max() - bounds.min());
         let size = DVec2::new(size.x, -size.y);
-        let corners = placed.corners.iter();
-        let beyond = corners.fold(DVec2::ZERO, |beyond, &corner| {
-            beyond.max(-corner).max(corner - size)
-        });
-        let inside = Block { size, items };
-        let room = (beyond + 5.0).ceil();
-        let mut block = Block::default();
-        block.put(inside, room);
-        block.size += room;
-        block
+        with_room(Block { size, items }, &placed.corners)
     }
 
     /// Returns the elements whose ends can be drawn.
@@ -283,7 +273,19 @@ impl Panel<'_> {
     }
 }
 
-fn can_be_drawn(point: DVec2) -> bool {
+/// Returns a block with room for points beyond it: equal on either side, which keeps the drawing in the middle.
+pub(super) fn with_room(inside: Block, points: &[DVec2]) -> Block {
+    let beyond = points.iter().fold(DVec2::ZERO, |beyond, &point| {
+        beyond.max(-point).max(point - inside.size)
+    });
+    let room = (beyond + 5.0).ceil();
+    let mut block = Block::default();
+    block.put(inside, room);
+    block.size += room;
+    block
+}
+
+pub(super) fn can_be_drawn(point: DVec2) -> bool {
     point.is_finite() && point.abs().max_element() < FARTHEST
 }
 

@@ -3,6 +3,7 @@
 use crate::geometry::{Bounds, DAffine3, DMat3, DVec2, DVec3, Frame as _, Frame2, Frame3, Solid};
 use crate::rule::{BaseElement, Body, ListedAttitude, ListedElement, RuleFrame};
 
+use super::block::Outline;
 use super::lines::{flattened, outline};
 use super::panel::Shape;
 use super::space;
@@ -29,6 +30,9 @@ pub(super) trait ShownFrame: RuleFrame {
 
     /// Returns a base element in the unit frame.
     fn alone(base: &Self::BaseElement, view: Self::View) -> Shape;
+
+    /// Returns the outlines of a base element in a frame, from the back to the front.
+    fn outlined(base: &Self::BaseElement, frame: &Self, view: Self::View) -> Vec<Outline>;
 
     /// Returns whether a base element is just the line of the element.
     fn is_line(base: &Self::BaseElement) -> bool;
@@ -71,6 +75,10 @@ impl ShownFrame for Frame2 {
             bounds,
             normal: None,
         }
+    }
+
+    fn outlined(base: &BaseElement, frame: &Self, (): ()) -> Vec<Outline> {
+        vec![outline(base).transformed(frame.map())]
     }
 
     fn is_line(base: &BaseElement) -> bool {
@@ -116,6 +124,10 @@ impl ShownFrame for Frame3 {
             normal: shape.normal.filter(|_| !Self::is_line(base)),
             ..shape
         }
+    }
+
+    fn outlined(base: &Body, frame: &Self, view: DMat3) -> Vec<Outline> {
+        shown(base, frame, view).outlines
     }
 
     fn is_line(base: &Body) -> bool {

@@ -26,12 +26,12 @@ struct Near {
 
 impl From<&Piece> for Near {
     fn from(piece: &Piece) -> Self {
-        let [place, factor] = piece.near();
+        let [place, factor] = piece.map.near();
         Self {
             set: piece.set,
             place,
             factor,
-            mirrored: piece.mirrored,
+            mirrored: piece.map.mirrored,
         }
     }
 }

@@ -9,6 +9,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::geometry::Frame2;
+use crate::lsystem::TurtleFrame;
+
 use super::NoGrowth;
 use super::number::{Complex, Number, Numbers, log2};
 use super::polynomial::{Polynomial, SAME, largest};
@@ -27,30 +30,29 @@ const MAX_ORDER: usize = 48;
 const MAX_TURNS: u32 = 720;
 
 /// Readings of words at all steps.
-pub(super) struct Steps {
+pub(super) struct Steps<F: TurtleFrame = Frame2> {
     /// Effects of all variables by step.
-    effects: Vec<Effects>,
+    effects: Vec<Effects<F::Heading>>,
     /// Readings of all variables other than the line by step, one more than of effects: the last returns to the period's
     /// first effects.
-    readings: Vec<Vec<Reading>>,
+    readings: Vec<Vec<Reading<F::Heading>>>,
     /// First step of the period.
     pub(super) first: usize,
     /// Number of steps of the period.
     pub(super) period: usize,
 }
 
-impl Steps {
+impl<F: TurtleFrame> Steps<F> {
     /// Reads words until all directions recur.
-    pub(super) fn of(reader: &Reader<'_>) -> Result<Self, NoGrowth> {
-        let effects = |readings: &[Reading]| -> Effects {
-            let line = [(Turn::NONE, true)].into_iter();
+    pub(super) fn of(reader: &Reader<'_, F>) -> Result<Self, NoGrowth> {
+        let effects = |readings: &[Reading<F::Heading>]| -> Effects<F::Heading> {
+            let line = [(Turn::none::<F>(), true)].into_iter();
             let others = readings.iter().map(|it| (it.turn, !it.parts.is_empty()));
             line.chain(others).collect()
         };
-        let key = |effects: &Effects| -> Vec<(u64, bool, u64, bool)> {
-            { effects.iter() }
-                .map(|(turn, draws)| (turn.heading, turn.mirrored, turn.scale.to_bits(), *draws))
-                .collect()
+        let key = |(turn, draws): &(Turn<F::Heading>, bool)| {
+            let heading = F::key(reader.compass, turn.heading);
+            (heading, turn.mirrored, turn.scale.to_bits(), *draws)
         };
         let mut steps = Self {
             effects: Vec::new(),
@@ -61,7 +63,8 @@ impl Steps {
         let mut known = BTreeMap::new();
         for step in 0..MAX_STEPS {
             let now = effects(&steps.readings[step]);
-            if let Some(first) = known.insert(key(&now), step) {
+            let keys: Vec<_> = now.iter().map(key).collect();
+            if let Some(first) = known.insert(keys, step) {
                 (steps.first, steps.period) = (first, step - first);
                 return Ok(steps);
             }
@@ -83,12 +86,12 @@ impl Steps {
     }
 
     /// Returns the effects of all variables at a step.
-    pub(super) fn effects(&self, step: usize) -> &Effects {
+    pub(super) fn effects(&self, step: usize) -> &Effects<F::Heading> {
         &self.effects[self.equal(step, 0)]
     }
 
     /// Returns the reading of a variable other than the line at a step.
-    pub(super) fn reading(&self, step: usize, variable: Variable) -> &Reading {
+    pub(super) fn reading(&self, step: usize, variable: Variable) -> &Reading<F::Heading> {
         &self.readings[self.equal(step, 1)][variable - 1]
     }
 
@@ -98,9 +101,9 @@ impl Steps {
     }
 
     /// Returns the variables whose displacements decide where parts are drawn in the limit.
-    fn relevant(&self, reader: &Reader<'_>) -> Result<Vec<Variable>, NoGrowth> {
+    pub(super) fn relevant(&self, reader: &Reader<'_, F>) -> Result<Vec<Variable>, NoGrowth> {
         let mut relevant = vec![false; reader.fertile.len() + 1];
-        let mut places = |reading: &Reading| {
+        let mut places = |reading: &Reading<F::Heading>| {
             for part in &reading.parts {
                 reading.terms(part.at).for_each(|it| relevant[it.of] = true);
             }

@@ -15,6 +15,7 @@ mod number;
 mod pieces;
 mod polynomial;
 mod prime;
+mod space;
 mod turns;
 
 use std::sync::Arc;
@@ -28,13 +29,26 @@ use crate::rule::BaseElement;
 
 use self::growth::{Growth, Steps};
 use self::number::{Complex, Numbers};
-use self::pieces::{Piece, Pieces};
+use self::pieces::{Piece, Pieces, SetMap as _};
 use self::turns::Reader;
 use super::chords::Chords;
 use super::kinds::{Kinds, MAX_CLOSED};
 
 /// Additional bits of the numbers in which growth is decided.
 const BITS: usize = 1024;
+
+/// Checks that modules are replaced, and read by the turtle, regardless of all others.
+fn check(system: &LSystem) -> Result<(), NoGrowth> {
+    if !system.is_deterministic() {
+        Err(NoGrowth::Draws)
+    } else if !system.is_context_free() {
+        Err(NoGrowth::Contexts)
+    } else if system.depends_on_the_way() {
+        Err(NoGrowth::Actions)
+    } else {
+        Ok(())
+    }
+}
 
 /// Limit set of an L-system: its sets, each in a frame from the start of the set to a point of its own.
 pub(super) struct Limit {
@@ -48,15 +62,7 @@ pub(super) struct Limit {
 impl Limit {
     /// Computes the limit set of a system, in numbers of at least `bits` bits.
     pub(super) fn of(system: &LSystem, bits: usize) -> Result<Self, NoGrowth> {
-        if !system.is_deterministic() {
-            return Err(NoGrowth::Draws);
-        }
-        if !system.is_context_free() {
-            return Err(NoGrowth::Contexts);
-        }
-        if system.depends_on_the_way() {
-            return Err(NoGrowth::Actions);
-        }
+        check(system)?;
         let kinds = Kinds::of(system, u32::MAX, MAX_CLOSED).map_err(|_| NoGrowth::Arguments)?;
         let reader = Reader::new(system, &kinds);
         let bits = bits + BITS;
@@ -65,24 +71,7 @@ impl Limit {
         let growth = Growth::of(&mut steps, &reader, &mut numbers)?;
         let pieces = Pieces::of(&reader, &steps, &growth, &mut numbers)?;
         let one = Complex::real(1.0, bits);
-        let ends = pieces.sets.iter().map(|set| {
-            let places = set.pieces.iter().map(|piece| &piece.place);
-            let mut all = set.way.iter().chain(places);
-            all.find(|end| end.log2() > polynomial::SAME).cloned()
-        });
-        let mut ends: Vec<Option<Complex>> = ends.collect();
-        // A set whose pieces all start where it does has an end of a piece.
-        for _ in 0..ends.len() {
-            for (number, set) in pieces.sets.iter().enumerate() {
-                let mut inner = { set.pieces.iter() }
-                    .filter_map(|piece| Some(piece.image(ends[piece.set].as_ref()?)));
-                if ends[number].is_none()
-                    && let Some(end) = inner.next()
-                {
-                    ends[number] = Some(end);
-                }
-            }
-        }
+        let ends = pieces.ends();
         if pieces.axiom.is_empty() {
             return Err(NoGrowth::Empty);
         }
@@ -92,8 +81,8 @@ impl Limit {
         // The first piece is as long as a step, in the direction of the turtle.
         let mut scale = Complex::real(system.length(), bits);
         if !growth.is_one {
-            let chord = &first.image(end) - &first.place;
-            scale = (&first.factor * &scale).over(&chord);
+            let chord = &first.map.image(end) - &first.map.place;
+            scale = (&first.map.factor * &scale).over(&chord);
         }
         let heading = Compass::of(system).of_degrees(system.start());
         Ok(Self {
@@ -108,8 +97,8 @@ impl Limit {
 
     /// Returns the ends of a piece in the frame of a set, or in the coordinates of the system.
     fn line(&self, piece: &Piece, of: Option<usize>) -> [Complex; 2] {
-        let end = piece.image(&self.ends[piece.set]);
-        [piece.place.clone(), end].map(|point| match of {
+        let end = piece.map.image(&self.ends[piece.set]);
+        [piece.map.place.clone(), end].map(|point| match of {
             Some(set) => point.over(&self.ends[set]),
             None => &point * &self.start,
         })
@@ -126,7 +115,7 @@ impl Limit {
                 starts = joins;
             }
             // The frame of a set that is mirrored differs if it is not the line of its displacement.
-            let direction = match piece.mirrored {
+            let direction = match piece.map.mirrored {
                 true => Direction::YReflected,
                 false => Direction::Normal,
             };

@@ -17,18 +17,53 @@ const MAX_SETS: usize = 1 << 10;
 /// Difference that is attributed to rounding to doubles.
 pub(super) const ROUNDING: f64 = 1e-10;
 
-/// Image of a set: z ↦ `place` + `factor` z, or `place` + `factor` z̄ if it is mirrored.
+/// Map of a set into another.
+pub(super) trait SetMap: Clone {
+    /// Points of the sets.
+    type Point: Clone;
+
+    /// Returns the image of the origin.
+    fn place(&self) -> &Self::Point;
+
+    /// Returns the image of a point.
+    fn image(&self, point: &Self::Point) -> Self::Point;
+
+    /// Returns whether the maps are equal, to rounding to doubles.
+    fn is_near(&self, other: &Self) -> bool;
+
+    /// Returns the binary logarithm of the factor by which it shrinks or grows sets.
+    fn log2(&self) -> f64;
+
+    /// Returns whether two points are equal.
+    fn meet(a: &Self::Point, b: &Self::Point) -> bool;
+
+    /// Returns whether a point is the origin.
+    fn is_zero(point: &Self::Point) -> bool;
+}
+
+/// Similarity z ↦ `place` + `factor` z, or `place` + `factor` z̄ if it is mirrored.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
-    pub(super) set: usize,
+pub(super) struct Similarity {
     pub(super) place: Complex,
     pub(super) factor: Complex,
     pub(super) mirrored: bool,
 }
 
-impl Piece {
-    /// Returns the image of a point.
-    pub(super) fn image(&self, point: &Complex) -> Complex {
+impl Similarity {
+    /// Returns the coefficients in doubles.
+    pub(super) fn near(&self) -> [DVec2; 2] {
+        [self.place.near(0), self.factor.near(0)]
+    }
+}
+
+impl SetMap for Similarity {
+    type Point = Complex;
+
+    fn place(&self) -> &Complex {
+        &self.place
+    }
+
+    fn image(&self, point: &Complex) -> Complex {
         let point = match self.mirrored {
             true => &point.conjugate(),
             false => point,
@@ -36,35 +71,53 @@ impl Piece {
         &self.place + &(&self.factor * point)
     }
 
-    /// Returns the coefficients of the map in doubles.
-    pub(super) fn near(&self) -> [DVec2; 2] {
-        [self.place.near(0), self.factor.near(0)]
+    fn is_near(&self, other: &Self) -> bool {
+        let mut numbers = self.near().into_iter().zip(other.near());
+        self.mirrored == other.mirrored
+            && numbers.all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
     }
 
+    fn log2(&self) -> f64 {
+        self.factor.log2()
+    }
+
+    fn meet(a: &Complex, b: &Complex) -> bool {
+        Self::is_zero(&(a - b))
+    }
+
+    fn is_zero(point: &Complex) -> bool {
+        point.log2() <= SAME
+    }
+}
+
+/// Image of a set.
+#[derive(Clone, Debug)]
+pub(super) struct Piece<M = Similarity> {
+    pub(super) set: usize,
+    pub(super) map: M,
+}
+
+impl<M: SetMap> Piece<M> {
     /// Returns whether a piece is the image of a set of the same class by the same map.
-    fn is_same(&self, other: &Self, classes: &[usize]) -> bool {
-        let kinds = |it: &Self| (classes[it.set], it.mirrored);
-        let mut numbers = self.near().into_iter().zip(other.near());
-        kinds(self) == kinds(other)
-            && numbers.all(|(a, b)| a.distance(b) <= ROUNDING * (1.0 + a.length()))
+    pub(super) fn is_same(&self, other: &Self, classes: &[usize]) -> bool {
+        classes[self.set] == classes[other.set] && self.map.is_near(&other.map)
     }
 }
 
 /// Set of a variable at a step of the period.
 #[derive(Debug)]
-pub(super) struct Set {
-    pub(super) pieces: Vec<Piece>,
+pub(super) struct Set<M: SetMap = Similarity> {
+    pub(super) pieces: Vec<Piece<M>>,
     /// Displacement of the variable, if it decides any place.
-    pub(super) way: Option<Complex>,
+    pub(super) way: Option<M::Point>,
     /// Whether it is the line of one step, which is kept.
     pub(super) is_line: bool,
 }
 
 /// Sets and the pieces of the axiom.
-#[derive(Debug)]
-pub(super) struct Pieces {
-    pub(super) axiom: Vec<Piece>,
-    pub(super) sets: Vec<Set>,
+pub(super) struct Pieces<M: SetMap = Similarity> {
+    pub(super) axiom: Vec<Piece<M>>,
+    pub(super) sets: Vec<Set<M>>,
 }
 
 impl Pieces {
@@ -117,16 +170,18 @@ impl Pieces {
         }
         Ok(Self { axiom, ..pieces }.merged(&classes).without_points())
     }
+}
 
+impl<M: SetMap> Pieces<M> {
     /// Returns whether the product of the factors of every cycle of sets is smaller than 1.
-    fn contracts(&self) -> bool {
+    pub(super) fn contracts(&self) -> bool {
         // The longest logarithm of a product that leads to a set does not rise after as many factors as there are sets.
         let mut longest = vec![0.0; self.sets.len()];
         for _ in 0..=self.sets.len() {
             let mut rises = false;
             for (number, set) in self.sets.iter().enumerate() {
                 for piece in &set.pieces {
-                    let product: f64 = longest[number] + piece.factor.log2() + 2.0 * ROUNDING;
+                    let product: f64 = longest[number] + piece.map.log2() + 2.0 * ROUNDING;
                     if product > longest[piece.set] + ROUNDING {
                         longest[piece.set] = product;
                         rises = true;
@@ -141,8 +196,8 @@ impl Pieces {
     }
 
     /// Returns the classes of sets that consist of the same pieces (Hopcroft 1971), by the first of each.
-    fn classes(&self) -> Vec<usize> {
-        let kind = |set: &Set| usize::from(set.is_line);
+    pub(super) fn classes(&self) -> Vec<usize> {
+        let kind = |set: &Set<M>| usize::from(set.is_line);
         let mut classes: Vec<usize> = self.sets.iter().map(kind).collect();
         loop {
             let mut firsts: Vec<usize> = Vec::new();
@@ -168,11 +223,11 @@ impl Pieces {
     }
 
     /// Returns the sets with one for each class, without pieces that occur twice.
-    fn merged(self, classes: &[usize]) -> Self {
+    pub(super) fn merged(self, classes: &[usize]) -> Self {
         let kept: Vec<usize> = (0..classes.len()).filter(|&it| classes[it] == it).collect();
         let number = |set: usize| kept.binary_search(&classes[set]).unwrap_or(0);
-        let merged = |pieces: Vec<Piece>| {
-            let mut all: Vec<Piece> = Vec::new();
+        let merged = |pieces: Vec<Piece<M>>| {
+            let mut all: Vec<Piece<M>> = Vec::new();
             for piece in pieces {
                 if !all.iter().any(|it| it.is_same(&piece, classes)) {
                     all.push(piece);
@@ -198,41 +253,42 @@ impl Pieces {
 
     /// Returns the sets without pieces that are points of the pieces beside them: lines of one step vanish if the others
     /// grow.
-    fn without_points(mut self) -> Self {
+    pub(super) fn without_points(mut self) -> Self {
         let points = self.greatest(|set, known| {
-            !set.is_line && { set.pieces.iter() }.all(|it| known[it.set] && is_zero(&it.place))
+            let is_point = |it: &Piece<M>| known[it.set] && M::is_zero(it.map.place());
+            !set.is_line && set.pieces.iter().all(is_point)
         });
-        let larger = |set: &Set| -> Vec<Piece> {
+        let larger = |set: &Set<M>| -> Vec<Piece<M>> {
             let pieces = set.pieces.iter().filter(|it| !points[it.set]);
             pieces.cloned().collect()
         };
         let starts = self.greatest(|set, known| {
             let pieces = larger(set);
-            set.is_line || { pieces.iter() }.any(|it| known[it.set] && is_zero(&it.place))
+            let starts = |it: &Piece<M>| known[it.set] && M::is_zero(it.map.place());
+            set.is_line || pieces.iter().any(starts)
         });
-        let way = |set: usize| self.sets[set].way.as_ref();
+        let last = |it: &Piece<M>| Some(it.map.image(self.sets[it.set].way.as_ref()?));
         let ends = self.greatest(|set, known| {
             let Some(end) = &set.way else { return false };
             set.is_line
                 || larger(set).iter().any(|it| {
-                    let last = way(it.set).map(|way| it.image(way));
-                    starts[it.set] && is_zero(&(&it.place - end))
-                        || known[it.set] && last.is_some_and(|last| is_zero(&(&last - end)))
+                    starts[it.set] && M::meet(it.map.place(), end)
+                        || known[it.set] && last(it).is_some_and(|last| M::meet(&last, end))
                 })
         });
-        let without = |pieces: &[Piece]| -> Vec<Piece> {
-            let is_met = |point: &Piece| {
+        let without = |pieces: &[Piece<M>]| -> Vec<Piece<M>> {
+            let is_met = |point: &Piece<M>| {
+                let point = point.map.place();
                 pieces.iter().filter(|it| !points[it.set]).any(|it| {
-                    let last = way(it.set).map(|way| it.image(way));
-                    starts[it.set] && is_zero(&(&it.place - &point.place))
-                        || ends[it.set] && last.is_some_and(|it| is_zero(&(&it - &point.place)))
+                    starts[it.set] && M::meet(it.map.place(), point)
+                        || ends[it.set] && last(it).is_some_and(|last| M::meet(&last, point))
                 })
             };
             let left = pieces.iter().filter(|it| !points[it.set] || !is_met(it));
             left.cloned().collect()
         };
         let axiom = without(&self.axiom);
-        let pieces: Vec<Vec<Piece>> = self.sets.iter().map(|set| without(&set.pieces)).collect();
+        let pieces: Vec<Vec<Piece<M>>> = self.sets.iter().map(|set| without(&set.pieces)).collect();
         for (number, (set, pieces)) in self.sets.iter_mut().zip(pieces).enumerate() {
             // A point keeps one piece: itself.
             if !points[number] {
@@ -244,8 +300,31 @@ impl Pieces {
         Self { axiom, ..self }
     }
 
+    /// Returns an end of every set other than its start, the origin; `None` for sets that are points.
+    pub(super) fn ends(&self) -> Vec<Option<M::Point>> {
+        let ends = self.sets.iter().map(|set| {
+            let places = set.pieces.iter().map(|piece| piece.map.place());
+            let mut all = set.way.iter().chain(places);
+            all.find(|end| !M::is_zero(end)).cloned()
+        });
+        let mut ends: Vec<Option<M::Point>> = ends.collect();
+        // A set whose pieces all start where it does has an end of a piece.
+        for _ in 0..ends.len() {
+            for (number, set) in self.sets.iter().enumerate() {
+                let mut inner = { set.pieces.iter() }
+                    .filter_map(|piece| Some(piece.map.image(ends[piece.set].as_ref()?)));
+                if ends[number].is_none()
+                    && let Some(end) = inner.next()
+                {
+                    ends[number] = Some(end);
+                }
+            }
+        }
+        ends
+    }
+
     /// Returns the largest class of sets for which a property holds that depends on the class.
-    fn greatest(&self, holds: impl Fn(&Set, &[bool]) -> bool) -> Vec<bool> {
+    fn greatest(&self, holds: impl Fn(&Set<M>, &[bool]) -> bool) -> Vec<bool> {
         let mut known = vec![true; self.sets.len()];
         loop {
             let next: Vec<bool> = { self.sets.iter().zip(&known) }
@@ -257,11 +336,6 @@ impl Pieces {
             known = next;
         }
     }
-}
-
-/// Returns whether a point is the origin.
-fn is_zero(place: &Complex) -> bool {
-    place.log2() <= SAME
 }
 
 struct Finder<'f> {
@@ -304,9 +378,11 @@ impl Finder<'_> {
                 None => number.clone(),
             };
             pieces.push(Piece {
-                place: by(place),
-                factor: by(&factor),
-                mirrored: part.turn.mirrored,
+                map: Similarity {
+                    place: by(place),
+                    factor: by(&factor),
+                    mirrored: part.turn.mirrored,
+                },
                 set: self.set(part.of, phase)?,
             });
         }
@@ -348,9 +424,11 @@ impl Finder<'_> {
             } else if variable == STEP {
                 vec![Piece {
                     set: self.set(STEP, 0)?,
-                    place: Complex::real(0.0, bits),
-                    factor: Complex::real(1.0, bits).over(&ratio),
-                    mirrored: false,
+                    map: Similarity {
+                        place: Complex::real(0.0, bits),
+                        factor: Complex::real(1.0, bits).over(&ratio),
+                        mirrored: false,
+                    },
                 }]
             } else {
                 let step = if phase == 0 { period } else { phase };

@@ -1,34 +1,35 @@
 //! Words as the turtle reads them at a step: where each part starts and how it is turned, given the turns of all modules
 //! one step before.
 
-use crate::lsystem::{Action, Compass, LSystem};
+use crate::expression::Program;
+use crate::geometry::Frame2;
+use crate::lsystem::{Action, Axis, Compass, TurtleFrame};
 
 use super::super::kinds::Kinds;
 use super::NoGrowth;
 
 /// Direction of the turtle relative to an earlier one, with the length of its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Turn {
-    pub(super) heading: u64,
+pub(super) struct Turn<H = u64> {
+    pub(super) heading: H,
     pub(super) mirrored: bool,
     /// Length of its steps; negative if they go backwards.
     pub(super) scale: f64,
 }
 
-impl Turn {
-    pub(super) const NONE: Self = Self {
-        heading: 0,
-        mirrored: false,
-        scale: 1.0,
-    };
-
-    pub(super) fn then(self, compass: Compass, next: Self) -> Self {
-        let turn = match self.mirrored {
-            true => compass.back(next.heading),
-            false => next.heading,
-        };
+impl<H: Copy> Turn<H> {
+    /// Returns no turn, of turtles of the plane or of space.
+    pub(super) fn none<F: TurtleFrame<Heading = H>>() -> Self {
         Self {
-            heading: compass.sum(self.heading, turn),
+            heading: F::AHEAD,
+            mirrored: false,
+            scale: 1.0,
+        }
+    }
+
+    fn then<F: TurtleFrame<Heading = H>>(self, compass: Compass, next: Self) -> Self {
+        Self {
+            heading: F::after_turn(compass, self.heading, next.heading, self.mirrored),
             mirrored: self.mirrored ^ next.mirrored,
             scale: self.scale * next.scale,
         }
@@ -45,29 +46,29 @@ pub(super) const STEP: Variable = 0;
 
 /// Variable that is turned, at the end of a sum of displacements.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turned {
+pub(super) struct Turned<H = u64> {
     pub(super) of: Variable,
     /// Number of the sum before it: of its place.
     pub(super) at: usize,
-    pub(super) turn: Turn,
+    pub(super) turn: Turn<H>,
 }
 
 /// Drawing of a word.
 #[derive(Clone, Debug)]
-pub(super) struct Reading {
+pub(super) struct Reading<H = u64> {
     /// Last terms of all sums but the first, which is 0.
-    pub(super) sums: Vec<Turned>,
+    pub(super) sums: Vec<Turned<H>>,
     /// Parts that are drawn.
-    pub(super) parts: Vec<Turned>,
+    pub(super) parts: Vec<Turned<H>>,
     /// Number of the sum that is the place after the word.
     pub(super) end: usize,
     /// Direction after the word.
-    pub(super) turn: Turn,
+    pub(super) turn: Turn<H>,
 }
 
-impl Reading {
+impl<H> Reading<H> {
     /// Iterates over the terms of a sum, from the last to the first.
-    pub(super) fn terms(&self, mut sum: usize) -> impl Iterator<Item = &Turned> {
+    pub(super) fn terms(&self, mut sum: usize) -> impl Iterator<Item = &Turned<H>> {
         std::iter::from_fn(move || {
             let last = &self.sums[sum.checked_sub(1)?];
             sum = last.at;
@@ -77,11 +78,11 @@ impl Reading {
 }
 
 /// Directions after all variables at a step, and whether they draw.
-pub(super) type Effects = Vec<(Turn, bool)>;
+pub(super) type Effects<H = u64> = Vec<(Turn<H>, bool)>;
 
 /// Reader of the words of a system.
-pub(super) struct Reader<'s> {
-    pub(super) system: &'s LSystem,
+pub(super) struct Reader<'s, F: TurtleFrame = Frame2> {
+    pub(super) system: &'s F::System,
     pub(super) compass: Compass,
     pub(super) kinds: &'s Kinds,
     /// Kinds that are replaced, in order.
@@ -90,14 +91,14 @@ pub(super) struct Reader<'s> {
     variables: Vec<Option<Variable>>,
 }
 
-impl<'s> Reader<'s> {
-    pub(super) fn new(system: &'s LSystem, kinds: &'s Kinds) -> Self {
+impl<'s, F: TurtleFrame> Reader<'s, F> {
+    pub(super) fn new(system: &'s F::System, kinds: &'s Kinds) -> Self {
         let all = 0..kinds.all.len();
         let fertile: Vec<usize> = all.filter(|&kind| kinds.all[kind].is_fertile()).collect();
         let variable = |kind: usize| fertile.binary_search(&kind).ok().map(|place| place + 1);
         Self {
             system,
-            compass: Compass::of(system),
+            compass: Compass::of(F::words(system)),
             kinds,
             variables: (0..kinds.all.len()).map(variable).collect(),
             fertile,
@@ -105,7 +106,10 @@ impl<'s> Reader<'s> {
     }
 
     /// Reads the words that replace all variables, whose modules have effects.
-    pub(super) fn replaced(&self, effects: &Effects) -> Result<Vec<Reading>, NoGrowth> {
+    pub(super) fn replaced(
+        &self,
+        effects: &Effects<F::Heading>,
+    ) -> Result<Vec<Reading<F::Heading>>, NoGrowth> {
         let word = |kind: &usize| &self.kinds.all[*kind].alternatives[0].word;
         let readings = self
             .fertile
@@ -115,7 +119,7 @@ impl<'s> Reader<'s> {
     }
 
     /// Reads all variables as modules that are not replaced.
-    pub(super) fn kept(&self) -> Result<Vec<Reading>, NoGrowth> {
+    pub(super) fn kept(&self) -> Result<Vec<Reading<F::Heading>>, NoGrowth> {
         let readings = self.fertile.iter().map(|kind| self.read(&[*kind], None));
         readings.collect()
     }
@@ -124,13 +128,13 @@ impl<'s> Reader<'s> {
     pub(super) fn read(
         &self,
         word: &[usize],
-        effects: Option<&Effects>,
-    ) -> Result<Reading, NoGrowth> {
+        effects: Option<&Effects<F::Heading>>,
+    ) -> Result<Reading<F::Heading>, NoGrowth> {
         let mut reading = Reading {
             sums: Vec::new(),
             parts: Vec::new(),
             end: 0,
-            turn: Turn::NONE,
+            turn: Turn::none::<F>(),
         };
         let mut saved = Vec::new();
         for &kind in word {
@@ -138,7 +142,7 @@ impl<'s> Reader<'s> {
                 (Some(variable), Some(effects)) => {
                     let (turn, draws) = effects[variable];
                     self.go(&mut reading, variable, 1.0, draws);
-                    reading.turn = reading.turn.then(self.compass, turn);
+                    reading.turn = reading.turn.then::<F>(self.compass, turn);
                 }
                 _ => self.act(kind, &mut reading, &mut saved)?,
             }
@@ -147,7 +151,7 @@ impl<'s> Reader<'s> {
     }
 
     /// Goes ahead by a variable.
-    fn go(&self, reading: &mut Reading, of: Variable, steps: f64, draws: bool) {
+    fn go(&self, reading: &mut Reading<F::Heading>, of: Variable, steps: f64, draws: bool) {
         let turned = Turned {
             of,
             at: reading.end,
@@ -167,11 +171,18 @@ impl<'s> Reader<'s> {
     fn act(
         &self,
         kind: usize,
-        reading: &mut Reading,
-        saved: &mut Vec<(usize, Turn)>,
+        reading: &mut Reading<F::Heading>,
+        saved: &mut Vec<(usize, Turn<F::Heading>)>,
     ) -> Result<(), NoGrowth> {
         let of = &self.kinds.all[kind];
-        for action in &self.system.symbols()[of.symbol].meaning {
+        let turn = |axis: Axis, angle: &Program, reading: &mut Reading<F::Heading>| {
+            let turn = Turn {
+                heading: F::turn(self.compass, axis, angle.eval(&of.arguments)),
+                ..Turn::none::<F>()
+            };
+            reading.turn = reading.turn.then::<F>(self.compass, turn);
+        };
+        for action in &F::words(self.system).symbols()[of.symbol].meaning {
             match action {
                 Action::Draw(steps) => {
                     self.go(reading, STEP, steps.eval(&of.arguments), true);
@@ -179,14 +190,9 @@ impl<'s> Reader<'s> {
                 Action::Move(steps) | Action::Glide(steps) => {
                     self.go(reading, STEP, steps.eval(&of.arguments), false);
                 }
-                Action::Turn(angle) => {
-                    let heading = self.compass.of_degrees(angle.eval(&of.arguments));
-                    let turn = Turn {
-                        heading,
-                        ..Turn::NONE
-                    };
-                    reading.turn = reading.turn.then(self.compass, turn);
-                }
+                Action::Turn(angle) => turn(Axis::Up, angle, reading),
+                Action::Pitch(angle) => turn(Axis::Left, angle, reading),
+                Action::Roll(angle) => turn(Axis::Heading, angle, reading),
                 Action::Reflect => reading.turn.mirrored ^= true,
                 Action::Scale(factor) => reading.turn.scale *= factor.eval(&of.arguments),
                 Action::Push => saved.push((reading.end, reading.turn)),

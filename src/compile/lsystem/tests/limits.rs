@@ -8,7 +8,9 @@ use proptest::test_runner::TestRunner;
 
 use super::super::limit::Limit;
 use super::*;
-use crate::lsystem::NoGrowth;
+use crate::geometry::{DVec3, Frame3};
+use crate::graph::Chain;
+use crate::lsystem::{LSystemInSpace, NoGrowth};
 
 /// Largest number of points that are compared.
 const MOST: u64 = 1_500;
@@ -237,4 +239,112 @@ fn long_lines() {
             }
         }
     }
+}
+
+fn in_space(text: &str) -> Arc<LSystemInSpace> {
+    let text = format!("kind: lsystem\nspace: 3\n{text}");
+    let source = Source::new("test", text);
+    let catalogue = Catalogue::embedded();
+    let document = Document::read(&source, &catalogue).unwrap();
+    match document.resolve(&[]).unwrap().0 {
+        Model::LSystemInSpace(system) => system,
+        _ => panic!("a system in space"),
+    }
+}
+
+/// Returns the starts of parts of a graph in space: those of an approximant, as far as the number of points allows.
+fn starts_in_space(graph: &Graph<Frame3>, chain: &Chain<Frame3>) -> Vec<DVec3> {
+    let placed = |chain: &Chain<Frame3>| -> Vec<_> {
+        let instances = chain.instances.iter();
+        instances.map(|it| (*it.frame.map(), it.object)).collect()
+    };
+    let mut parts = placed(chain);
+    for _ in 0..40 {
+        let mut next = Vec::new();
+        for (map, object) in &parts {
+            match graph.objects()[*object].successor() {
+                Some(successor) => {
+                    let inner = placed(&successor.body).into_iter();
+                    next.extend(inner.map(|(inner, object)| (*map * inner, object)));
+                }
+                None => next.push((*map, *object)),
+            }
+        }
+        if next.len() as u64 > MOST {
+            break;
+        }
+        parts = next;
+    }
+    parts.iter().map(|(map, _)| map.translation).collect()
+}
+
+/// Systems of the plane have the same limit sets in space, where directions recur and are not of an unknown angle.
+#[test]
+fn systems_of_the_plane_in_space() {
+    let mut runner = TestRunner::deterministic();
+    let random = (0..100).map(|_| text().new_tree(&mut runner).unwrap().current());
+    let named = named::ALL.iter().map(named::text);
+    let (mut same, mut refused) = (0, Vec::new());
+    for text in named.chain(random) {
+        let planar = limit(&system(&text));
+        let spatial = Graph::limit_of_lsystem(&in_space(&text));
+        match (planar, spatial) {
+            (Ok(planar), Ok(spatial)) => {
+                let points = starts_in_space(&spatial, spatial.initiator(0));
+                let depth = points.iter().map(|it| it.z.abs()).fold(0.0, f64::max);
+                let size = points.iter().map(|it| it.length()).fold(0.0, f64::max);
+                assert!(depth <= 1e-9 * size, "{depth} {text}");
+                let flat: Vec<DVec2> = points.iter().map(|it| it.truncate()).collect();
+                let off = distance(&starts(&planar), &flat);
+                assert!(off < NEAR, "{off} {text}");
+                same += 1;
+            }
+            (Err(planar), Ok(_)) => panic!("{planar} {text}"),
+            (Ok(_), Err(spatial)) => refused.push(format!("{spatial}: {text}")),
+            (Err(planar), Err(spatial)) => eprintln!("{planar} / {spatial}"),
+        }
+    }
+    eprintln!("{same} alike; refused:\n{}", refused.join("\n"));
+    assert!(refused.len() * 10 <= same);
+}
+
+/// Random systems that turn about all axes approach the limit sets that are found, as far as distances from the start show.
+#[test]
+fn random_systems_in_space() {
+    const LAST: u32 = 160;
+    let mut runner = TestRunner::deterministic();
+    let mut approached = 0;
+    for number in 0..150 {
+        let planar = text().new_tree(&mut runner).unwrap().current();
+        let planar = match planar.split_once('\n') {
+            // Right angles generate finitely many rotations.
+            Some((_, words)) if number % 2 == 0 => format!("angle: 90\n{words}"),
+            _ => planar,
+        };
+        let mut turns = "+&/-^+".chars().cycle();
+        let turned = planar.chars().map(|it| match it {
+            '+' | '-' => turns.next().unwrap_or(it),
+            it => it,
+        });
+        let text: String = turned.collect();
+        let system = in_space(&text);
+        let Ok(limit) = Graph::limit_of_lsystem(&system) else {
+            continue;
+        };
+        approached += 1;
+        let words = Graph::of_lsystem_in_space(&system, LAST, 0, 1).unwrap();
+        let radii = |points: Vec<DVec3>| -> Vec<DVec2> {
+            let size = points.iter().map(|it| it.length()).fold(0.0, f64::max);
+            let radii = points.iter().map(|it| DVec2::new(it.length() / size, 0.0));
+            radii.collect()
+        };
+        let [ours, theirs] = [
+            radii(starts_in_space(&limit, limit.initiator(0))),
+            radii(starts_in_space(&words, words.initiator(LAST))),
+        ];
+        let off = excess(&ours, &theirs).max(excess(&theirs, &ours));
+        assert!(off < NEAR, "{off} {text}");
+    }
+    eprintln!("{approached} of 150 have a limit set");
+    assert!(approached >= 25);
 }
