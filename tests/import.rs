@@ -1,6 +1,7 @@
 //! Import of files of other programs, through the command-line program.
 
 mod aifs;
+mod eisenscript;
 mod fractasketch;
 mod genes;
 mod tables;
@@ -142,7 +143,7 @@ fn files_that_hold_nothing_are_refused() {
         (
             "curves.txt",
             b"",
-            "the format of 'curves.txt' is not known: --from is one of l, ifs, csv, aifs, genes, fsk",
+            "the format of 'curves.txt' is not known: --from is one of l, ifs, csv, aifs, genes, fsk, eisenscript",
         ),
         ("missing.l", b"", "there is no file 'missing.l'"),
     ];

@@ -60,6 +60,8 @@ Examples:
       Converts every set of IFStile's format: a system, or a structure where sets refer to each other
   kfrac import curves.json --from genes
       Converts genes of plane-filling curves on square and triangular lattices to rules
+  kfrac import tower.es
+      Converts a program of Structure Synth to a structure in space, whose random choices are drawn once
   kfrac import maple.txt --from csv --columns abecdfp
       Reads a row of a table as the coefficients of x', those of y', and a probability
 ";

@@ -7,6 +7,7 @@ mod aifs;
 mod csv;
 mod curve;
 mod document;
+mod eisenscript;
 mod fractasketch;
 mod fractint;
 mod genes;
@@ -51,6 +52,8 @@ pub enum Format {
     Genes,
     /// Template of the program FractaSketch in its version of D. Loehr: a point, and lines of six types to further points.
     FractaSketch,
+    /// Program in EisenScript, the language of Structure Synth: `rule r md 10 { { x 1 rz 5 } r box }`; a text is one entry.
+    EisenScript,
 }
 
 impl Named for Format {
@@ -61,6 +64,7 @@ impl Named for Format {
         ("aifs", Self::Aifs),
         ("genes", Self::Genes),
         ("fsk", Self::FractaSketch),
+        ("eisenscript", Self::EisenScript),
     ];
 }
 
@@ -71,6 +75,7 @@ impl Format {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match &extension[..] {
             "tsv" => Some(Self::Csv),
+            "es" => Some(Self::EisenScript),
             extension => Self::from_name(extension),
         }
     }
@@ -85,6 +90,7 @@ impl Format {
             Self::Aifs => "systems of maps of IFStile (AIFS)",
             Self::Genes => "genes of curves, a gene in each line or a JSON list",
             Self::FractaSketch => "templates of FractaSketch",
+            Self::EisenScript => "programs of Structure Synth in EisenScript (es)",
         }
     }
 
@@ -97,6 +103,7 @@ impl Format {
             Self::Aifs => "a block @ with a set A=(f|g)*A",
             Self::Genes => "a line such as Dragon: G 1 0 0 0 0 1 1 0",
             Self::FractaSketch => "a template of a point x y and lines t x y",
+            Self::EisenScript => "a program such as { x 1 } box",
         }
     }
 }
@@ -144,5 +151,6 @@ pub fn read(
         Format::Aifs => aifs::read(source),
         Format::Genes => genes::read(source),
         Format::FractaSketch => fractasketch::read(source),
+        Format::EisenScript => eisenscript::read(source),
     }
 }
