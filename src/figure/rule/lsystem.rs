@@ -102,7 +102,7 @@ struct Figure<'a, F: ShownFrame + TurtleFrame> {
     view: F::View,
 }
 
-/// What a turtle draws of a word, as seen.
+/// Drawing of a word, as seen.
 #[derive(Default)]
 struct Sketch {
     lines: Vec<([DVec2; 2], ElementRole, char)>,
@@ -148,7 +148,7 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
             .sum()
     }
 
-    /// Returns the arguments with which a production is applied first, or 1 for each if it is not applied soon. Those of
+    /// Returns the arguments with which a production is applied first, or 1 for each if it is not applied soon. Arguments of
     /// contexts are 1.
     fn slots(&self, production: &Production) -> Vec<f64> {
         let right = production.right.iter().filter_map(|it| match it {
