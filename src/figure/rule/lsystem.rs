@@ -364,7 +364,13 @@ fn described(written: &ProductionDocument) -> String {
     if let Some(condition) = &written.condition {
         text.push_str(&format!(" : {}", condition.place.text()));
     }
-    text.push_str(&format!(" -> {}", written.successor.place.text()));
+    let successor = &written.successor.place;
+    if successor.range() == written.predecessor.place.range() {
+        // A production in a folded text has the place of all of it.
+        text = successor.text().to_owned();
+    } else {
+        text.push_str(&format!(" -> {}", successor.text()));
+    }
     if let Some(weight) = &written.weight {
         text.push_str(&format!(" (weight {})", weight.place.text()));
     }
