@@ -18,7 +18,7 @@ use super::picture;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, camera, format, help, length, output, text};
 
-/// Draws a rule as a figure: initiator, generators, base element; maps; objects; productions
+/// Draws a rule as a figure: its components, maps, objects or productions
 ///
 /// A component of the library is drawn alone. Fertile elements are marked with an asterisk, directions with
 /// their number; selection and random functions are written out (in the style of Kaandorp 1987, figures 1 to
