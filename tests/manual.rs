@@ -54,6 +54,7 @@ fn examples_work() {
         ("other.ifs", maps),
         ("maple.txt", table),
         ("tiles.aifs", tiles),
+        ("tower.es", "3 * { y 1 } box"),
         ("curves.json", curves),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
