@@ -619,6 +619,7 @@ fn l_systems_in_space_become_structures() {
                 continue;
             }
         };
+        assert_eq!(model.metadata().space, structure.metadata().space);
         let steps = model.resolved_steps_in_space(None);
         let drawn = |model: &Model| {
             let growth = Growth::steps(steps);

@@ -1,10 +1,10 @@
 //! Conversion of validated values to the nodes of a file.
 
 use crate::document::node::{Key, Node, Value};
-use crate::geometry::DVec2;
+use crate::geometry::{DVec2, DVec3};
 use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
-use crate::style::{Colour, Named, Palette, Style, Tube, View, Width};
+use crate::style::{Colour, Named, Palette, SpaceView, Style, Tube, View, Width};
 use crate::symmetry::Symmetry;
 
 use super::{NumberText, PointText};
@@ -176,4 +176,33 @@ pub(crate) fn view(view: &View) -> Entries {
             .set_some("margin", view.margin.map(number))
     };
     entries(view).without(&entries(&View::default()))
+}
+
+/// Returns the entries of a view in space.
+pub(crate) fn space_view(view: &SpaceView) -> Entries {
+    let number = |value: f64| NumberText::from(value).0;
+    let vector = |vector: DVec3| sequence(vector.to_array().map(number));
+    let angles = |angles: [f64; 2]| sequence(angles.map(number));
+    let plane = |normal: DVec3, at: f64| {
+        let entries = Entries::default().set("normal", vector(normal));
+        entries.set("at", number(at))
+    };
+    let slice = view.slice.map(|slice| {
+        let entries = plane(slice.normal, slice.offset);
+        let thickness = slice.thickness.map(number);
+        entries.set_some("thickness", thickness).value()
+    });
+    let cuts = { view.cuts.iter() }.map(|cut| plane(cut.normal, cut.distance).value());
+    Entries::default()
+        .set_some("from", view.from.map(angles))
+        .set_some("up", view.up.map(vector))
+        .set_some("look_at", view.look_at.map(vector))
+        .set_some("perspective", view.perspective.map(number))
+        .set_some("slice", slice)
+        .set_some("cut", (!view.cuts.is_empty()).then(|| sequence(cuts)))
+        .set_some("shade", view.shade.map(|it| Value::Text(it.name().into())))
+        .set_some("light", view.light.map(angles))
+        .set_some("ambient", view.ambient.map(number))
+        .set_some("occlusion", view.occlusion.map(Value::Bool))
+        .set_some("shadows", view.shadows.map(Value::Bool))
 }

@@ -248,7 +248,7 @@ fn headed(metadata: &Metadata, kind: Kind, own: Entries) -> Entries {
         );
     let (style, view) = (
         written::style(&metadata.style),
-        written::view(&metadata.view),
+        written::view(&metadata.view).and(written::space_view(&metadata.space)),
     );
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     entries

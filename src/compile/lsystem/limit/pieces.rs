@@ -132,8 +132,7 @@ impl Pieces {
             steps,
             growth,
             numbers,
-            keys: BTreeMap::new(),
-            open: Vec::new(),
+            names: SetNumbers::default(),
             sets: Vec::new(),
         };
         let mut axioms = Vec::new();
@@ -338,13 +337,35 @@ impl<M: SetMap> Pieces<M> {
     }
 }
 
+/// Numbers of sets by variable and step of the period, in the order in which they are found.
+#[derive(Default)]
+pub(super) struct SetNumbers {
+    numbers: BTreeMap<(Variable, usize), usize>,
+    pub(super) found: Vec<(Variable, usize)>,
+}
+
+impl SetNumbers {
+    /// Returns the number of the set of a variable, which is added if it is new.
+    pub(super) fn of(&mut self, variable: Variable, phase: usize) -> Result<usize, NoGrowth> {
+        // The line is the same at all steps.
+        let phase = if variable == STEP { 0 } else { phase };
+        let next = self.found.len();
+        if next > MAX_SETS {
+            return Err(NoGrowth::Size);
+        }
+        let number = *self.numbers.entry((variable, phase)).or_insert(next);
+        if number == next {
+            self.found.push((variable, phase));
+        }
+        Ok(number)
+    }
+}
+
 struct Finder<'f> {
     steps: &'f Steps,
     growth: &'f Growth,
     numbers: &'f mut Numbers,
-    /// Sets by variable and step of the period.
-    keys: BTreeMap<(Variable, usize), usize>,
-    open: Vec<(Variable, usize)>,
+    names: SetNumbers,
     sets: Vec<Set>,
 }
 
@@ -383,7 +404,7 @@ impl Finder<'_> {
                     factor: by(&factor),
                     mirrored: part.turn.mirrored,
                 },
-                set: self.set(part.of, phase)?,
+                set: self.names.of(part.of, phase)?,
             });
         }
         Ok(pieces)
@@ -395,25 +416,10 @@ impl Finder<'_> {
         &direction * &scale
     }
 
-    /// Returns the number of the set of a variable.
-    fn set(&mut self, variable: Variable, phase: usize) -> Result<usize, NoGrowth> {
-        // The line is the same at all steps.
-        let phase = if variable == STEP { 0 } else { phase };
-        let next = self.keys.len();
-        if next > MAX_SETS {
-            return Err(NoGrowth::Size);
-        }
-        let number = *self.keys.entry((variable, phase)).or_insert(next);
-        if number == next {
-            self.open.push((variable, phase));
-        }
-        Ok(number)
-    }
-
     /// Finds the pieces of all sets.
     fn finish(&mut self) -> Result<(), NoGrowth> {
         let mut done = 0;
-        while let Some(&(variable, phase)) = self.open.get(done) {
+        while let Some(&(variable, phase)) = self.names.found.get(done) {
             done += 1;
             let period = self.growth.period;
             let ratio = self.growth.ratio.clone();
@@ -423,7 +429,7 @@ impl Finder<'_> {
                 Vec::new()
             } else if variable == STEP {
                 vec![Piece {
-                    set: self.set(STEP, 0)?,
+                    set: self.names.of(STEP, 0)?,
                     map: Similarity {
                         place: Complex::real(0.0, bits),
                         factor: Complex::real(1.0, bits).over(&ratio),

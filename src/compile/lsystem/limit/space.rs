@@ -6,7 +6,6 @@
 mod alike;
 mod growth;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::geometry::{DAffine3, DMat3, DVec3, Direction, Frame3, Solid};
@@ -16,12 +15,9 @@ use crate::lsystem::{Compass, Heading3, LSystemInSpace, NoGrowth, TurtleFrame as
 use self::alike::Sets;
 use self::growth::{Growth, linear, rotation, turned};
 use super::growth::Steps;
-use super::pieces::{Piece, Pieces, ROUNDING, Set, SetMap};
-use super::turns::{Reader, Reading, STEP, Variable};
+use super::pieces::{Piece, Pieces, ROUNDING, Set, SetMap, SetNumbers};
+use super::turns::{Reader, Reading, STEP};
 use super::{Kinds, MAX_CLOSED};
-
-/// Limit of the number of sets.
-const MAX_SETS: usize = 1 << 10;
 
 impl SetMap for DAffine3 {
     type Point = DVec3;
@@ -57,9 +53,7 @@ struct Finder<'f> {
     steps: &'f Steps<Frame3>,
     growth: &'f Growth,
     compass: Compass,
-    /// Sets by variable and step of the period.
-    keys: BTreeMap<(Variable, usize), usize>,
-    open: Vec<(Variable, usize)>,
+    names: SetNumbers,
     sets: Vec<Set<DAffine3>>,
 }
 
@@ -89,31 +83,16 @@ impl Finder<'_> {
             let place = back * places[part.at] / ratio;
             pieces.push(Piece {
                 map: DAffine3::from_mat3_translation(linear, place),
-                set: self.set(part.of, phase)?,
+                set: self.names.of(part.of, phase)?,
             });
         }
         Ok(pieces)
     }
 
-    /// Returns the number of the set of a variable.
-    fn set(&mut self, variable: Variable, phase: usize) -> Result<usize, NoGrowth> {
-        // The line is the same at all steps.
-        let phase = if variable == STEP { 0 } else { phase };
-        let next = self.keys.len();
-        if next > MAX_SETS {
-            return Err(NoGrowth::Size);
-        }
-        let number = *self.keys.entry((variable, phase)).or_insert(next);
-        if number == next {
-            self.open.push((variable, phase));
-        }
-        Ok(number)
-    }
-
     /// Finds the pieces of all sets.
     fn finish(&mut self) -> Result<(), NoGrowth> {
         let mut done = 0;
-        while let Some(&(variable, phase)) = self.open.get(done) {
+        while let Some(&(variable, phase)) = self.names.found.get(done) {
             done += 1;
             let Growth {
                 period,
@@ -130,7 +109,7 @@ impl Finder<'_> {
                 Vec::new()
             } else if variable == STEP {
                 vec![Piece {
-                    set: self.set(STEP, 0)?,
+                    set: self.names.of(STEP, 0)?,
                     map: DAffine3::from_scale(DVec3::splat(ratio.recip())),
                 }]
             } else {
@@ -166,8 +145,7 @@ impl Pieces<DAffine3> {
             steps,
             growth,
             compass: reader.compass,
-            keys: BTreeMap::new(),
-            open: Vec::new(),
+            names: SetNumbers::default(),
             sets: Vec::new(),
         };
         let mut axioms = Vec::new();
@@ -178,7 +156,7 @@ impl Pieces<DAffine3> {
         }
         finder.finish()?;
         // Lines are points beside displacements that grow.
-        let line = finder.keys.get(&(STEP, 0)).copied();
+        let line = finder.names.found.iter().position(|it| it.0 == STEP);
         let point = line.filter(|_| !growth.is_one);
         let sets = finder.sets;
         let mut pieces = Self {
