@@ -3,6 +3,7 @@
 mod camera;
 mod light;
 mod palette;
+mod similar;
 mod slice;
 mod space;
 
@@ -13,6 +14,9 @@ use crate::geometry::{DVec3, Homothety};
 pub use camera::{Camera, CameraError};
 pub use light::{Light, Shade};
 pub use palette::{Palette, UnknownPalette};
+#[cfg(feature = "cli")]
+pub(crate) use similar::oklab;
+pub(crate) use similar::similar;
 pub use slice::Slice;
 pub use space::SpaceView;
 
@@ -396,6 +400,12 @@ impl Style {
     #[must_use]
     pub fn ground(&self) -> Option<Colour> {
         self.background.filter(|colour| colour.opacity() > 0.0)
+    }
+
+    /// Returns whether the style leaves all colours open, so that everything is black.
+    pub(crate) fn has_default_ink(&self) -> bool {
+        let has_colours = self.color_by.takes_palette() || self.color_by == ColorBy::Tint;
+        self.stroke.is_none() && self.fill.is_none() && !has_colours
     }
 
     /// Returns whether closed base elements are outlined in addition to their fill.

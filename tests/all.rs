@@ -25,6 +25,7 @@ mod figures;
 mod films;
 mod fit;
 mod gallery;
+mod hits;
 mod ifs_model;
 mod import;
 mod instanced;

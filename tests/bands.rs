@@ -141,6 +141,7 @@ fn sheets_do_not_know_of_bands() {
                     growth: Growth::steps(steps),
                     style: &options.style,
                     view: options.view,
+                    detail: None,
                 })
                 .collect();
             let arrangement = Arrangement {

@@ -408,7 +408,7 @@ fn what_cannot_be_played_is_said() {
             2,
             "--points applies to random iteration: add --method chaos",
         ),
-        ("gasket --color-by hits", 2, "use kfrac grow --method chaos"),
+        ("gasket --color-by hits", 2, "add --method chaos, or --tone"),
         (
             "gasket --method chaos --points 0",
             2,

@@ -24,6 +24,7 @@ fn drawn(name: &str, steps: &[u32], columns: Option<u32>) -> (sheet::SheetSummar
             growth: Growth::steps(step),
             style: &options.style,
             view: options.view,
+            detail: None,
         })
         .collect();
     let mut bytes = Vec::new();

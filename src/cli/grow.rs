@@ -1,7 +1,6 @@
 //! `kfrac grow`: draws a rule as a picture or lists its elements as a table.
 
 mod batch;
-mod chaos;
 mod drawing;
 mod morphed;
 mod plan;
@@ -32,6 +31,7 @@ use crate::render;
 use crate::style::{Named, View};
 
 use super::camera::{self, SpaceArguments};
+use super::chaos::{ChaosArguments, GameArguments, PlaneGame};
 use super::growth::GrowthArguments;
 use super::held::{self, Held};
 use super::length::{self, Paper};
@@ -39,7 +39,6 @@ use super::picture::{self, PictureArguments};
 use super::rule::{Loaded, RuleArguments};
 use super::tween::TweenArguments;
 use super::{Failure, format, help, input, number, output, readable, redrawn, steps, text};
-use chaos::ChaosArguments;
 use drawing::Drawing;
 use morphed::MorphArguments;
 use plan::{Format, Plan};
@@ -421,10 +420,17 @@ impl Arguments {
                 Err(Failure::Usage(message.into()))
             }
             Plan::Chaos(table) => {
-                let game = chaos::PlaneGame::new(self, &loaded)?;
+                let tiled = self.tiled(&loaded, Goal::Detail(1.0))?;
+                let mut view = self.view(loaded.model.metadata());
+                let (mut size, mut images) = (self.size.size, None);
+                if let Some(tiled) = &tiled {
+                    (view.window, size) = (Some(tiled.window), tiled.size);
+                    images = Some(&tiled.images[..]);
+                }
+                let game = PlaneGame::new(self.game(), &loaded, view, images)?;
                 self.write_picture(path, |out, progress| match table {
                     Some(format) => game.list(*format, progress, out, path),
-                    None => game.draw(progress, out, path),
+                    None => game.draw(size, self.tile.options(), progress, out, path),
                 })
             }
             Plan::Scene(format) => {
@@ -439,6 +445,17 @@ impl Arguments {
                 "a .ply holds points in space, and {} lies in the plane: write a .csv of its points",
                 loaded.name
             ))),
+        }
+    }
+
+    /// Returns the arguments of random iteration.
+    fn game(&self) -> GameArguments<'_> {
+        GameArguments {
+            chaos: &self.chaos,
+            growth: &self.growth,
+            picture: &self.picture,
+            steps: self.steps(),
+            seed: self.growth.seed.first(),
         }
     }
 

@@ -27,6 +27,7 @@ use super::family::Ranges;
 #[cfg(feature = "studio")]
 use super::held::{self, Held};
 use super::labels::labels;
+use super::palette::PaletteParser;
 use super::rule::{Loaded, RuleArguments};
 use super::{Failure, format, growth, help, length, number, output, picture, readable, text};
 
@@ -72,7 +73,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "SIZE", value_parser = length::size)]
     size: Option<Size>,
     /// Palette of the numbers
-    #[arg(long, value_name = "NAME", value_parser = picture::palette(), default_value = "inferno")]
+    #[arg(long, value_name = "PALETTE", value_parser = PaletteParser, default_value = "inferno")]
     palette: Palette,
     /// Number of threads [default: the number of cores]
     ///
@@ -268,7 +269,7 @@ impl Arguments {
         options.push(("of", self.of.name().into()));
         options.extend(self.depth.map(|depth| ("depth", depth.to_string())));
         options.push(("size", self.size().to_string()));
-        options.push(("palette", self.palette.name().into()));
+        options.push(("palette", self.palette.to_string()));
         let shown = format!("Map of {} ({})", self.names(), self.of.name());
         render::Options {
             labels: labels(loaded, &shown, "map", options),
@@ -295,7 +296,7 @@ impl Arguments {
                 Property::Dimension => format!("similarity dimension from {from} to {to}"),
                 Property::Area => format!("area at most from {from} to {to}"),
             };
-            lines.push((legend.numbers, meaning, self.palette.name().to_owned()));
+            lines.push((legend.numbers, meaning, self.palette.to_string()));
         }
         for entry in legend.others {
             let meaning = match entry.value {

@@ -3,6 +3,7 @@
 pub(crate) mod animate;
 mod camera;
 mod cat;
+mod chaos;
 pub(crate) mod check;
 mod compare;
 mod completions;
@@ -34,6 +35,7 @@ mod morph;
 mod new;
 mod number;
 mod output;
+mod palette;
 mod picture;
 mod pixels;
 mod progress;

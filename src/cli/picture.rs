@@ -10,6 +10,7 @@ use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View};
 
 use super::Failure;
 use super::length::{Length, StrokeWidth};
+use super::palette::{self, PaletteParser};
 
 /// Options of pictures.
 #[derive(clap::Args, Clone)]
@@ -49,9 +50,15 @@ pub(super) struct PictureArguments {
     /// Property that the colours of the palette distinguish
     #[arg(long, value_name = "WHAT", value_parser = color_by())]
     color_by: Option<ColorBy>,
-    /// Palette of --color-by
-    #[arg(long, value_name = "NAME", value_parser = palette())]
+    /// Palette of --color-by: a name, colours as '#fff,teal,#013', or a file .map, .gpl, .ugr or .cpt
+    ///
+    /// Files are those of Fractint, GIMP, Ultra Fractal (the first gradient) and GMT.
+    #[arg(long, value_name = "PALETTE", value_parser = PaletteParser)]
     palette: Option<Palette>,
+    /// Takes the palette from a picture: its eight most frequent colours, from dark to light
+    #[arg(long, value_name = "PICTURE", value_parser = palette::from_picture, conflicts_with = "palette")]
+    #[arg(value_hint = clap::ValueHint::FilePath)]
+    palette_from: Option<Palette>,
     /// Steps of the first and the last colour of --color-by step, or ages of --color-by age, as 0..8 [default: 0 and the
     /// last one of the picture]
     #[arg(long, value_name = "FIRST..LAST", value_parser = ColorRange::parse, allow_hyphen_values = true)]
@@ -91,7 +98,7 @@ impl PictureArguments {
                 }
                 None => own.color_by,
             },
-            palette: self.palette.clone().unwrap_or_else(|| own.palette.clone()),
+            palette: self.palette().unwrap_or(&own.palette).clone(),
             color_range: self.color_range.map(|it| it.0).or(own.color_range),
         }
     }
@@ -122,12 +129,22 @@ impl PictureArguments {
 
     /// Returns whether the options ask for colours that distinguish elements.
     pub(super) fn asks_for_colours(&self) -> bool {
-        self.color_by.is_some() || self.palette.is_some()
+        self.color_by.is_some() || self.asks_palette()
+    }
+
+    /// Returns the palette that is given.
+    fn palette(&self) -> Option<&Palette> {
+        self.palette.as_ref().or(self.palette_from.as_ref())
     }
 
     /// Returns whether a palette is given.
     pub(super) fn asks_palette(&self) -> bool {
-        self.palette.is_some()
+        self.palette().is_some()
+    }
+
+    /// Returns whether hits are shown in the palette: if either is asked for.
+    pub(super) fn shows_hits_by_palette(&self) -> bool {
+        self.color_by == Some(ColorBy::Hits) || self.asks_palette()
     }
 
     /// Returns the single colour of points: that of the options, or else that of the file.
@@ -151,8 +168,7 @@ impl PictureArguments {
     pub(super) fn refuse_hits(&self) -> Result<(), Failure> {
         match self.color_by {
             Some(ColorBy::Hits) => {
-                let message = "--color-by hits counts the points of random iteration: use kfrac grow \
-                               --method chaos";
+                let message = "--color-by hits counts the hits of pixels: add --method chaos, or --tone log in kfrac grow";
                 Err(Failure::Usage(message.into()))
             }
             _ => Ok(()),
@@ -182,10 +198,7 @@ impl PictureArguments {
         option("margin", self.margin.map(|margin| margin.to_string()));
         option("background", colour(self.background));
         option("color-by", self.color_by.map(|by| by.name().into()));
-        option(
-            "palette",
-            self.palette.as_ref().map(|palette| palette.name().into()),
-        );
+        option("palette", self.palette().map(ToString::to_string));
         option(
             "color-range",
             self.color_range.map(|range| range.to_string()),
@@ -304,8 +317,4 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
         })
     });
     PossibleValuesParser::new(values).try_map(|name| ColorBy::from_name(&name).ok_or("unknown"))
-}
-
-pub(super) fn palette() -> impl TypedValueParser<Value = Palette> {
-    PossibleValuesParser::new(Palette::names()).try_map(|name| Palette::named(&name))
 }

@@ -1,5 +1,6 @@
 //! `kfrac sheet`: approximants or members of a family, side by side.
 
+mod chaos;
 mod contents;
 mod space;
 
@@ -13,6 +14,7 @@ use clap::ValueHint;
 use super::readable;
 use crate::catalogue::Catalogue;
 use crate::figure::sheet::{self, Arrangement, Fit};
+use crate::fractal::Goal;
 use crate::graph::Graph;
 use crate::grow::{Growth, Progress};
 use crate::render::{self, RenderError, Size};
@@ -21,6 +23,7 @@ use crate::style::{Named, Style, View, Width};
 use contents::{Contents, Individual};
 
 use super::camera::SpaceArguments;
+use super::chaos::ChaosArguments;
 use super::growth::GrowthArguments;
 use super::labels::labels_of_rules;
 use super::picture::{self, PictureArguments};
@@ -52,6 +55,12 @@ pub(super) struct Arguments {
     /// shows fewer steps, and a note reports it.
     #[arg(long, short, value_name = "STEPS", value_parser = steps::parse_several, allow_hyphen_values = true)]
     steps: Option<Several>,
+    /// Stops replacing elements that are smaller than this number of pixels
+    ///
+    /// Without --steps, every picture is grown until all its elements are smaller; L-systems that start anew at every step are
+    /// grown by the number of steps in their file.
+    #[arg(long, value_name = "PX", value_parser = picture::pixels, allow_negative_numbers = true)]
+    detail: Option<f64>,
     /// Output file, or - for standard output [default: NAME-sheet.svg, sheet.svg for several rules, or .png in space]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<PathBuf>,
@@ -82,6 +91,8 @@ pub(super) struct Arguments {
     picture: PictureArguments,
     #[command(flatten)]
     space: SpaceArguments,
+    #[command(flatten)]
+    chaos: ChaosArguments,
 }
 
 const MORE: &str = "\
@@ -94,10 +105,14 @@ Examples:
       Draws twelve individuals of a random plant
   kfrac sheet koch dragon pythagoras
       Draws three rules, each fitted to its picture, into sheet.svg
+  kfrac sheet binary-tree --set ratio=0.5..0.7 --detail 1 -o trees.png
+      Draws eight trees, each down to a pixel
   kfrac sheet binary-tree --set angle=20..80 --set ratio=0.4..0.7 --samples 4 --grid
       Draws a grid of two parameters
   kfrac sheet complex-pair --set 's=[0.3,0.2]..[0.6,0.5]' --samples 8 --columns 4
       Draws a fractal for eight values of a complex parameter, both parts at once
+  kfrac sheet barnsley-fern maple-leaf-chaos --method chaos --points 1M
+      Draws two systems by random iteration, as a PNG
   kfrac sheet menger --from front,side,top,iso --steps 4
       Draws a set in space from four directions, into menger-sheet.png
   kfrac sheet pythagoras --steps 1,4,8 --columns 3 --size 400 -o trees.png
@@ -106,8 +121,11 @@ Examples:
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {
     let start = Instant::now();
-    arguments.picture.refuse_hits()?;
+    arguments.chaos.check(&arguments.picture, false)?;
     let contents = Contents::load(arguments, catalogue)?;
+    if arguments.chaos.is_asked() {
+        return arguments.draw_points(&contents, start);
+    }
     if contents.first().model.is_in_space() {
         return arguments.draw_in_space(contents, start);
     }
@@ -119,16 +137,27 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let note = contents.note_of_lighter(drawn.step);
         note.iter().for_each(|note| text::print_message(note));
     }
-    arguments.report(&drawn, &contents.counted(&drawn), start);
+    arguments.report_drawn(&drawn, &contents.counted(&drawn), start);
     Ok(())
 }
 
+/// Picture of a sheet that is ready to be drawn.
+struct SheetCell {
+    name: String,
+    /// Number of the individual.
+    number: usize,
+    goal: Goal,
+    /// Number of steps, or the limit of those that a detail takes.
+    steps: u32,
+}
+
+/// Individual with its graph, style and view.
+type DrawnIndividual<'a> = (&'a Individual, Graph, Style, View);
+
 /// Sheet that is ready to be drawn.
 struct Sheet<'a> {
-    /// The individuals, with their graphs, styles and views.
-    drawn: Vec<(&'a Individual, Graph, Style, View)>,
-    /// Name, number of the individual, and step of each picture.
-    cells: Vec<(String, usize, u32)>,
+    drawn: Vec<DrawnIndividual<'a>>,
+    cells: Vec<SheetCell>,
     options: render::Options,
 }
 
@@ -140,11 +169,11 @@ impl Sheet<'_> {
         most: Option<u64>,
         progress: Option<&'a Progress>,
     ) -> Vec<sheet::Cell<'a>> {
-        let cells = self.cells.iter().map(|(name, number, step)| {
-            let growth = growth.to(*step, progress);
-            let (individual, graph, style, view) = &self.drawn[*number];
+        let cells = self.cells.iter().map(|cell| {
+            let growth = growth.to(cell.steps, progress);
+            let (individual, graph, style, view) = &self.drawn[cell.number];
             sheet::Cell {
-                name: name.clone(),
+                name: cell.name.clone(),
                 graph,
                 growth: Growth {
                     seed: individual.seed,
@@ -153,6 +182,7 @@ impl Sheet<'_> {
                 },
                 style,
                 view: *view,
+                detail: cell.goal.detail(),
             }
         });
         cells.collect()
@@ -193,7 +223,8 @@ impl Arguments {
     fn draw(&self, contents: &Contents, format: render::Format) -> Result<DrawnSheet, Failure> {
         let growth = &self.growth;
         let path = self.path(format.name());
-        let gives_depth = self.steps.is_some() || growth.given_max_elements().is_some();
+        let gives_depth =
+            self.steps.is_some() || self.detail.is_some() || growth.given_max_elements().is_some();
         let stays_light = format == render::Format::Svg && !gives_depth;
         let last = contents.last_step();
         let arrangement = Arrangement {
@@ -205,8 +236,8 @@ impl Arguments {
                 // Number of the picture that cannot be drawn.
                 let wrong = Cell::new(None);
                 let explain = |sheet: &Sheet<'_>, error: RenderError| {
-                    let (_, number, _) = &sheet.cells[wrong.get().unwrap_or(0)];
-                    growth.explain(error, &sheet.drawn[*number].0.loaded, &path)
+                    let number = sheet.cells[wrong.get().unwrap_or(0)].number;
+                    growth.explain(error, &sheet.drawn[number].0.loaded, &path)
                 };
                 let write =
                     |cells: &[sheet::Cell<'_>], options: &render::Options, out: &mut dyn Write| {
@@ -268,26 +299,52 @@ impl Arguments {
         let (mut drawn, mut cells, mut elements) = (Vec::new(), Vec::new(), 0_u64);
         for (number, individual) in contents.individuals.iter().enumerate() {
             let loaded = &individual.loaded;
-            let steps = individual.steps_up_to(last);
             let style = self.style(loaded);
-            let graph = loaded.compile_for(steps.largest(), style.color_by)?;
-            for &step in steps.as_slice() {
-                let checked = graph.check_size(step, most - elements);
-                if checked.is_err() && is_light {
-                    return Ok(None);
-                }
-                self.growth.check(step, &graph, loaded)?;
-                let checked = checked.map_err(|_| {
-                    let most = readable::counted(&most.into(), "element");
-                    anyhow::anyhow!(
-                        "the pictures have more than {most} together; --max-elements allows more, and smaller \
-                         --steps need fewer"
-                    )
-                })?;
-                elements += checked.unwrap_or(0);
-                cells.push((contents.caption(individual, step), number, step));
-            }
+            let goals = individual.goals_up_to(last, self.detail);
+            let steps = goals.iter().map(|goal| goal.steps()).max().unwrap_or(0);
+            let mut graph = loaded.compile_for(steps, style.color_by)?;
             let view = self.view(loaded).within(graph.place());
+            for goal in goals {
+                let cell = |steps| SheetCell {
+                    name: contents.caption(individual, goal),
+                    number,
+                    goal,
+                    steps,
+                };
+                let Goal::Steps(step, detail) = goal else {
+                    let common = drawn
+                        .first()
+                        .map_or(view, |first: &DrawnIndividual<'_>| first.3);
+                    let steps = self.steps_to(
+                        goal,
+                        individual,
+                        &style,
+                        match contents.fit {
+                            Fit::All => common,
+                            _ => view,
+                        },
+                    )?;
+                    graph = loaded.compile_for(steps, style.color_by)?;
+                    cells.push(cell(steps));
+                    continue;
+                };
+                if detail.is_none() {
+                    let checked = graph.check_size(step, most - elements);
+                    if checked.is_err() && is_light {
+                        return Ok(None);
+                    }
+                    self.growth.check(step, &graph, loaded)?;
+                    let checked = checked.map_err(|_| {
+                        let most = readable::counted(&most.into(), "element");
+                        anyhow::anyhow!(
+                            "the pictures have more than {most} together; --max-elements allows more, and smaller \
+                             --steps need fewer"
+                        )
+                    })?;
+                    elements += checked.unwrap_or(0);
+                }
+                cells.push(cell(step));
+            }
             drawn.push((individual, graph, style, view));
         }
         let options = self.options(contents, last, format, &drawn);
@@ -298,14 +355,57 @@ impl Arguments {
         }))
     }
 
-    fn report(&self, drawn: &DrawnSheet, content: &str, start: Instant) {
+    /// Returns the number of steps with which a picture reaches a detail in a view, or more.
+    fn steps_to(
+        &self,
+        goal: Goal,
+        individual: &Individual,
+        style: &Style,
+        view: View,
+    ) -> Result<u32, Failure> {
+        let options = render::Options {
+            style: style.clone(),
+            view,
+            size: self.size,
+            detail: goal.detail(),
+            threads: self.growth.threads(),
+            ..render::Options::default()
+        };
+        let loaded = &individual.loaded;
+        let reached = goal.reach(
+            loaded.compile_for(goal.steps(), style.color_by)?,
+            |steps| loaded.graph(steps),
+            |graph, steps| {
+                let growth = Growth {
+                    seed: individual.seed,
+                    ..self.growth.to(steps, None)
+                };
+                render::survey(graph, &growth, &options).map(|_| steps)
+            },
+        );
+        reached.map_err(|error| self.growth.explain(error, loaded, &self.path("svg")))
+    }
+
+    fn report_drawn(&self, drawn: &DrawnSheet, content: &str, start: Instant) {
+        let elements = readable::counted(&drawn.written.elements.into(), "element");
+        let (content, size) = (format!("{content}, {elements}"), drawn.written.size);
+        self.report(&drawn.path, &content, size, drawn.bytes, start);
+    }
+
+    /// Prints what has been written, unless messages are suppressed.
+    fn report(
+        &self,
+        path: &Path,
+        content: &str,
+        [width, height]: [u32; 2],
+        bytes: u64,
+        start: Instant,
+    ) {
         if !self.growth.quiet {
-            let [width, height] = drawn.written.size;
             text::print_message(&format!(
-                "{}: {content}, {}, {width} x {height} pixels, {}, {:.2} s",
-                output::called(&drawn.path),
-                readable::counted(&drawn.written.elements.into(), "element"),
-                readable::bytes(drawn.bytes),
+                "{}: {content}, {width} x {height} pixels, {}, {:.2} s",
+                output::called(path),
+                readable::bytes(bytes),
                 start.elapsed().as_secs_f64(),
             ));
         }
@@ -336,7 +436,7 @@ impl Arguments {
         contents: &Contents,
         last: u32,
         format: render::Format,
-        drawn: &[(&Individual, Graph, Style, View)],
+        drawn: &[DrawnIndividual<'_>],
     ) -> render::Options {
         let mut options = contents.options(contents.steps_up_to(last).as_ref());
         options.extend(self.growth.options());
@@ -367,6 +467,7 @@ impl Arguments {
     /// Returns the options of the arrangement and of pictures that are given, with their values.
     fn options_of_sheet(&self) -> Vec<(&'static str, String)> {
         let mut options = vec![("size", self.size.to_string())];
+        options.extend(self.detail.map(|detail| ("detail", detail.to_string())));
         options.extend(self.columns.map(|columns| ("columns", columns.to_string())));
         options.extend(self.grid.then(|| ("grid", String::new())));
         options.extend(self.fit.map(|fit| ("fit", fit.name().into())));

@@ -108,8 +108,17 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         Keeps::Approximants => Cow::Borrowed(model),
     };
     let model = &*limit;
+    let mut metadata = model.metadata().clone();
+    if model.kind() == Kind::LSystem {
+        // The tubes of lines are sets.
+        metadata.style.tube = None;
+    }
+    if let Cow::Owned(_) = limit {
+        // The steps of the limit set are others.
+        metadata.steps = None;
+    }
     if model.is_in_space() {
-        return read_back(model, to, in_space(model, to, keeps)?);
+        return read_back(&metadata, to, in_space(model, to, keeps)?);
     }
     let steps = steps(model);
     let graph = model.compile_listed(steps, 0, Model::MAX_LISTED)?;
@@ -144,7 +153,7 @@ pub fn convert(model: &Model, to: Kind, keeps: Keeps) -> Result<Document, Conver
         }
         _ => Structure::of_graph(&graph, steps, keeps, &[])?,
     };
-    read_back(model, to, (writer(to).1)(&structure, keeps)?)
+    read_back(&metadata, to, (writer(to).1)(&structure, keeps)?)
 }
 
 /// Returns the number of steps for which a model is compiled.
@@ -194,13 +203,8 @@ fn in_space(model: &Model, to: Kind, keeps: Keeps) -> Result<Entries, ConvertErr
 }
 
 /// Returns the document of the keys of a kind, which is read back.
-fn read_back(model: &Model, to: Kind, own: Entries) -> Result<Document, ConvertError> {
-    let mut metadata = model.metadata().clone();
-    if model.kind() == Kind::LSystem {
-        // The tubes of lines are sets.
-        metadata.style.tube = None;
-    }
-    let text = Node::from(headed(&metadata, to, own).value()).to_yaml();
+fn read_back(metadata: &Metadata, to: Kind, own: Entries) -> Result<Document, ConvertError> {
+    let text = Node::from(headed(metadata, to, own).value()).to_yaml();
     let read = Document::read(&Source::new("(converted)", text), &Catalogue::embedded());
     let document = read.map_err(ConvertError::NotReadBack)?;
     match document.resolve(&[]) {

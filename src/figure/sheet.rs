@@ -1,21 +1,22 @@
 //! Sheets: approximants side by side, each with its name and its number of elements.
 
-mod space;
+mod pixels;
 
-pub use space::{SpaceCell, write_in_space};
+#[cfg(feature = "cli")]
+pub(crate) use pixels::write_pixels;
+pub use pixels::{SpaceCell, write_in_space};
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{self, Write};
-use std::slice;
 
 use crate::geometry::DVec2;
 use crate::graph::Graph;
 use crate::grow::{Growth, WalkError};
 use crate::parallel::Team;
 use crate::render::{
-    Canvas, Drawing, FINE, NoRoom, Options, Paint, Pen, Prepass, RenderError, Scene, Surface, pen,
-    position, write_drawing,
+    Canvas, Detail, Drawing, FINE, Layout, NoRoom, Options, Paint, Pen, Prepass, RenderError,
+    Scene, Surface, pen, position, write_drawing,
 };
 use crate::style::{Colour, Named, Style, View};
 
@@ -67,6 +68,50 @@ pub struct Cell<'a> {
     pub style: &'a Style,
     /// Window and margin of the picture. They have no effect with [`Fit::All`].
     pub view: View,
+    /// Size in pixels below which elements are not replaced; none if `None`.
+    pub detail: Option<Detail>,
+}
+
+impl<'a> Cell<'a> {
+    /// Makes the prepass of the picture with at most `most` elements. A detail refers to the scale of the options. Colours
+    /// by step have a range of `steps`, unless the detail decides the number of steps.
+    fn survey(
+        &self,
+        most: u64,
+        steps: u32,
+        options: &'a Options,
+    ) -> Result<Survey<'a>, RenderError> {
+        let growth = Growth {
+            max_elements: most,
+            ..self.growth
+        };
+        if self.detail.is_none() {
+            let prepass = Prepass::of(self.graph, &growth, self.style, steps, options.threads)?;
+            return Ok(Survey { prepass, growth });
+        }
+        let Layout {
+            prepass, growth, ..
+        } = Layout::find(self.graph, &growth, options)?;
+        Ok(Survey { prepass, growth })
+    }
+
+    /// Returns the options of the picture, in a view and with a size of a sheet's options.
+    fn options(&self, view: View, options: &Options) -> Options {
+        Options {
+            style: self.style.clone(),
+            view,
+            size: options.size,
+            detail: self.detail,
+            threads: options.threads,
+            ..Options::default()
+        }
+    }
+}
+
+/// Prepass of a picture, and its growth, of as many steps as a detail takes.
+struct Survey<'a> {
+    prepass: Prepass<'a>,
+    growth: Growth<'a>,
 }
 
 /// Summary of a sheet that has been written.
@@ -85,6 +130,15 @@ pub struct SheetError {
     pub cell: Option<usize>,
     /// Error of that picture, or of the sheet.
     pub error: RenderError,
+}
+
+impl SheetError {
+    fn of(cell: usize, error: RenderError) -> Self {
+        Self {
+            cell: Some(cell),
+            error,
+        }
+    }
 }
 
 impl fmt::Display for SheetError {
@@ -127,53 +181,48 @@ pub fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<SheetSummary, SheetError> {
-    let of_cell = |cell: usize| {
-        move |error: RenderError| SheetError {
-            cell: Some(cell),
-            error,
-        }
+    let own_view = |cell: &Cell<'_>| match arrangement.fit {
+        Fit::All => options.view,
+        Fit::Each => cell.view,
     };
-    let mut deepest = BTreeMap::new();
-    for cell in cells {
-        let steps: &mut u32 = deepest.entry(&raw const *cell.graph).or_default();
-        *steps = cell.growth.steps.max(*steps);
-    }
-    let mut surveys = Vec::new();
-    let mut elements = 0;
-    for (number, cell) in cells.iter().enumerate() {
-        let steps = deepest[&(&raw const *cell.graph)];
-        let limit = cell.growth.max_elements;
-        let growth = Growth {
-            max_elements: limit.saturating_sub(elements),
-            ..cell.growth
-        };
-        let survey = Prepass::of(cell.graph, &growth, cell.style, steps, options.threads);
-        let survey = survey.map_err(|error| match RenderError::from(error) {
-            RenderError::Walk(WalkError::TooManyElements { .. }) => {
-                of_cell(number)(RenderError::Walk(WalkError::TooManyElements { limit }))
-            }
-            error => of_cell(number)(error),
-        })?;
-        elements += survey.elements;
-        surveys.push(survey);
-    }
+    let owns: Vec<_> = { cells.iter() }
+        .map(|cell| cell.options(own_view(cell), options))
+        .collect();
+    let shown;
+    let (mut surveys, mut elements) = surveys_of(cells, &owns)?;
     let common = match arrangement.fit {
-        Fit::All => Some(Canvas::of(&surveys, &options.view, options.size)?),
+        Fit::All => {
+            let prepasses = surveys.iter().map(|it| &it.prepass);
+            Some(Canvas::of(prepasses, &options.view, options.size)?)
+        }
         Fit::Each => None,
     };
+    if let Some(common) = &common
+        && options.view.window.is_none()
+        && cells.iter().any(|cell| cell.detail.is_some())
+    {
+        // The scale of the sheet is that of a detail.
+        let view = View {
+            window: Some(common.window()),
+            margin: Some(0.0),
+        };
+        let all = cells.iter().map(|cell| cell.options(view, options));
+        shown = all.collect::<Vec<_>>();
+        (surveys, elements) = surveys_of(cells, &shown)?;
+    }
     let font = Font::new();
     let mut pictures = Vec::new();
     let mut captions = Vec::new();
     for (number, (cell, survey)) in cells.iter().zip(&surveys).enumerate() {
         let own = || {
-            let own = Canvas::of(slice::from_ref(survey), &cell.view, options.size);
-            own.map_err(|error: NoRoom| of_cell(number)(error.into()))
+            let own = Canvas::of([&survey.prepass], &cell.view, options.size);
+            own.map_err(|error: NoRoom| SheetError::of(number, error.into()))
         };
         let canvas = common.map_or_else(own, Ok)?;
-        let count = counted(&survey.elements.into(), "element");
+        let count = counted(&survey.prepass.elements.into(), "element");
         captions.push(format!("{}: {count}", cell.name));
         pictures.push(ScenePicture {
-            scene: Scene::new(survey, &cell.growth, canvas),
+            scene: Scene::new(&survey.prepass, &survey.growth, canvas),
             size: canvas.size(),
             background: cell.style.ground(),
         });
@@ -194,6 +243,35 @@ pub fn write(
         size: sheet.size(),
         elements,
     })
+}
+
+/// Makes the prepasses of all pictures, each with its options; also returns the number of all elements.
+fn surveys_of<'a>(
+    cells: &[Cell<'a>],
+    options: &'a [Options],
+) -> Result<(Vec<Survey<'a>>, u64), SheetError> {
+    let mut deepest = BTreeMap::new();
+    for cell in cells {
+        let steps: &mut u32 = deepest.entry(&raw const *cell.graph).or_default();
+        *steps = cell.growth.steps.max(*steps);
+    }
+    let mut elements = 0;
+    let mut surveys = Vec::new();
+    for (number, (cell, own)) in cells.iter().zip(options).enumerate() {
+        let steps = deepest[&(&raw const *cell.graph)];
+        let limit = cell.growth.max_elements;
+        let survey = cell.survey(limit.saturating_sub(elements), steps, own);
+        let survey = survey.map_err(|error| match error {
+            RenderError::Walk(WalkError::TooManyElements { .. }) => {
+                let error = WalkError::TooManyElements { limit };
+                SheetError::of(number, RenderError::Walk(error))
+            }
+            error => SheetError::of(number, error),
+        })?;
+        elements += survey.prepass.elements;
+        surveys.push(survey);
+    }
+    Ok((surveys, elements))
 }
 
 /// Places of the pictures of a sheet.

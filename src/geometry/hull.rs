@@ -34,7 +34,7 @@ pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> 
     corners
 }
 
-/// Drops corners of a convex polygon that are no farther than `tolerance` from the sides that replace them.
+/// Drops corners of a polygon that are no farther than `tolerance` from the sides that replace them.
 pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let mut kept: Vec<DVec2> = Vec::with_capacity(corners.len());
     let mut first = 0;

@@ -13,6 +13,7 @@ mod fractint;
 mod genes;
 mod lattice;
 mod maps;
+mod palette;
 mod picture;
 #[cfg(feature = "tables")]
 mod ply;
@@ -28,6 +29,9 @@ use crate::document::Document;
 use crate::style::Named;
 
 pub use csv::{Columns, ColumnsError};
+#[cfg(feature = "cli")]
+pub(crate) use palette::of_picture;
+pub use palette::{PaletteError, PaletteFormat, read_palette};
 pub use picture::{Channel, PictureError, Raster};
 #[cfg(feature = "tables")]
 pub use ply::{PlyError, read_ply};

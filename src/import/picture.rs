@@ -81,15 +81,9 @@ impl Raster {
     /// Returns an error if the bytes have none of these formats or are damaged, or if the picture is empty or too
     /// large.
     pub fn read(bytes: &[u8], channel: Option<Channel>) -> Result<Self, PictureError> {
-        let (width, height, values, channel) = if is_png(bytes) {
-            png(bytes, channel)?
-        } else if is_jpeg(bytes) {
-            jpeg(bytes, channel)?
-        } else if pnm::is_pnm(bytes) {
-            pnm::read(bytes, channel)?
-        } else {
-            return Err(PictureError::Unknown);
-        };
+        let mut pixels = Pixels::new(channel);
+        let [width, height] = decode(bytes, &mut pixels)?;
+        let (values, channel) = pixels.finish();
         Ok(Self {
             width,
             height,
@@ -166,9 +160,31 @@ fn check(width: u64, height: u64) -> Result<(), PictureError> {
     }
 }
 
-type Read = (usize, usize, Vec<u8>, Channel);
+/// Receiver of the samples of a picture.
+pub(super) trait PixelSink {
+    /// Begins a picture with a number of pixels of one to four channels: grey, grey and alpha, RGB, or RGBA.
+    fn begin(&mut self, count: usize, channels: usize);
+    /// Adds samples of complete pixels, from the top and from the left.
+    fn add(&mut self, samples: &[u8]);
+}
 
-fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
+/// Reads a PNG, JPEG, PBM, PGM or PPM; returns width and height.
+pub(super) fn decode(
+    bytes: &[u8],
+    pixels: &mut impl PixelSink,
+) -> Result<[usize; 2], PictureError> {
+    if is_png(bytes) {
+        png(bytes, pixels)
+    } else if is_jpeg(bytes) {
+        jpeg(bytes, pixels)
+    } else if pnm::is_pnm(bytes) {
+        pnm::read(bytes, pixels)
+    } else {
+        Err(PictureError::Unknown)
+    }
+}
+
+fn png(bytes: &[u8], pixels: &mut impl PixelSink) -> Result<[usize; 2], PictureError> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 1 << 28 });
     decoder.set_transformations(Transformations::normalize_to_color8());
     let header = decoder.read_header_info()?;
@@ -182,7 +198,7 @@ fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
         ColorType::Rgb => 3,
         _ => 4,
     };
-    let mut pixels = Pixels::new(width * height, channels, asked);
+    pixels.begin(width * height, channels);
     if reader.info().interlaced {
         // The rows of an interlaced picture come out of order: the whole frame is needed.
         let mut frame = vec![0; width * height * channels];
@@ -193,19 +209,18 @@ fn png(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
             pixels.add(row.data());
         }
     }
-    let (values, channel) = pixels.finish();
-    Ok((width, height, values, channel))
+    Ok([width, height])
 }
 
 #[cfg(not(feature = "jpeg"))]
-fn jpeg(_: &[u8], _: Option<Channel>) -> Result<Read, PictureError> {
+fn jpeg(_: &[u8], _: &mut impl PixelSink) -> Result<[usize; 2], PictureError> {
     Err(PictureError::Jpeg(
         "the feature `jpeg` of kfrac is not enabled".into(),
     ))
 }
 
 #[cfg(feature = "jpeg")]
-fn jpeg(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
+fn jpeg(bytes: &[u8], pixels: &mut impl PixelSink) -> Result<[usize; 2], PictureError> {
     let failed = |error: zune_jpeg::errors::DecodeErrors| PictureError::Jpeg(error.to_string());
     let options = DecoderOptions::default()
         .set_strict_mode(true)
@@ -220,13 +235,12 @@ fn jpeg(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
     check(info.width.into(), info.height.into())?;
     let (width, height) = (usize::from(info.width), usize::from(info.height));
     let frame = decoder.decode().map_err(failed)?;
-    let mut pixels = Pixels::new(width * height, 3, asked);
-    pixels.add(&frame);
-    let (values, channel) = pixels.finish();
-    if values.len() != width * height {
+    if frame.len() != 3 * width * height {
         return Err(PictureError::Jpeg("pixels are missing".into()));
     }
-    Ok((width, height, values, channel))
+    pixels.begin(width * height, 3);
+    pixels.add(&frame);
+    Ok([width, height])
 }
 
 /// Accumulator of samples, which reduces each pixel to one value.
@@ -238,14 +252,36 @@ struct Pixels {
 }
 
 impl Pixels {
-    fn new(count: usize, channels: usize, asked: Option<Channel>) -> Self {
-        let room = |wanted: bool| Vec::with_capacity(if wanted { count } else { 0 });
+    fn new(asked: Option<Channel>) -> Self {
         Self {
-            channels,
+            channels: 1,
             asked,
-            darkness: room(asked != Some(Channel::Alpha)),
-            alpha: room(keeps_alpha(asked, channels)),
+            darkness: Vec::new(),
+            alpha: Vec::new(),
         }
+    }
+
+    fn finish(self) -> (Vec<u8>, Channel) {
+        let channel = self.asked.unwrap_or_else(|| {
+            if self.alpha.iter().any(|&alpha| alpha < 255) {
+                Channel::Alpha
+            } else {
+                Channel::Darkness
+            }
+        });
+        match channel {
+            Channel::Darkness => (self.darkness, channel),
+            Channel::Alpha => (self.alpha, channel),
+        }
+    }
+}
+
+impl PixelSink for Pixels {
+    fn begin(&mut self, count: usize, channels: usize) {
+        self.channels = channels;
+        let room = |wanted: bool| Vec::with_capacity(if wanted { count } else { 0 });
+        self.darkness = room(self.asked != Some(Channel::Alpha));
+        self.alpha = room(keeps_alpha(self.asked, channels));
     }
 
     fn add(&mut self, samples: &[u8]) {
@@ -265,20 +301,6 @@ impl Pixels {
             if keeps_alpha(self.asked, self.channels) {
                 self.alpha.push(alpha);
             }
-        }
-    }
-
-    fn finish(self) -> (Vec<u8>, Channel) {
-        let channel = self.asked.unwrap_or_else(|| {
-            if self.alpha.iter().any(|&alpha| alpha < 255) {
-                Channel::Alpha
-            } else {
-                Channel::Darkness
-            }
-        });
-        match channel {
-            Channel::Darkness => (self.darkness, channel),
-            Channel::Alpha => (self.alpha, channel),
         }
     }
 }

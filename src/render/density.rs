@@ -14,6 +14,8 @@ use super::canvas::{Canvas, Size};
 use super::error::RenderError;
 use super::options::Labels;
 use super::options::PngEncoding;
+#[cfg(feature = "cli")]
+use super::pixels::Pixels;
 use super::png::{Spare, Spares, TooManyPixels, write_pixels};
 
 /// Mapping of a number of hits to a tone from 0 to 1.
@@ -38,20 +40,21 @@ impl Named for Tone {
 }
 
 impl Tone {
-    /// Returns the tone of a number of hits, where `most` is the largest number.
-    pub(super) fn of(self, hits: u64, most: u64) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a tone has 255 steps")]
-        let [hits, most] = [hits, most].map(|count| count as f64);
+    /// Returns the tone of a number of hits, where `most` is the largest number. Hits may be parts of a pixel.
+    pub(super) fn of(self, hits: f64, most: f64) -> f64 {
         if hits == 0.0 {
             return 0.0;
         }
         match self {
             Self::Log => libm::log1p(hits) / libm::log1p(most),
             Self::Linear => hits / most,
-            Self::Plain => 1.0,
+            Self::Plain => hits.min(1.0),
         }
     }
 }
+
+/// Number of parts of a hit that covers a pixel, in counts of the hits of elements.
+pub(super) const UNIT: u32 = 256;
 
 /// Colours of a picture of a histogram.
 #[derive(Clone, Debug, PartialEq)]
@@ -186,6 +189,28 @@ pub(crate) fn write_density_with(
     labels: &Labels,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
+    let pixmap = pixmap(spares, histogram, density)?;
+    write_pixels(&pixmap, labels, density.png, out)?;
+    spares.put(Spare::of_pixels(pixmap));
+    Ok(())
+}
+
+/// Returns the pixels that [`write_density`] writes.
+#[cfg(feature = "cli")]
+pub(crate) fn density_pixels(
+    histogram: &Histogram,
+    density: &Density,
+) -> Result<Pixels, RenderError> {
+    let pixmap = pixmap(&Spares::default(), histogram, density)?;
+    Ok(Pixels::of(pixmap))
+}
+
+/// Paints a histogram, in the memory of a finished picture if there is one.
+fn pixmap(
+    spares: &Spares,
+    histogram: &Histogram,
+    density: &Density,
+) -> Result<Pixmap, TooManyPixels> {
     let size @ [width, height] = histogram.size();
     let mut pixmap = { spares.take().take_pixels(size) }
         .or_else(|| Pixmap::new(width, height))
@@ -194,25 +219,38 @@ pub(crate) fn write_density_with(
         .map(|class| histogram.counts(class))
         .collect();
     match classes.as_slice() {
-        [counts] => paint(&mut pixmap, density, &classes, |place| counts[place].into()),
-        _ => paint(&mut pixmap, density, &classes, |place| {
+        [counts] => paint(&mut pixmap, density, &classes, 1, |place| {
+            counts[place].into()
+        }),
+        _ => paint(&mut pixmap, density, &classes, 1, |place| {
             let hits = classes.iter().map(|counts| u64::from(counts[place]));
             hits.sum()
         }),
     }
-    write_pixels(&pixmap, labels, density.png, out)?;
-    spares.put(Spare::of_pixels(pixmap));
-    Ok(())
+    Ok(pixmap)
 }
 
-/// Paints every pixel. `hits` returns the number of hits of a pixel, over all classes.
-fn paint(pixmap: &mut Pixmap, density: &Density, classes: &[&[u32]], hits: impl Fn(usize) -> u64) {
+/// Paints every pixel by its hits in 1/[`UNIT`].
+pub(super) fn painted(pixmap: &mut Pixmap, density: &Density, hits: &[u32]) {
+    paint(pixmap, density, &[hits], UNIT, |place| hits[place].into());
+}
+
+/// Paints every pixel. `hits` returns the number of hits of a pixel in 1/`unit`, over all classes.
+fn paint(
+    pixmap: &mut Pixmap,
+    density: &Density,
+    classes: &[&[u32]],
+    unit: u32,
+    hits: impl Fn(usize) -> u64,
+) {
     let pixels = pixmap.pixels_mut();
     let most = (0..pixels.len()).map(&hits).max().unwrap_or(0);
     let colours = colours(density).map(premultiplied);
+    #[expect(clippy::cast_precision_loss, reason = "a tone has 255 steps")]
+    let whole = |count: u64| count as f64 / f64::from(unit);
     let level = |all: u64| match all {
         0 => 0,
-        _ => level(density.tone.of(all, most)),
+        _ => level(density.tone.of(whole(all), whole(most))),
     };
     let few: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
         .map(|all| (level(all), colours[usize::from(level(all))]))
@@ -322,12 +360,12 @@ mod tests {
     #[test]
     fn tones_rise_from_nothing_to_one() {
         for tone in [Tone::Log, Tone::Linear, Tone::Plain] {
-            assert_eq!(tone.of(0, 9), 0.0);
-            assert_eq!(tone.of(9, 9), 1.0);
-            assert!(tone.of(3, 9) >= tone.of(2, 9));
+            assert_eq!(tone.of(0.0, 9.0), 0.0);
+            assert_eq!(tone.of(9.0, 9.0), 1.0);
+            assert!(tone.of(3.0, 9.0) >= tone.of(2.0, 9.0));
         }
-        assert_eq!(Tone::Linear.of(3, 9), 1.0 / 3.0);
-        assert!((Tone::Log.of(2, 8) - 0.5).abs() < 1e-15);
-        assert_eq!(Tone::Plain.of(1, 9), 1.0);
+        assert_eq!(Tone::Linear.of(3.0, 9.0), 1.0 / 3.0);
+        assert!((Tone::Log.of(2.0, 8.0) - 0.5).abs() < 1e-15);
+        assert_eq!(Tone::Plain.of(1.0, 9.0), 1.0);
     }
 }

@@ -17,6 +17,10 @@ pub(crate) trait Drawing {
     fn background(&self) -> Option<Colour>;
     /// Pen of most strokes.
     fn pen(&self) -> Pen;
+    /// Returns whether all is black because no colour is given.
+    fn has_default_ink(&self) -> bool {
+        false
+    }
     /// Draws onto a surface.
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError>;
 }
@@ -30,6 +34,8 @@ pub(super) struct Page<'a> {
     /// The pen of most strokes.
     pub(super) pen: Pen,
     pub(super) labels: &'a Labels,
+    /// Whether black becomes white on dark pages.
+    pub(super) has_default_ink: bool,
     /// Whether every colour occurs once, as a layer.
     pub(super) has_layers: bool,
 }

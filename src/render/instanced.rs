@@ -61,7 +61,7 @@ pub(super) fn write(
         Some(prepass) => prepass,
         None => Prepass::new(graph, style, steps).walked(growth, options.threads)?,
     };
-    let canvas = Canvas::of(std::slice::from_ref(&prepass), view, *size)?;
+    let canvas = Canvas::of([&prepass], view, *size)?;
     if !is_near(&canvas, &prepass.bounds) {
         return Err(NotInstanced::TooClose.into());
     }
@@ -73,6 +73,7 @@ pub(super) fn write(
         background: style.ground(),
         pen: super::paint::pen(style),
         labels: &options.labels,
+        has_default_ink: style.has_default_ink(),
         has_layers: false,
     };
     begin_document(out, &page)?;

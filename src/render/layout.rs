@@ -27,10 +27,11 @@ const MAX_LOOKS: u32 = 4;
 const MAX_ROUNDS: u32 = 8;
 
 /// Result of the prepass.
-pub(super) struct Layout<'a> {
-    pub(super) prepass: Prepass<'a>,
+pub(crate) struct Layout<'a> {
+    pub(crate) prepass: Prepass<'a>,
     pub(super) canvas: Canvas,
-    pub(super) growth: Growth<'a>,
+    /// Growth, of as many steps as a detail takes.
+    pub(crate) growth: Growth<'a>,
 }
 
 /// State of the prepass.
@@ -70,7 +71,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Repeats the prepass of a graph until the size of a pixel is known.
-    pub(super) fn find(
+    pub(crate) fn find(
         graph: &'a Graph,
         growth: &Growth<'a>,
         options: &'a Options,
@@ -129,7 +130,7 @@ impl<'a> Surveyor<'a> {
 
     fn canvas(&self, prepass: &Prepass<'a>) -> Result<Canvas, RenderError> {
         let Options { view, size, .. } = self.options;
-        Ok(Canvas::of(std::slice::from_ref(prepass), view, *size)?)
+        Ok(Canvas::of([prepass], view, *size)?)
     }
 
     /// Returns the number of steps after which the whole set is finer than the detail, where the graph determines it, so
@@ -307,15 +308,20 @@ impl<'a> Surveyor<'a> {
 
 impl Canvas {
     /// Creates a canvas that shows the bounding boxes of prepasses at a common scale, or a window.
-    pub(crate) fn of(surveys: &[Prepass<'_>], view: &View, size: Size) -> Result<Self, NoRoom> {
+    pub(crate) fn of<'p>(
+        prepasses: impl IntoIterator<Item = &'p Prepass<'p>>,
+        view: &View,
+        size: Size,
+    ) -> Result<Self, NoRoom> {
         let mut all = Bounds::EMPTY;
-        for prepass in surveys {
+        let mut overhang = 0.0_f64;
+        for prepass in prepasses {
+            if view.window.is_none() && prepass.is_beyond {
+                return Err(NoRoom::Beyond);
+            }
             all.add_all(&prepass.bounds);
+            overhang = overhang.max(prepass.overhang());
         }
-        if view.window.is_none() && surveys.iter().any(|prepass| prepass.is_beyond) {
-            return Err(NoRoom::Beyond);
-        }
-        let overhang = surveys.iter().map(Prepass::overhang).fold(0.0, f64::max);
         let canvas = match view.window {
             Some(window) => Self::of_window(window, view, size)?,
             None => Self::fit(&all, size, view.pad() + overhang)?,

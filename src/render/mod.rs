@@ -33,6 +33,7 @@ mod drawing;
 mod dxf;
 mod error;
 mod gcode;
+mod hits;
 mod hpgl;
 mod instanced;
 mod known;
@@ -63,13 +64,14 @@ mod write;
 mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
-#[cfg(feature = "cli")]
-pub(crate) use density::write_density_with;
 pub use density::{Density, Shades, Tone, density_canvas, write_density};
+#[cfg(feature = "cli")]
+pub(crate) use density::{density_pixels, write_density_with};
 pub(crate) use drawing::Drawing;
 pub use error::{NoDetail, NoZoom, Remedy, RenderError};
 pub use gcode::Machine;
 pub use instanced::{NotInstanced, SceneFormat, write_scene};
+pub(crate) use layout::Layout;
 pub use levels::Levels;
 pub use mesh::{MeshFormat, MeshOptions, Meshed, write_mesh};
 pub use options::{Detail, Format, Labels, Options, PngEncoding};
@@ -78,7 +80,7 @@ pub use picture::{Empty, Instanced, NearestPoint, Picture};
 pub(crate) use pixels::draw_paths;
 pub(crate) use pixels::survey;
 pub use pixels::{Pixels, pixels};
-pub use plot::{Pens, Plotted, PlottedPen};
+pub use plot::{Hatch, HatchPattern, Pens, Plotted, PlottedPen};
 #[cfg(feature = "cli")]
 pub(crate) use png::Spares;
 pub use png::TooManyPixels;

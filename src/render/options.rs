@@ -4,11 +4,12 @@ use std::num::NonZero;
 
 use crate::metadata::Metadata;
 use crate::parallel::all_cores;
-use crate::style::{Colour, Named, Style, View};
+use crate::style::{ColorBy, Colour, Named, Style, View};
 
 use super::canvas::Size;
+use super::density::{Density, Shades, Tone};
 use super::gcode::Machine;
-use super::plot::Pens;
+use super::plot::{Hatch, Pens};
 use super::png::Spares;
 use super::short_cuts::ShortCuts;
 use super::unit::Unit;
@@ -106,6 +107,11 @@ pub struct Options {
     pub plot: bool,
     /// Number of pens of a plot; by default one for every colour where there are few.
     pub pens: Pens,
+    /// Whether opaque areas of a plot hide what lies under them; true by default.
+    pub occlude: bool,
+    /// Hatching of the filled areas of a plot, in the colours of their fills, unless that is the background's (white by
+    /// default); none by default.
+    pub hatch: Option<Hatch>,
     /// Commands of the machine that reads G-code.
     pub machine: Machine,
     /// Whether an SVG is made of nested instances, so that its size depends on the graph and the number of
@@ -123,6 +129,9 @@ pub struct Options {
     /// draws them: colour after colour, and in a colour along the elements. Has no effect on instanced SVG and on formats
     /// that are always plots.
     pub drawn: f64,
+    /// Tone by which the pixels of a PNG show how many elements cover them, in one ink, or in the palette if the style is coloured
+    /// [by hits](crate::style::ColorBy::Hits); `None` for elements on top of each other. Has no effect on plots.
+    pub tone: Option<Tone>,
     /// Encoding of a PNG.
     pub png: PngEncoding,
     /// Size below which elements are not replaced; none by default.
@@ -145,11 +154,14 @@ setters!(Options {
     unit: Unit,
     plot: bool,
     pens: Pens,
+    occlude: bool,
+    hatch: Option<Hatch>,
     machine: Machine,
     instanced: bool,
     in_one_piece: u64,
     band: u64,
     drawn: f64,
+    tone: Option<Tone>,
     png: PngEncoding,
     detail: Option<Detail>,
     labels: Labels,
@@ -166,11 +178,14 @@ impl Default for Options {
             unit: Unit::Pixel,
             plot: false,
             pens: Pens::default(),
+            occlude: true,
+            hatch: None,
             machine: Machine::default(),
             instanced: false,
             in_one_piece: 1 << 24,
             band: 1 << 21,
             drawn: 1.0,
+            tone: None,
             png: PngEncoding::default(),
             detail: None,
             short_cuts: ShortCuts::default(),
@@ -182,6 +197,21 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Returns the appearance of hits, if they are to be shown.
+    pub(super) fn density(&self) -> Option<Density> {
+        let tone = self.tone.filter(|_| !self.plot)?;
+        let shades = match self.style.color_by {
+            ColorBy::Hits => Shades::Palette(self.style.palette.clone()),
+            _ => Shades::Ink(self.style.polygons()),
+        };
+        Some(Density {
+            tone,
+            shades,
+            background: self.style.ground(),
+            png: self.png,
+        })
+    }
+
     /// Returns whether a PNG is drawn in one piece.
     pub(super) fn draws_in_one_piece(&self, [width, height]: [u32; 2]) -> bool {
         u64::from(width) * u64::from(height) <= self.in_one_piece

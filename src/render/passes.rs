@@ -31,6 +31,10 @@ impl Drawing for Scene<'_> {
         super::paint::pen(self.style)
     }
 
+    fn has_default_ink(&self) -> bool {
+        self.style.has_default_ink()
+    }
+
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
         let mut growth = *self.growth;
         let mut division = Division {

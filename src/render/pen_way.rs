@@ -34,6 +34,10 @@ impl<D: Drawing> Drawing for PenWay<'_, D> {
         self.drawing.pen()
     }
 
+    fn has_default_ink(&self) -> bool {
+        self.drawing.has_default_ink()
+    }
+
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {
         let mut measured = Tip::new(surface, None);
         self.drawing.draw(&mut measured, team)?;

@@ -14,6 +14,7 @@ use crate::style::Colour;
 use super::cells::DrawingMethod;
 use super::drawing::Drawing;
 use super::error::RenderError;
+use super::hits;
 use super::options::{Labels, Options, PngEncoding};
 use super::picture::Picture;
 use super::plot::Plot;
@@ -183,6 +184,9 @@ fn draw(
 pub(crate) fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pixels, RenderError> {
     let size = drawing.size();
     with_team(options.threads, |team| {
+        if let Some(density) = options.density() {
+            return Ok(Pixels::of(hits::pixmap(drawing, &density, team)?));
+        }
         let mut png = Png::begin(size, drawing.background(), Spare::default(), team)?;
         drawing.draw(&mut png, team)?;
         let (pixmap, _) = png.into_pixels();

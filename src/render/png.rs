@@ -46,7 +46,8 @@ use crate::parallel::{Pipeline, Team};
 use crate::style::Colour;
 
 use self::chunk::{Chunk, Command};
-use self::coverage::{SpritePaint, bounding, flattened, has_room};
+pub(super) use self::coverage::flattened;
+use self::coverage::{SpritePaint, bounding, has_room};
 use self::part::PicturePart;
 use self::region::Region;
 use self::skia::Outline;

@@ -207,6 +207,10 @@ impl<W: Write> Surface for Svg<'_, '_, W> {
     }
 }
 
+/// Rule that turns black to white where a page is dark.
+const ON_DARK_PAGES: &str =
+    "@media(prefers-color-scheme:dark){[stroke='#000000']{stroke:#fff}[fill='#000000']{fill:#fff}}";
+
 /// Writes the head of a document: the root's tag, the metadata and the background.
 pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Result<()> {
     let Page {
@@ -214,6 +218,7 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
         unit,
         background,
         labels,
+        has_default_ink,
         has_layers,
         ..
     } = *page;
@@ -236,6 +241,9 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
             "<metadata>\n{}</metadata>",
             escaped(&labels.provenance)
         )?;
+    }
+    if has_default_ink && background.is_none() {
+        writeln!(out, "<style>{ON_DARK_PAGES}</style>")?;
     }
     if let Some(background) = background {
         let opacity = opacity("fill", background);

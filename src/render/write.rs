@@ -15,9 +15,9 @@ use super::pdf::Pdf;
 use super::pen_way::PenWay;
 use super::picture::Picture;
 use super::plot::{Plot, Plotted};
-use super::png::Png;
+use super::png::{Png, write_pixels};
 use super::svg::Svg;
-use super::{bands, dxf, gcode, hpgl, instanced, plot};
+use super::{bands, dxf, gcode, hits, hpgl, instanced, plot};
 
 /// Grows a graph and writes the approximant as a picture.
 ///
@@ -42,7 +42,7 @@ pub fn write(
         }
     };
     let (size, cancel) = (layout.canvas.size(), growth.cancel);
-    let is_whole = !options.plot && options.drawn >= 1.0;
+    let is_whole = !options.plot && options.drawn >= 1.0 && options.tone.is_none();
     if options.format == Format::Png && is_whole && !options.draws_in_one_piece(size) {
         bands::write_layout(&layout, options, out)?;
         return Ok(layout.picture(None));
@@ -124,6 +124,14 @@ fn write_paths(
     cancel: Option<&AtomicBool>,
     out: &mut impl Write,
 ) -> Result<(), RenderError> {
+    if matches!(format, PathFormat::Png)
+        && let Some(density) = options.density()
+    {
+        let pixmap = with_team(options.threads, |team| {
+            hits::pixmap(drawing, &density, team)
+        })?;
+        return Ok(write_pixels(&pixmap, &options.labels, options.png, out)?);
+    }
     if matches!(format, PathFormat::Png) && !options.draws_in_one_piece(drawing.size()) {
         return bands::write_drawing(drawing, options, cancel, out);
     }
@@ -132,6 +140,7 @@ fn write_paths(
         unit: options.unit,
         background: drawing.background(),
         pen: drawing.pen(),
+        has_default_ink: drawing.has_default_ink() && !options.plot,
         labels: &options.labels,
         has_layers: options.plot,
     };

@@ -200,6 +200,20 @@ impl PartialEq for Palette {
     }
 }
 
+/// Writes the name, or the colours of a palette without one, separated by commas.
+impl fmt::Display for Palette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.name.is_empty() {
+            return f.write_str(&self.name);
+        }
+        for (number, colour) in self.colours.iter().enumerate() {
+            let comma = if number > 0 { "," } else { "" };
+            write!(f, "{comma}{colour:#}")?;
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Debug for Palette {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Palette").field(&self.name).finish()

@@ -429,3 +429,119 @@ fn mistakes_in_several_are_reported() {
     }
     assert_eq!(fs::read_dir(folder).unwrap().count(), 0);
 }
+
+#[test]
+fn pictures_of_a_detail_are_those_that_grow_draws() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    done(
+        folder,
+        &format!(
+            "sheet binary-tree --set ratio=0.5..0.7 --samples 3 --detail 2 --fit each --columns 3 -o all.png {ALIKE}"
+        ),
+    );
+    let singles = ["0.5", "0.6", "0.7"].map(|ratio| {
+        let line =
+            format!("grow binary-tree --set ratio={ratio} --detail 2 -o {ratio}.png {ALIKE}");
+        done(folder, &line);
+        pixels(folder, &format!("{ratio}.png"))
+    });
+    assert_shows(&pixels(folder, "all.png"), &singles);
+    // At one scale, smaller pictures take fewer elements.
+    let line = "sheet koch gasket dragon --detail 3 --size 200 -o each.svg -q";
+    done(folder, line);
+    let counts = |name: &str| -> Vec<u64> {
+        let all = pictures(&fs::read_to_string(folder.join(name)).unwrap());
+        let count = |caption: &str| {
+            let digits = caption.rsplit(": ").next().unwrap().replace(',', "");
+            digits.split(' ').next().unwrap().parse().unwrap()
+        };
+        all.iter().map(|(caption, _)| count(caption)).collect()
+    };
+    let each = counts("each.svg");
+    assert_eq!(each.len(), 3);
+    let line =
+        "sheet binary-tree --set ratio=0.4..0.7 --samples 4 --detail 3 --size 200 -o one.svg -q";
+    done(folder, line);
+    let one = counts("one.svg");
+    let line = line.replace("one.svg", "each.svg") + " --fit each";
+    done(folder, &line);
+    let each = counts("each.svg");
+    assert!(
+        one[0] < each[0] && one.windows(2).all(|two| two[0] <= two[1]),
+        "{one:?}, {each:?}"
+    );
+    assert!(
+        one[3] <= each[3] && 4 * one[3] > each[3],
+        "{one:?}, {each:?}"
+    );
+    // Steps with a detail.
+    let said = done(
+        folder,
+        "sheet koch --steps 2,9 --detail 4 --size 200 -o steps.svg",
+    );
+    let steps = counts("steps.svg");
+    assert_eq!(steps[0], 16, "{said}");
+    assert!((100..4_u64.pow(9)).contains(&steps[1]), "{steps:?}");
+    // A detail that takes more steps than a search begins with.
+    let line = "sheet cantor-gaps --detail 0.5 --size 64 -o gaps.png -q";
+    done(folder, line);
+}
+
+#[test]
+fn random_iteration_has_sheets() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let game = "--method chaos --points 20k --tone linear --size 64x64 --margin 3 -q";
+    done(
+        folder,
+        &format!("sheet barnsley-fern gasket --seed 3,4 --columns 4 -o all.png {game}"),
+    );
+    let singles = ["barnsley-fern", "gasket"].map(|rule| {
+        [3, 4].map(|seed| {
+            let name = format!("{rule}-{seed}.png");
+            done(
+                folder,
+                &format!("grow {rule} --seed {seed} -o {name} {game}"),
+            );
+            pixels(folder, &name)
+        })
+    });
+    let all = pixels(folder, "all.png");
+    assert_shows(&all, &singles.concat());
+    // With one part of the plane, a smaller set is smaller.
+    let text = "kind: ifs\nparams: {side: {value: 1, min: 0.1, max: 2}}\n\
+                maps: [{scale: 1/2}, {scale: 1/2, shift: [side/2, 0]}, {scale: 1/2, shift: [0, side/2]}]\n";
+    fs::write(folder.join("corner.yaml"), text).unwrap();
+    done(
+        folder,
+        &format!("sheet corner.yaml --set side=0.5,1 -o pair.png {game}"),
+    );
+    let pair = pixels(folder, "pair.png");
+    let inked = |columns: std::ops::Range<u32>| {
+        let is_inked = |&(x, y): &(u32, u32)| pair.pixel(x, y).unwrap().red() < 250;
+        let all = columns.flat_map(|x| (16..80).map(move |y| (x, y)));
+        all.filter(is_inked).count()
+    };
+    let half = pair.width() / 2;
+    assert!(inked(0..half) * 2 < inked(half..pair.width()));
+    for (line, expected) in [
+        (
+            "sheet koch --method chaos -o a.png",
+            "needs a system of maps",
+        ),
+        ("sheet gasket --method chaos -o a.svg", "write a .png"),
+        (
+            "sheet gasket --method chaos --detail 2",
+            "applies to elements",
+        ),
+        ("sheet gasket --points 10k", "add --method chaos"),
+    ] {
+        let output = kfrac(folder, line);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && said.contains(expected),
+            "{line}: {said}"
+        );
+    }
+}

@@ -5,7 +5,7 @@ use std::num::NonZero;
 
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::render::{Format, Options, Pens, Size};
+use kfrac::render::{Format, Hatch, HatchPattern, Options, Pens, Size};
 use kfrac::style::{ColorBy, Colour};
 
 use super::readers::read;
@@ -296,4 +296,74 @@ fn machines_have_their_commands() {
     assert_eq!(count("G1 F800"), plotted.strokes);
     assert_eq!(count("M0"), plotted.layers - 1);
     assert!(plotted.layers > 1 && !text.contains('Z'));
+}
+
+/// Squares of side 2 from (0, 0) and from (1, 1), the second above the first.
+const TWO_SQUARES: &str = "initiator: [{from: [0, 0], to: [2, 0]}, {from: [1, 1], to: [3, 1], connected: false}]\n\
+     generator: [[0, 0], [1/2, 0], [1, 0]]\n\
+     base_element: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], closed: true}";
+
+/// Returns the length of all strokes of the two squares, in half sides.
+fn drawn_of_squares(settings: impl Fn(&mut Options)) -> (f64, kfrac::render::Plotted) {
+    let (picture, bytes) = draw(&written(TWO_SQUARES), 0, |options| {
+        options.format = Format::Dxf;
+        settings(options);
+    });
+    let strokes = read(Format::Dxf, &bytes);
+    let [left, _, right, _] = bounds(&strokes);
+    (
+        total(&strokes) / ((right - left) / 3.0),
+        picture.plotted.unwrap(),
+    )
+}
+
+#[test]
+fn filled_shapes_hide_what_lies_under_them() {
+    let (drawn, plotted) = drawn_of_squares(|_| {});
+    assert!((drawn - 14.0).abs() < 0.01, "{drawn}");
+    assert_eq!(plotted.hidden, 2);
+    let (drawn, plotted) = drawn_of_squares(|options| options.occlude = false);
+    assert!((drawn - 16.0).abs() < 0.01, "{drawn}");
+    assert_eq!(plotted.hidden, 0);
+    // Translucent fills hide nothing, and lines are not areas.
+    let clear = |options: &mut Options| {
+        options.style.fill = Some(Colour::parse("#ff000080").unwrap());
+    };
+    assert_eq!(drawn_of_squares(clear).1.hidden, 0);
+    let levy = library("levy");
+    assert_eq!(plot(&levy, 8, Format::Dxf).0.plotted.unwrap().hidden, 0);
+}
+
+/// The visible area of the two squares is 7 squares of half the side.
+#[test]
+fn hatching_covers_what_is_visible() {
+    let outlines = drawn_of_squares(|_| {}).0;
+    // A side of a half takes 512 units.
+    let size = |options: &mut Options, spacing: f64| {
+        options.size = Size::Long(1536);
+        options.hatch.as_mut().unwrap().spacing = spacing;
+    };
+    for (directions, times) in [(vec![45.0], 1.0), (vec![0.0, 30.0, 117.0], 3.0)] {
+        let (drawn, _) = drawn_of_squares(|options| {
+            options.hatch = Some(Hatch::new(HatchPattern::Lines(directions.clone()), 1.0));
+            size(options, 8.0);
+        });
+        let covered = (drawn - outlines) * 8.0 / 512.0;
+        assert!((covered / (7.0 * times) - 1.0).abs() < 0.02, "{covered}");
+    }
+    // Contours of the squares at 1/8 of a half side; the second hides a quarter of those of the first.
+    let (drawn, _) = drawn_of_squares(|options| {
+        options.hatch = Some(Hatch::new(HatchPattern::Contour, 1.0));
+        size(options, 64.0);
+    });
+    let sides = (1..8).map(|ring| 8.0 - f64::from(ring)).sum::<f64>();
+    let expected = outlines + sides * (1.0 + 3.0 / 4.0);
+    assert!((drawn - expected).abs() < 0.05, "{drawn} of {expected}");
+    // Areas in the colour of the paper stay empty.
+    let (drawn, plotted) = drawn_of_squares(|options| {
+        options.hatch = Some(Hatch::new(HatchPattern::Contour, 8.0));
+        options.style.fill = Some(Colour::WHITE);
+    });
+    assert!((drawn - outlines).abs() < 0.01);
+    assert_eq!(plotted.hidden, 2);
 }

@@ -236,7 +236,17 @@ impl<'a> Drawing<'a> {
 
     fn full_style(&self) -> Style {
         let Arguments { picture, size, .. } = self.arguments;
-        picture.style_in(self.loaded.model.metadata(), size.unit)
+        let style = picture.style_in(self.loaded.model.metadata(), size.unit);
+        match self.arguments.chaos.tone_of_elements() {
+            Some(_) => Style {
+                color_by: match picture.shows_hits_by_palette() {
+                    true => ColorBy::Hits,
+                    false => ColorBy::None,
+                },
+                ..style
+            },
+            None => style,
+        }
     }
 
     /// Returns whether the file colours by index or fractal, which requires counting elements, and a zoom is
@@ -327,6 +337,8 @@ impl<'a> Drawing<'a> {
         options.extend(zoom.options());
         options.extend(self.arguments.own_options());
         options.extend(picture.options());
+        let tone = self.arguments.chaos.tone_of_elements();
+        options.extend(tone.map(|tone| ("tone", tone.name().into())));
         let Paper { mut size, unit } = *size;
         let mut view = self.arguments.view(self.loaded.model.metadata());
         if let Some(tiled) = &self.tiled {
@@ -340,6 +352,9 @@ impl<'a> Drawing<'a> {
             unit,
             plot: plot.is_asked(),
             pens: plot.pens(picture),
+            occlude: plot.occludes(),
+            hatch: plot.hatch(unit),
+            tone,
             machine: plot.machine(),
             instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::export;
 use crate::render::{self, MeshFormat, Unit, ZoomTarget};
-use crate::style::Named;
+use crate::style::{ColorBy, Named};
 
 use super::super::{Failure, format};
 use super::Arguments;
@@ -134,18 +134,15 @@ impl Plan {
                 refuse(is_asked, message)?;
             }
         } else {
-            for (option, is_asked) in chaos.of_points() {
-                let message = format!("{option} applies to random iteration: add --method chaos");
-                refuse(is_asked, message)?;
-            }
-            picture.refuse_hits()?;
+            chaos.check(picture, true)?;
         }
+        let has_tone = !is_chaos && chaos.tone_of_elements().is_some();
         refuse_beside_tiles(arguments, is_chaos)?;
         let path = arguments
             .output
             .as_deref()
             .filter(|path| *path != Path::new("-"));
-        let draws_png = is_chaos || arguments.pyramid.is_asked();
+        let draws_png = is_chaos || has_tone || arguments.pyramid.is_asked();
         let format = match arguments.format {
             None if draws_png && path.is_none() => Format::Picture(render::Format::Png),
             asked => format::choose(asked, path)?,
@@ -170,6 +167,25 @@ impl Plan {
                 format.name().to_uppercase()
             )));
         }
+        if has_tone {
+            let one = "--tone shows how many elements cover a pixel: write a .png, without";
+            refuse(
+                drawn != Some(render::Format::Png),
+                "--tone shows how many elements cover a pixel: write a .png",
+            )?;
+            for (option, is_asked) in [
+                ("--plot", plot.is_asked()),
+                ("--tiles", arguments.pyramid.is_asked()),
+                ("--drawn", arguments.drawn.is_some()),
+            ] {
+                refuse(is_asked, format!("{one} {option}"))?;
+            }
+            let by_others = matches!(picture.asked_color_by(), Some(by) if !matches!(by, ColorBy::Hits | ColorBy::None));
+            refuse(
+                by_others,
+                "--tone has one ink, or the palette by hits: --color-by hits",
+            )?;
+        }
         refuse(
             has_detail && is_table,
             "--detail is a size in pixels, and only pictures have pixels",
@@ -178,9 +194,14 @@ impl Plan {
             plot.is_asked() && is_table,
             "--plot applies to pictures, not to tables and scenes",
         )?;
+        for (option, is_asked) in plot.of_plots() {
+            let message =
+                format!("{option} applies to plots: add --plot, or write a .dxf, .hpgl or .gcode");
+            refuse(is_asked && !plot.is_asked() && !always_plots, &message)?;
+        }
         refuse(
-            plot.has_pens() && !plot.is_asked() && !always_plots,
-            "--pens applies to plots: add --plot, or write a .dxf, .hpgl or .gcode",
+            plot.lacks_hatch(),
+            "--hatch-spacing is the distance of the lines of --hatch: add --hatch 45deg",
         )?;
         for (option, is_asked) in plot.of_machines() {
             let message =

@@ -1,12 +1,14 @@
-//! `--plot` and `--pens`: single strokes for plotters and cutters.
+//! `--plot`, `--pens`, `--occlude` and `--hatch`: single strokes for plotters and cutters.
 
+use std::fmt;
 use std::num::NonZero;
 
-use crate::render::{Machine, Pens, Plotted};
+use crate::render::{Hatch, HatchPattern, Machine, Pens, Plotted, Unit};
 
 /// Limit of the number of pens that are described singly.
 const MOST_PENS: usize = 16;
 
+use super::super::length::Length;
 use super::super::picture::PictureArguments;
 use super::super::readable;
 
@@ -17,8 +19,8 @@ pub(super) struct PlotArguments {
     /// Draws single strokes, for a plotter or a cutter; DXF, HP-GL and G-code always have them
     ///
     /// No edge is drawn twice, strokes whose ends meet are merged, and the strokes are ordered for short
-    /// pen-up travel. Filled shapes become outlines, and each pen is a layer. All strokes are held in memory,
-    /// up to about 200 bytes per element, which --max-elements limits.
+    /// pen-up travel. Filled shapes become outlines that hide what lies under them, and each pen is a layer. All
+    /// strokes are held in memory, up to about 200 bytes per element, which --max-elements limits.
     #[arg(long)]
     plot: bool,
     /// Largest number of pens of a plot; similar colours share one
@@ -27,6 +29,22 @@ pub(super) struct PlotArguments {
     /// pen each if they are no more than eight; otherwise there is one pen for all.
     #[arg(long, value_name = "N", value_parser = pens)]
     pens: Option<NonZero<usize>>,
+    /// Whether filled shapes of a plot hide what lies under them [default: yes]
+    ///
+    /// Shapes hide by the order of the picture: later elements lie above earlier ones, and fills that are not opaque hide
+    /// nothing. `no` draws all outlines.
+    #[arg(long, value_name = "YES|NO", value_parser = yes_or_no)]
+    occlude: Option<bool>,
+    /// Hatches the fills of a plot: 45deg, 30,120, cross or contour
+    ///
+    /// Angles are those of parallel lines, counter-clockwise from the horizontal; `cross` stands for 45,135, and `contour` for
+    /// lines inside the outlines at equal distances from them. Hatching has the colour of the fill; fills in the colour of the
+    /// background, or in white if there is none, stay empty.
+    #[arg(long, value_name = "PATTERN", value_parser = pattern)]
+    hatch: Option<Pattern>,
+    /// Distance of the lines of --hatch [default: 1mm]
+    #[arg(long, value_name = "LENGTH", value_parser = spacing)]
+    hatch_spacing: Option<Length>,
     /// Speed of drawing with G-code, in millimetres a minute [default: 1500]
     #[arg(long, value_name = "MM", value_parser = feed)]
     feed: Option<f64>,
@@ -44,9 +62,31 @@ impl PlotArguments {
         self.plot
     }
 
-    /// Returns whether a number of pens is given.
-    pub(super) fn has_pens(&self) -> bool {
-        self.pens.is_some()
+    /// Returns the options that apply to plots only, and whether they are given.
+    pub(super) fn of_plots(&self) -> [(&'static str, bool); 4] {
+        [
+            ("--pens", self.pens.is_some()),
+            ("--occlude", self.occlude.is_some()),
+            ("--hatch", self.hatch.is_some()),
+            ("--hatch-spacing", self.hatch_spacing.is_some()),
+        ]
+    }
+
+    /// Returns whether a spacing is given without a hatching.
+    pub(super) fn lacks_hatch(&self) -> bool {
+        self.hatch_spacing.is_some() && self.hatch.is_none()
+    }
+
+    /// Returns whether filled shapes hide what lies under them.
+    pub(super) fn occludes(&self) -> bool {
+        self.occlude.unwrap_or(true)
+    }
+
+    /// Returns the hatching of fills, for a picture with a unit.
+    pub(super) fn hatch(&self, unit: Unit) -> Option<Hatch> {
+        let spacing = self.hatch_spacing.unwrap_or(Length::Millimetres(1.0));
+        let pattern = self.hatch.as_ref()?.0.clone();
+        Some(Hatch::new(pattern, spacing.count(unit)))
     }
 
     /// Returns the pens of a plot: one for each colour if colours are requested.
@@ -85,6 +125,13 @@ impl PlotArguments {
         let all = [
             ("plot", self.plot.then(String::new)),
             ("pens", self.pens.map(|pens| pens.to_string())),
+            (
+                "occlude",
+                self.occlude
+                    .map(|yes| (if yes { "yes" } else { "no" }).into()),
+            ),
+            ("hatch", self.hatch.as_ref().map(Pattern::to_string)),
+            ("hatch-spacing", self.hatch_spacing.map(|it| it.to_string())),
             ("feed", self.feed.map(|feed| feed.to_string())),
             ("pen-up", self.pen_up.clone()),
             ("pen-down", self.pen_down.clone()),
@@ -105,6 +152,67 @@ impl PlotArguments {
                 Pens::FEW
             )
         })
+    }
+}
+
+/// Pattern of a hatching.
+#[derive(Clone)]
+struct Pattern(HatchPattern);
+
+/// Directions of `--hatch cross`.
+const CROSS: [f64; 2] = [45.0, 135.0];
+
+/// Largest number of directions of a hatching.
+const MAX_DIRECTIONS: usize = 12;
+
+impl fmt::Display for Pattern {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            HatchPattern::Lines(angles) => {
+                let angles: Vec<_> = angles.iter().map(|angle| format!("{angle}deg")).collect();
+                f.write_str(&angles.join(","))
+            }
+            HatchPattern::Contour => f.write_str("contour"),
+        }
+    }
+}
+
+fn pattern(text: &str) -> Result<Pattern, String> {
+    let angle = |text: &str| -> Option<f64> {
+        let text = text.trim();
+        let text = text.strip_suffix("deg").unwrap_or(text).trim_end();
+        text.parse().ok().filter(|angle: &f64| angle.is_finite())
+    };
+    let pattern = match text.trim() {
+        "cross" => HatchPattern::Lines(CROSS.into()),
+        "contour" => HatchPattern::Contour,
+        angles => {
+            let angles: Option<Vec<_>> = angles.split(',').map(angle).collect();
+            let angles = angles.filter(|angles| angles.len() <= MAX_DIRECTIONS);
+            HatchPattern::Lines(angles.ok_or_else(|| {
+                format!("expected up to {MAX_DIRECTIONS} angles such as 45deg or 30,120, or cross, or contour")
+            })?)
+        }
+    };
+    Ok(Pattern(pattern))
+}
+
+fn spacing(text: &str) -> Result<Length, String> {
+    let length = Length::parse(text)?;
+    if length.count(Unit::Pixel) < Hatch::LEAST_SPACING {
+        return Err(format!(
+            "lines of a hatching are at least {} pixels apart: --hatch-spacing 1mm",
+            Hatch::LEAST_SPACING
+        ));
+    }
+    Ok(length)
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("expected yes or no".into()),
     }
 }
 
@@ -136,8 +244,15 @@ pub(super) fn described(plotted: &Plotted) -> String {
         1 => String::new(),
         layers => format!(" in {}", readable::counted(&layers.into(), "layer")),
     };
+    let hidden = match plotted.hidden {
+        0 => String::new(),
+        edges => format!(
+            ", {} hidden in whole or in part",
+            readable::counted(&edges.into(), "edge")
+        ),
+    };
     format!(
-        "{}{layers} of {:.0} mm, {:.0} mm from stroke to stroke (as drawn: {:.0} mm), {} left out as \
+        "{}{layers} of {:.0} mm, {:.0} mm from stroke to stroke (as drawn: {:.0} mm){hidden}, {} left out as \
          drawn before",
         readable::counted(&plotted.strokes.into(), "stroke"),
         plotted.drawn,

@@ -10,11 +10,11 @@ use crate::render::space::{SpacePicture, pixels_in_space};
 use crate::render::{self, Detail, Picture, Unit};
 use crate::style::Named;
 
+use super::super::chaos::SpaceGame;
 use super::super::labels::labels;
 use super::super::rule::Loaded;
 use super::super::{Failure, output, readable, steps};
 use super::Arguments;
-use super::chaos::SpaceGame;
 use super::plan::Plan;
 
 /// Draws a set in space, or lists its elements or points; returns the path, a summary and the number of bytes.
@@ -38,7 +38,7 @@ pub(super) fn draw(
         return Ok((path.clone(), summary, bytes));
     }
     let game = match plan {
-        Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::in_space(arguments, loaded)?),
+        Plan::Chaos(_) | Plan::Cloud => Some(SpaceGame::in_space(arguments.game(), loaded)?),
         _ => None,
     };
     let steps =
@@ -204,6 +204,10 @@ fn check(arguments: &Arguments, loaded: &Loaded, plan: &Plan) -> Result<&'static
         ("--turn", arguments.turn.is_some()),
         ("--drawn", arguments.drawn.is_some()),
         ("--view", arguments.picture.has_view()),
+        (
+            "--tone without --method chaos",
+            arguments.chaos.tone_of_elements().is_some(),
+        ),
         ("sizes in millimetres", arguments.size.unit != Unit::Pixel),
     ];
     let lines = arguments.picture.of_lines();

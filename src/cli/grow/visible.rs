@@ -80,6 +80,7 @@ pub(super) fn draw(
         unit: size.unit,
         plot: plot.is_asked(),
         pens: plot.pens(picture),
+        hatch: plot.hatch(size.unit),
         machine: plot.machine(),
         drawn: arguments.drawn.unwrap_or(1.0),
         threads: growth.threads(),

@@ -3,6 +3,8 @@
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
 use crate::figure::sheet::Fit;
+use crate::fractal::Goal;
+use crate::model::Model;
 
 use super::super::family::Family;
 use super::super::growth::Seeds;
@@ -22,7 +24,7 @@ pub(super) struct Individual {
     pub(super) names: Vec<String>,
     pub(super) loaded: Loaded,
     pub(super) seed: u64,
-    /// Steps of its pictures; those of the rule if `None`.
+    /// Steps of its pictures; `None` if a detail decides them, and in space for those of the rule.
     pub(super) steps: Option<Several>,
 }
 
@@ -114,7 +116,16 @@ impl Contents {
                 individual.loaded = individual.loaded.clone().within(place);
             }
         }
-        if arguments.steps.is_none() {
+        if let (None, Some(detail)) = (&arguments.steps, arguments.detail) {
+            for individual in &mut self.individuals {
+                individual.loaded = individual.loaded.clone().led(Model::of_detail);
+                let goal = Goal::asked(None, Some(detail), &individual.loaded)?;
+                individual.steps = match goal {
+                    Goal::Detail(_) => None,
+                    Goal::Steps(step, _) => Some(Several::range(step, step)),
+                };
+            }
+        } else if arguments.steps.is_none() {
             // All individuals of a rule have one step.
             let mut chosen: Option<(usize, Several)> = None;
             for individual in &mut self.individuals {
@@ -156,15 +167,19 @@ impl Contents {
     /// Returns the steps that all individuals have, none of which is above `last`; `None` if rules have different ones.
     pub(super) fn steps_up_to(&self, last: u32) -> Option<Several> {
         let is_common = self.rules == 1 || self.steps.is_some();
-        is_common.then(|| self.individuals[0].steps_up_to(last))
+        let first = self.individuals.first().filter(|_| is_common)?;
+        first.steps_up_to(last)
     }
 
     /// Returns the caption of a picture, without its number of elements.
-    pub(super) fn caption(&self, individual: &Individual, step: u32) -> String {
+    pub(super) fn caption(&self, individual: &Individual, goal: Goal) -> String {
         let steps = individual.steps.as_ref();
         let is_one = steps.is_none_or(|steps| steps.as_slice().len() == 1);
         let has_step = self.rules > 1 || !is_one || individual.names.is_empty();
-        let step = has_step.then(|| format!("step {step}"));
+        let step = match goal {
+            Goal::Steps(step, _) => has_step.then(|| format!("step {step}")),
+            Goal::Detail(_) => individual.names.is_empty().then(|| goal.described()),
+        };
         let names: Vec<_> = individual.names.iter().cloned().chain(step).collect();
         names.join(", ")
     }
@@ -251,12 +266,25 @@ impl Contents {
 }
 
 impl Individual {
-    /// Returns the steps of the pictures, none of which is above `last`.
-    pub(super) fn steps_up_to(&self, last: u32) -> Several {
-        match &self.steps {
-            Some(steps) if steps.largest() <= last => steps.clone(),
-            Some(steps) if steps.as_slice().len() > 1 => Several::range(0, last),
-            _ => Several::range(last, last),
+    /// Returns the steps of the pictures, none of which is above `last`; `None` if a detail decides them.
+    fn steps_up_to(&self, last: u32) -> Option<Several> {
+        let steps = self.steps.as_ref()?;
+        Some(match steps.as_slice() {
+            _ if steps.largest() <= last => steps.clone(),
+            [_] => Several::range(last, last),
+            _ => Several::range(0, last),
+        })
+    }
+
+    /// Returns the goals of the pictures, with no step above `last`, for a detail in pixels.
+    pub(super) fn goals_up_to(&self, last: u32, detail: Option<f64>) -> Vec<Goal> {
+        match (self.steps_up_to(last), detail) {
+            (None, Some(pixels)) => vec![Goal::Detail(pixels)],
+            (None, None) => vec![Goal::Steps(last, None)],
+            (Some(steps), _) => {
+                let steps = steps.as_slice().iter();
+                steps.map(|&step| Goal::Steps(step, detail)).collect()
+            }
         }
     }
 }

@@ -96,7 +96,7 @@ impl Arguments {
         };
         let count = readable::counted(&drawn.cells.into(), "picture");
         let names: Vec<_> = contents.rules().iter().map(|it| it.name.clone()).collect();
-        self.report(&drawn, &format!("{count} of {}", names.join(", ")), start);
+        self.report_drawn(&drawn, &format!("{count} of {}", names.join(", ")), start);
         Ok(())
     }
 
@@ -138,6 +138,7 @@ impl Arguments {
         let of_plane = [
             ("--view", self.picture.has_view()),
             ("--fit", self.fit.is_some()),
+            ("--detail", self.detail.is_some()),
         ];
         for (option, is_asked) in self.picture.of_lines().into_iter().chain(of_plane) {
             if is_asked {

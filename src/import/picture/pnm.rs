@@ -1,6 +1,6 @@
 //! Pictures of the Netpbm formats: PBM, PGM and PPM, plain and raw (P1 to P6).
 
-use super::{Channel, PictureError, Pixels, Read, check};
+use super::{PictureError, PixelSink, check};
 
 /// Returns whether bytes start with the signature of a PBM, PGM or PPM.
 pub(super) fn is_pnm(bytes: &[u8]) -> bool {
@@ -8,7 +8,7 @@ pub(super) fn is_pnm(bytes: &[u8]) -> bool {
 }
 
 /// Reads the first picture of a file.
-pub(super) fn read(bytes: &[u8], asked: Option<Channel>) -> Result<Read, PictureError> {
+pub(super) fn read(bytes: &[u8], pixels: &mut impl PixelSink) -> Result<[usize; 2], PictureError> {
     let kind = bytes.get(1).copied().unwrap_or_default();
     let mut reader = Reader(bytes.get(2..).unwrap_or_default());
     let (width, height) = (reader.number("its width")?, reader.number("its height")?);
@@ -35,7 +35,7 @@ pub(super) fn read(bytes: &[u8], asked: Option<Channel>) -> Result<Read, Picture
     if reader.0.len() / row < height {
         return Err(wrong("it ends before its last pixel"));
     }
-    let mut pixels = Pixels::new(width * height, channels, asked);
+    pixels.begin(width * height, channels);
     let mut values = vec![0; channels * width];
     for _ in 0..height {
         if kind > b'3' {
@@ -52,8 +52,7 @@ pub(super) fn read(bytes: &[u8], asked: Option<Channel>) -> Result<Read, Picture
         }
         pixels.add(&values);
     }
-    let (values, channel) = pixels.finish();
-    Ok((width, height, values, channel))
+    Ok([width, height])
 }
 
 fn size(side: u64) -> Result<usize, PictureError> {

@@ -191,7 +191,9 @@ impl<'a> DrawingMethod<'a> {
             let layout = Layout::find(graph, growth, options)?;
             Ok(Self::Elements(Box::new(layout)))
         };
-        let Some(detail) = options.detail.filter(|detail| detail.decides_steps) else {
+        // Cells do not know how many elements cover them.
+        let detail = options.detail.filter(|_| options.density().is_none());
+        let Some(detail) = detail.filter(|detail| detail.decides_steps) else {
             return elements(growth);
         };
         let Some(mut plan) = LimitStyle::of(graph, options, detail.pixels) else {

@@ -35,6 +35,11 @@ impl ClipWindow {
         }
     }
 
+    /// Returns the lower left and the upper right corner, in positions of the picture.
+    pub(super) fn corners(&self) -> [Position; 2] {
+        [self.low, self.high]
+    }
+
     /// Converts a position of the window to one of the picture.
     #[inline]
     pub(super) fn place(&self, position: Position) -> Position {

@@ -1,20 +1,26 @@
 //! Plots: pictures as polylines for pen plotters and cutters.
 //!
-//! The paths of a picture, including outlines of filled areas, become strokes. Edges that repeat earlier ones
-//! are removed, strokes whose ends meet are joined, and the order of strokes is improved to shorten the
+//! The paths of a picture, including outlines of filled areas, become strokes. Parts that lie under filled areas are
+//! removed, and areas may be hatched. Edges that repeat earlier ones are removed, strokes whose ends meet are joined, and the order of strokes is improved to shorten the
 //! movements of the raised pen. Each pen has a layer, of one colour or of several similar ones. If two pens
 //! draw the same edge, the layer that begins later keeps it, because it lies on top in the picture.
 //!
 //! A plot is held in memory: some hundred bytes for each edge.
 
+mod areas;
 mod clip;
+#[cfg(feature = "contours")]
+mod contours;
+mod hatch;
 mod merge;
+mod occlusion;
 mod order;
 mod pens;
 mod points;
 mod strokes;
 mod tree;
 mod unique;
+mod visible;
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,6 +36,7 @@ use super::options::Options;
 use super::paint::{FINE, Paint, Pen, Position, Stroke};
 use super::surface::Surface;
 use super::unit::Unit;
+use areas::{AreaPaint, Areas, Turn};
 use clip::{ClipWindow, flattened};
 use merge::merged;
 use order::{Order, Traversal};
@@ -37,7 +44,9 @@ use pens::shared;
 use points::{Point, Points, vector};
 use strokes::{Strokes, is_closed};
 use unique::Unique;
+use visible::Visible;
 
+pub use hatch::{Hatch, HatchPattern};
 pub use pens::Pens;
 
 /// Extent of a plot.
@@ -60,6 +69,8 @@ pub struct Plotted {
     pub pens: Vec<PlottedPen>,
     /// Number of edges, or pieces of edges, that are left out as repetitions.
     pub repeated: u64,
+    /// Number of edges, and of lines of the hatching, that lie under filled areas in whole or in part.
+    pub hidden: u64,
 }
 
 /// Extent of the strokes of a pen.
@@ -122,10 +133,44 @@ struct Plotter {
     /// Position of the pen while it is down.
     pen: Option<Position>,
     is_full: bool,
+    fills: Fills,
+}
+
+/// Filled areas of a plot that is being collected.
+struct Fills {
+    /// Whether opaque areas hide what lies under them.
+    hide: bool,
+    /// Whether areas are hatched, unless they have the colour of the paper.
+    hatched: bool,
+    paper: Colour,
+    areas: Areas,
+    /// Paint of the current path, if it is filled with an effect on the plot.
+    paint: Option<AreaPaint>,
+    /// Whether all subpaths of the path are one area; otherwise each is an area by itself.
+    is_one: bool,
+    /// Vertices of the current subpath.
+    contour: Vec<Position>,
+    /// Number of strokes of the current layer that have a turn.
+    counted: usize,
+}
+
+impl Fills {
+    fn new(options: &Options, background: Option<Colour>) -> Self {
+        Self {
+            hide: options.occlude,
+            hatched: options.hatch.is_some(),
+            paper: background.map_or(Colour::WHITE, Colour::opaque),
+            areas: Areas::default(),
+            paint: None,
+            is_one: false,
+            contour: Vec::new(),
+            counted: 0,
+        }
+    }
 }
 
 impl Plotter {
-    fn new(size: [u32; 2]) -> Self {
+    fn new(size: [u32; 2], fills: Fills) -> Self {
         Self {
             window: ClipWindow::of(size),
             outer: Vec::new(),
@@ -136,6 +181,23 @@ impl Plotter {
             start: [0; 2],
             pen: None,
             is_full: false,
+            fills,
+        }
+    }
+
+    /// Returns the layer of a colour.
+    fn layer_of(&mut self, colour: Colour) -> usize {
+        let known = self.layers.iter().position(|layer| layer.0 == colour);
+        known.unwrap_or_else(|| {
+            self.layers.push((colour, Strokes::default()));
+            self.layers.len() - 1
+        })
+    }
+
+    /// Adds a vertex to the outline of an area.
+    fn bound(&mut self, vertex: Position) {
+        if self.fills.paint.is_some() {
+            self.fills.contour.push(vertex);
         }
     }
 
@@ -160,23 +222,49 @@ impl Plotter {
         self.pen = Some(to);
     }
 
+    /// Ends the subpath.
     fn lift(&mut self) {
         self.pen = None;
         if let Some((_, strokes)) = self.layers.get_mut(self.layer) {
             strokes.end();
         }
+        if self.fills.paint.is_some() {
+            let contour = std::mem::take(&mut self.fills.contour);
+            self.fills.areas.add(&contour, self.window.corners());
+            if !self.fills.is_one {
+                self.take_turn();
+            }
+        }
+    }
+
+    /// Adds the area and the strokes since the last turn to the order.
+    fn take_turn(&mut self) {
+        let fills = &mut self.fills;
+        let strokes = self.layers.get(self.layer).map_or(0, |it| it.1.len());
+        let area = fills.paint.and_then(|paint| fills.areas.finish(paint));
+        fills.areas.follow(Turn {
+            layer: self.layer,
+            strokes: strokes - fills.counted,
+            area,
+        });
+        fills.counted = strokes;
     }
 }
 
 impl Surface for Plotter {
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
+        let fill = paint.fill.filter(|fill| fill.rgba()[3] > 0);
+        let is_hatched = |fill: &Colour| self.fills.hatched && fill.opaque() != self.fills.paper;
+        let hatched = fill.filter(is_hatched);
+        let hatched = hatched.map(|fill| self.layer_of(fill.opaque()));
         let stroke = paint.stroke.map(|stroke| stroke.colour);
         let colour = stroke.or(paint.fill).unwrap_or(Colour::BLACK).opaque();
-        let known = self.layers.iter().position(|layer| layer.0 == colour);
-        self.layer = known.unwrap_or_else(|| {
-            self.layers.push((colour, Strokes::default()));
-            self.layers.len() - 1
-        });
+        self.layer = self.layer_of(colour);
+        let fills = &mut self.fills;
+        fills.counted = self.layers[self.layer].1.len();
+        fills.is_one = paint.has_holes;
+        let hides = fills.hide && fill.is_some_and(|fill| fill == fill.opaque());
+        fills.paint = (hides || hatched.is_some()).then_some(AreaPaint { hides, hatched });
         Ok(())
     }
 
@@ -184,15 +272,19 @@ impl Surface for Plotter {
         self.lift();
         self.at = self.window.place(to);
         self.start = self.at;
+        self.bound(self.at);
     }
 
     fn line_to(&mut self, to: Position) {
-        self.draw_to(self.window.place(to));
+        let to = self.window.place(to);
+        self.bound(to);
+        self.draw_to(to);
     }
 
     fn curve_to(&mut self, a: Position, b: Position, to: Position) {
         let [a, b, to] = [a, b, to].map(|position| self.window.place(position));
         for vertex in flattened([self.at, a, b, to]) {
+            self.bound(vertex);
             self.draw_to(vertex);
         }
     }
@@ -204,13 +296,15 @@ impl Surface for Plotter {
 
     fn hand_on(&mut self) -> io::Result<()> {
         if self.is_full {
-            return Err(io::Error::other("a plot has room for 2^32 points"));
+            return Err(too_many_points());
         }
         Ok(())
     }
 
     fn end(&mut self) -> io::Result<()> {
         self.lift();
+        self.take_turn();
+        self.fills.paint = None;
         self.hand_on()
     }
 
@@ -224,6 +318,11 @@ impl Surface for Plotter {
         self.window = self.outer.pop().unwrap_or(self.window);
         Ok(())
     }
+}
+
+/// Returns the error of a plot with too many points, or with points too far away.
+fn too_many_points() -> io::Error {
+    io::Error::other("a plot has room for 2^32 points")
 }
 
 /// Plot that is ready to be written.
@@ -277,18 +376,32 @@ impl Plot {
             ..
         } = *options;
         let size = drawing.size();
-        let Plotter { points, layers, .. } =
-            with_team(threads, |team| -> Result<_, RenderError> {
-                let mut plotter = Plotter::new(size);
-                drawing.draw(&mut plotter, team)?;
-                Ok(plotter)
-            })?;
+        let fills = Fills::new(options, drawing.background());
+        let Plotter {
+            mut points,
+            mut layers,
+            fills,
+            ..
+        } = with_team(threads, |team| -> Result<_, RenderError> {
+            let mut plotter = Plotter::new(size, fills);
+            drawing.draw(&mut plotter, team)?;
+            Ok(plotter)
+        })?;
         let go_on = || match cancel {
             Some(cancel) if cancel.load(Ordering::Relaxed) => {
                 Err(RenderError::Walk(WalkError::Cancelled))
             }
             _ => Ok(()),
         };
+        let mut hidden = 0;
+        if !fills.areas.is_empty() {
+            let (colours, mut strokes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
+            let side = f64::from(size[0].max(size[1])) * FINE;
+            let hatch = options.hatch.as_ref();
+            hidden = Visible::find(&mut strokes, &fills.areas, hatch, &mut points, side, go_on)?;
+            layers = colours.into_iter().zip(strokes).collect();
+        }
+        drop(fills);
         let mut plot = Self {
             size,
             pen: drawing.pen(),
@@ -342,6 +455,7 @@ impl Plot {
         let plotted = &mut plot.plotted;
         plotted.pens.reverse();
         plotted.repeated = unique.repeated;
+        plotted.hidden = hidden;
         plotted.layers = plotted.pens.len() as u64;
         plotted.strokes = plotted.pens.iter().map(|pen| pen.strokes).sum();
         plotted.drawn = plotted.pens.iter().map(|pen| pen.drawn).sum();

@@ -57,6 +57,11 @@ impl Points {
         Some(new)
     }
 
+    /// Returns the place of a point.
+    pub(super) fn place(&self, point: Point) -> [i32; 2] {
+        self.places[point as usize]
+    }
+
     /// Returns the places of all points.
     pub(super) fn places(self) -> Vec<[i32; 2]> {
         self.places

@@ -44,6 +44,13 @@ impl Strokes {
         self.points.truncate(mark);
     }
 
+    /// Appends a stroke of two or more points, successive ones of which differ.
+    pub(super) fn push(&mut self, stroke: &[Point]) {
+        self.end();
+        self.points.extend_from_slice(stroke);
+        self.end();
+    }
+
     /// Appends other strokes.
     pub(super) fn append(&mut self, other: Self) {
         let before = self.points.len();

@@ -1,4 +1,5 @@
-//! Sheets of sets in space: approximants, members of a family or directions of view side by side, as pixels.
+//! Sheets of pixels: sets in space, approximants, members of a family or directions of view side by side, and points of
+//! random iteration.
 
 use std::io::Write;
 use std::sync::atomic::AtomicBool;
@@ -7,7 +8,7 @@ use crate::geometry::Frame3;
 use crate::graph::Graph;
 use crate::parallel::Team;
 use crate::render::space::{PAPER, SpaceOptions, pixels_in_space};
-use crate::render::{Drawing, Options, Pen, RenderError, Surface, draw_paths, pen};
+use crate::render::{Drawing, Options, Pen, Pixels, RenderError, Surface, draw_paths, pen};
 use crate::style::{Colour, Style};
 
 use super::super::text::Font;
@@ -52,30 +53,41 @@ pub fn write_in_space(
         let drawn = pixels_in_space(cell.graph, cell.steps, &own, &cell.space, cancel);
         let drawn = drawn?;
         elements += drawn.picture.elements;
-        pictures.push(drawn.pixels);
+        pictures.push((cell.caption.clone(), drawn.pixels));
     }
-    let side = |axis: usize| pictures.iter().map(|it| it.size()[axis]).max();
+    let size = write_pixels(&pictures, columns, options, out)?;
+    Ok(SheetSummary { size, elements })
+}
+
+/// Arranges pictures with their captions side by side, as [`write_in_space`] does, and writes them as PNG; returns the size.
+pub(crate) fn write_pixels(
+    pictures: &[(String, Pixels)],
+    columns: Option<u32>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let side = |axis: usize| pictures.iter().map(|(_, it)| it.size()[axis]).max();
     let largest = [0, 1].map(|axis| side(axis).unwrap_or_default());
     let font = Font::new();
-    let captions = cells.iter().map(|cell| cell.caption.as_str());
+    let captions = pictures.iter().map(|(caption, _)| caption.as_str());
     let sheet = Captions {
         grid: Grid::of(captions, &font, largest, columns),
-        cells,
+        pictures,
         font,
         style: &options.style,
     };
     let mut pixels = draw_paths(&sheet, options)?;
-    for (picture, corner) in pictures.iter().zip(sheet.grid.corners()) {
+    for ((_, picture), corner) in pictures.iter().zip(sheet.grid.corners()) {
         pixels.put(picture, sheet.grid.picture(corner, picture.size()));
     }
     let size = pixels.size();
     pixels.write(options, out)?;
-    Ok(SheetSummary { size, elements })
+    Ok(size)
 }
 
 /// A sheet without its pictures.
 struct Captions<'a> {
-    cells: &'a [SpaceCell<'a>],
+    pictures: &'a [(String, Pixels)],
     grid: Grid,
     font: Font,
     style: &'a Style,
@@ -95,9 +107,9 @@ impl Drawing for Captions<'_> {
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, _: &Team<'w>) -> Result<(), RenderError> {
-        for (cell, corner) in self.cells.iter().zip(self.grid.corners()) {
+        for ((caption, _), corner) in self.pictures.iter().zip(self.grid.corners()) {
             let grid = &self.grid;
-            grid.caption(surface, &self.font, &cell.caption, corner)?;
+            grid.caption(surface, &self.font, caption, corner)?;
         }
         Ok(())
     }

@@ -14,21 +14,20 @@ use crate::render::Options;
 use crate::render::space::{SpaceOptions, SpacePicture, colours_of_maps, points_in_space};
 use crate::style::{ColorBy, Style};
 
-use super::super::super::Failure;
-use super::super::super::rule::Loaded;
-use super::super::Arguments;
-use super::{Iteration, classes};
+use super::super::Failure;
+use super::super::rule::Loaded;
+use super::{GameArguments, Iteration, classes};
 
 /// Number of points from which normals are computed.
 const SURFACE: usize = 1_000_000;
 
 /// Random iteration in space.
-pub(in crate::cli::grow) type SpaceGame<'a> = Iteration<'a, DAffine3>;
+pub(in crate::cli) type SpaceGame<'a> = Iteration<'a, DAffine3>;
 
 impl<'a> SpaceGame<'a> {
     /// Returns the game that the options request.
-    pub(in crate::cli::grow) fn in_space(
-        arguments: &'a Arguments,
+    pub(in crate::cli) fn in_space(
+        arguments: GameArguments<'a>,
         loaded: &'a Loaded,
     ) -> Result<Self, Failure> {
         let Model::IfsInSpace(source) = &loaded.model else {
@@ -43,7 +42,7 @@ impl<'a> SpaceGame<'a> {
     }
 
     /// Plays the game and draws it.
-    pub(in crate::cli::grow) fn draw(
+    pub(in crate::cli) fn draw(
         &self,
         graph: &Graph<Frame3>,
         options: &Options,
@@ -64,7 +63,7 @@ impl<'a> SpaceGame<'a> {
     }
 
     /// Writes the points as a PLY file and returns a summary.
-    pub(in crate::cli::grow) fn write_ply(
+    pub(in crate::cli) fn write_ply(
         &self,
         graph: &Graph<Frame3>,
         style: &Style,
@@ -73,13 +72,7 @@ impl<'a> SpaceGame<'a> {
         path: &Path,
     ) -> Result<String, Failure> {
         let (points, mut all) = self.walk(progress)?;
-        let cloud = || {
-            RandomPoints::new(
-                &self.system,
-                &self.start,
-                !self.arguments.growth.seed.first(),
-            )
-        };
+        let cloud = || RandomPoints::new(&self.system, &self.start, !self.arguments.seed);
         let cloud = || cloud().take(SURFACE).map(|point| point.place);
         let bounds = match (graph.limit_bounds(), &self.start) {
             (Some(bounds), Start::Attractor) => bounds,

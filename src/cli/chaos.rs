@@ -1,4 +1,4 @@
-//! `kfrac grow --method chaos`: random iteration of iterated function systems.
+//! `--method chaos`: random iteration of iterated function systems.
 
 mod plane;
 mod space;
@@ -24,11 +24,11 @@ use crate::metadata::Metadata;
 use crate::render::{RenderError, Tone};
 use crate::style::{ColorBy, Named};
 
-use super::super::picture::{self, PictureArguments};
-use super::super::readable::counted;
-use super::super::rule::Loaded;
-use super::super::{Failure, number};
-use super::Arguments;
+use super::growth::GrowthArguments;
+use super::picture::{self, PictureArguments};
+use super::readable::counted;
+use super::rule::Loaded;
+use super::{Failure, number};
 
 /// Options of random iteration, and the choice of the method.
 #[derive(clap::Args, Clone)]
@@ -43,7 +43,10 @@ pub(super) struct ChaosArguments {
     /// Number of points to draw: 500k, 10M, 2G [default: 10M; 100k for tables]
     #[arg(long, value_name = "N", value_parser = points_of_text, allow_negative_numbers = true)]
     points: Option<u64>,
-    /// Mapping of the number of hits to a tone [default: log]
+    /// Mapping of the number of hits of a pixel to a tone [default: log]
+    ///
+    /// Without --method chaos, a PNG of the plane shows how many elements cover each pixel, in one ink, or in the palette of
+    /// --palette or --color-by hits.
     #[arg(long, value_parser = picture::named::<Tone>())]
     tone: Option<Tone>,
     /// Start of the walks, if not on the attractor; the way there is drawn; may be given several times
@@ -52,6 +55,17 @@ pub(super) struct ChaosArguments {
     /// Number of points of a walk from a start, before the next walk begins [default: 256]
     #[arg(long, value_name = "N", requires = "start", value_parser = number::whole("a number of steps", 1..=u32::MAX))]
     walk: Option<u32>,
+}
+
+/// Arguments of a command that a game follows.
+#[derive(Clone, Copy)]
+pub(super) struct GameArguments<'a> {
+    pub(super) chaos: &'a ChaosArguments,
+    pub(super) growth: &'a GrowthArguments,
+    pub(super) picture: &'a PictureArguments,
+    /// Number of steps, for colours by the first map.
+    pub(super) steps: Option<u32>,
+    pub(super) seed: u64,
 }
 
 /// Method of iteration of a system of maps.
@@ -138,11 +152,37 @@ impl ChaosArguments {
         options
     }
 
+    /// Returns the tone that is given for hits of elements.
+    pub(super) fn tone_of_elements(&self) -> Option<Tone> {
+        self.tone.filter(|_| !self.is_asked())
+    }
+
+    /// Returns an error if options of random iteration are given without it. Elements may have a tone if `has_tone`.
+    pub(super) fn check(&self, picture: &PictureArguments, has_tone: bool) -> Result<(), Failure> {
+        if self.is_asked() {
+            return Ok(());
+        }
+        let tone = self.tone.filter(|_| !has_tone);
+        for (option, is_given) in self
+            .of_points()
+            .into_iter()
+            .chain([("--tone", tone.is_some())])
+        {
+            if is_given {
+                let message = format!("{option} applies to random iteration: add --method chaos");
+                return Err(Failure::Usage(message));
+            }
+        }
+        match self.tone {
+            Some(_) => Ok(()),
+            None => picture.refuse_hits(),
+        }
+    }
+
     /// Returns the options that apply to random iteration only, and whether they are given.
-    pub(super) fn of_points(&self) -> [(&'static str, bool); 3] {
+    fn of_points(&self) -> [(&'static str, bool); 2] {
         [
             ("--points", self.points.is_some()),
-            ("--tone", self.tone.is_some()),
             ("--start", !self.start.is_empty()),
         ]
     }
@@ -200,7 +240,7 @@ const LISTED: u64 = 100_000;
 
 /// Random iteration of a system, as the options request it.
 pub(super) struct Iteration<'a, M: Walked> {
-    arguments: &'a Arguments,
+    arguments: GameArguments<'a>,
     loaded: &'a Loaded,
     /// System in the coordinates that `place` maps to those of its file.
     system: WeightedMaps<M>,
@@ -213,7 +253,7 @@ pub(super) struct Iteration<'a, M: Walked> {
 
 impl<'a, M: Walked> Iteration<'a, M> {
     fn new(
-        arguments: &'a Arguments,
+        arguments: GameArguments<'a>,
         loaded: &'a Loaded,
         source: &System<M>,
         place: Homothety<PointOf<M>>,
@@ -234,9 +274,9 @@ impl<'a, M: Walked> Iteration<'a, M> {
             let message = format!("{} cannot be drawn by random iteration", loaded.name);
             anyhow::Error::new(error).context(message)
         })?;
-        let color_by = color_by(&arguments.picture, source.metadata())?;
-        refuse_steps(arguments.steps(), color_by)?;
-        let steps = arguments.steps().or(source.metadata().steps);
+        let color_by = color_by(arguments.picture, source.metadata())?;
+        refuse_steps(arguments.steps, color_by)?;
+        let steps = arguments.steps.or(source.metadata().steps);
         Ok(Self {
             arguments,
             loaded,
@@ -271,7 +311,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         let growth = &self.arguments.growth;
         Game {
             points: self.points(DRAWN),
-            seed: growth.seed.first(),
+            seed: self.arguments.seed,
             start: self.start.clone(),
             classes: classes(self.color_by, self.steps),
             threads: growth.threads(),
@@ -288,7 +328,7 @@ impl<'a, M: Walked> Iteration<'a, M> {
         if let Some(progress) = progress {
             progress.expect(points);
         }
-        let all = RandomPoints::new(&self.system, &self.start, growth.seed.first());
+        let all = RandomPoints::new(&self.system, &self.start, self.arguments.seed);
         Ok((points, all))
     }
 

@@ -6,35 +6,33 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 
-use crate::chaos::{GameError, HistogramWindow, play};
+use crate::chaos::{GameError, Histogram, HistogramWindow, play};
 use crate::export;
-use crate::fractal::Goal;
-use crate::geometry::DAffine2;
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::grow::Progress;
 use crate::ifs::System;
 use crate::model::Model;
 use crate::render;
 use crate::render::{
-    Canvas, Density, RenderError, Shades, Size, density_canvas, write_density_with,
+    Canvas, Density, Pixels, RenderError, Shades, Size, density_canvas, density_pixels,
+    write_density_with,
 };
-use crate::style::{ColorBy, Colour, Style};
+use crate::style::{ColorBy, Colour, Style, View};
 use crate::symmetry::Symmetry;
 
-use super::super::super::Failure;
-use super::super::super::labels::labels;
-use super::super::super::rule::Loaded;
-use super::super::Arguments;
-use super::super::tile::Tiled;
-use super::Iteration;
+use super::super::Failure;
+use super::super::labels::labels;
+use super::super::rule::Loaded;
+use super::{DRAWN, GameArguments, Iteration};
 
 /// Random iteration in the plane.
-pub(in crate::cli::grow) struct PlaneGame<'a> {
+pub(in crate::cli) struct PlaneGame<'a> {
     iteration: Iteration<'a, DAffine2>,
     /// System in the coordinates of the iteration.
     source: Arc<System>,
     /// Whether hits replace steps, for which the file has a palette.
     is_by_steps: bool,
-    tiled: Option<Tiled>,
+    view: View,
 }
 
 /// Returns the products of isometries with others that are applied before.
@@ -46,10 +44,13 @@ fn products(outer: &[DAffine2], inner: &[DAffine2]) -> Vec<DAffine2> {
 }
 
 impl<'a> PlaneGame<'a> {
-    /// Returns the game that the options request.
-    pub(in crate::cli::grow) fn new(
-        arguments: &'a Arguments,
+    /// Returns the game that the options request, in a view in the coordinates of the file. The picture shows the images of
+    /// the set under isometries of the file's plane too, if there are any.
+    pub(in crate::cli) fn new(
+        arguments: GameArguments<'a>,
         loaded: &'a Loaded,
+        view: View,
+        images: Option<&[DAffine2]>,
     ) -> Result<Self, Failure> {
         let Model::Ifs(source) = &loaded.model else {
             return Err(Failure::Usage(format!(
@@ -59,7 +60,7 @@ impl<'a> PlaneGame<'a> {
                 loaded.model.kind().name()
             )));
         };
-        let Arguments { chaos, picture, .. } = arguments;
+        let GameArguments { chaos, picture, .. } = arguments;
         let place = loaded.place()?;
         let source = source
             .within(&place)
@@ -71,9 +72,8 @@ impl<'a> PlaneGame<'a> {
             .symmetry
             .as_ref()
             .map(Symmetry::isometries);
-        let tiled = arguments.tiled(loaded, Goal::Detail(1.0))?;
-        let copies = tiled.as_ref().map(|tiled| {
-            let copies = tiled.images.iter().map(|copy| place.within(copy));
+        let copies = images.map(|images| {
+            let copies = images.iter().map(|copy| place.within(copy));
             copies.collect::<Vec<_>>()
         });
         let images = match (copies, own) {
@@ -94,7 +94,7 @@ impl<'a> PlaneGame<'a> {
                 && source.metadata().style.color_by == ColorBy::Step,
             iteration,
             source,
-            tiled,
+            view,
         })
     }
 
@@ -110,53 +110,28 @@ impl<'a> PlaneGame<'a> {
         let Iteration {
             arguments, place, ..
         } = &self.iteration;
-        let (picture, metadata) = (&arguments.picture, self.source.metadata());
-        let mut view = arguments.view(metadata);
-        view.window = self
-            .tiled
-            .as_ref()
-            .map(|tiled| tiled.window)
-            .or(view.window);
         let options = render::Options {
             format: render::Format::Png,
-            style: picture.style(metadata),
-            view: view.within(place),
+            style: arguments.picture.style(self.source.metadata()),
+            view: self.view.within(place),
             size,
             ..render::Options::default()
         };
         options.on_paper()
     }
 
-    /// Plays the game, draws it and returns a summary.
-    pub(in crate::cli::grow) fn draw(
+    /// Returns the hits of the pixels of a canvas.
+    fn histogram(
         &self,
+        canvas: &Canvas,
         progress: Option<&Progress>,
-        out: &mut impl Write,
-        path: &Path,
-    ) -> Result<String, Failure> {
-        let Iteration {
-            arguments, system, ..
-        } = &self.iteration;
-        let Arguments { chaos, picture, .. } = arguments;
-        let size = self
-            .tiled
-            .as_ref()
-            .map_or(arguments.size.size, |tiled| tiled.size);
-        let explain = |error: RenderError| self.iteration.explain(error, path);
-        let canvas = self.canvas(size).map_err(explain)?;
-        let held = self.iteration.arguments.growth.held.as_ref();
-        if let Some(held) = held {
-            held.note_window(&canvas, &self.iteration.place);
-        }
-        if held.is_some_and(|held| held.surveys) {
-            return Ok(String::new());
-        }
+    ) -> Result<Histogram, Failure> {
         let game = self.iteration.game(progress);
         let window = HistogramWindow {
             to_pixels: canvas.to_pixels(),
             size: canvas.size(),
         };
-        let histogram = play(system, &window, &game).map_err(|error| {
+        let histogram = play(&self.iteration.system, &window, &game).map_err(|error| {
             match error {
                 error @ GameError::TooManyBins { .. } => anyhow!(
                     "{error}; use a smaller --size, or --method deterministic, which draws large pictures \
@@ -165,24 +140,103 @@ impl<'a> PlaneGame<'a> {
                 other => anyhow::Error::new(other),
             }
         })?;
+        Ok(histogram)
+    }
+
+    /// Returns the appearance of a picture of a size.
+    fn density(&self, size: Size) -> Density {
+        let GameArguments {
+            chaos,
+            picture,
+            growth,
+            ..
+        } = self.iteration.arguments;
         let render::Options { style, .. } = self.picture_options(size);
-        let density = Density {
+        Density {
             tone: chaos.tone.unwrap_or_default(),
             shades: self.shades(&style, picture.ink(self.source.metadata())),
             background: style.ground(),
-            png: arguments.growth.png_encoding(),
-        };
+            png: growth.png_encoding(),
+        }
+    }
+
+    /// Returns the game in another view, in the coordinates of the file.
+    pub(in crate::cli) fn in_view(self, view: View) -> Self {
+        Self { view, ..self }
+    }
+
+    /// Describes the points of the picture.
+    pub(in crate::cli) fn described(&self) -> String {
+        self.iteration.described()
+    }
+
+    /// Returns the options of the game, with their values.
+    pub(in crate::cli) fn options(&self) -> Vec<(&'static str, String)> {
+        self.iteration.options()
+    }
+
+    /// Returns the window of a picture of a size, in the coordinates of the file.
+    pub(in crate::cli) fn window(&self, size: Size, path: &Path) -> Result<Bounds, Failure> {
+        let canvas = self.canvas(size);
+        let [x, y, width, height] = canvas
+            .map_err(|error| self.iteration.explain(error, path))?
+            .window();
+        let low = DVec2::new(x, y);
+        let place = |point| self.iteration.place.point(point);
+        Ok(Bounds::new(
+            place(low),
+            place(low + DVec2::new(width, height)),
+        ))
+    }
+
+    /// Plays the game and returns the pixels of a picture.
+    pub(in crate::cli) fn pixels(
+        &self,
+        size: Size,
+        progress: Option<&Progress>,
+        path: &Path,
+    ) -> Result<Pixels, Failure> {
+        let explain = |error: RenderError| self.iteration.explain(error, path);
+        let canvas = self.canvas(size).map_err(explain)?;
+        let histogram = self.histogram(&canvas, progress)?;
+        density_pixels(&histogram, &self.density(size)).map_err(explain)
+    }
+
+    /// Plays the game, draws it and returns a summary. `given` are the options of the picture that are given, beside those
+    /// of all games.
+    pub(in crate::cli) fn draw(
+        &self,
+        size: Size,
+        given: Vec<(&'static str, String)>,
+        progress: Option<&Progress>,
+        out: &mut impl Write,
+        path: &Path,
+    ) -> Result<String, Failure> {
+        let GameArguments {
+            growth, picture, ..
+        } = self.iteration.arguments;
+        let explain = |error: RenderError| self.iteration.explain(error, path);
+        let canvas = self.canvas(size).map_err(explain)?;
+        let held = growth.held.as_ref();
+        if let Some(held) = held {
+            held.note_window(&canvas, &self.iteration.place);
+        }
+        if held.is_some_and(|held| held.surveys) {
+            return Ok(String::new());
+        }
+        let histogram = self.histogram(&canvas, progress)?;
+        let density = self.density(size);
         let described = self.iteration.described();
         let mut options = self.iteration.options();
         options.push(("format", "png".into()));
         options.push(("size", size.to_string()));
-        options.extend(arguments.tile.options());
+        options.extend(given);
         options.extend(picture.options());
         let labels = labels(self.iteration.loaded, &described, "grow", options);
-        let spares = arguments.growth.spares();
-        write_density_with(&spares, &histogram, &density, &labels, out).map_err(explain)?;
+        write_density_with(&growth.spares(), &histogram, &density, &labels, out)
+            .map_err(explain)?;
         let inside = match histogram.inside() {
-            inside if inside == game.points => String::new(),
+            inside if inside == self.iteration.points(DRAWN) => String::new(),
             inside => format!(", {} inside", crate::readable::grouped(&inside.into())),
         };
         let [width, height] = canvas.size();
@@ -193,7 +247,7 @@ impl<'a> PlaneGame<'a> {
     }
 
     /// Lists the points as a table and returns a summary.
-    pub(in crate::cli::grow) fn list(
+    pub(in crate::cli) fn list(
         &self,
         format: export::TableFormat,
         progress: Option<&Progress>,
