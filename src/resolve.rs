@@ -18,6 +18,7 @@ mod parameters;
 mod rule;
 mod set;
 mod space;
+mod tint;
 mod unused;
 
 pub(crate) use family::VaryingMaps;

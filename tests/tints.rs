@@ -1,4 +1,4 @@
-//! Tints of structures: pictures agree with the equations of Hart 1992, section 5.
+//! Tints of structures, systems and rules: pictures agree with the equations of Hart 1992, section 5.
 
 use std::num::NonZero;
 
@@ -218,5 +218,159 @@ fn the_pound_sign_has_a_colour_for_every_quadrant() {
                 "{fill} of {tint}"
             );
         }
+    }
+}
+
+/// Returns the fills of a step, each with its number.
+fn fills(model: &Model, steps: u32) -> Vec<(String, usize)> {
+    let graph = model.compile(steps).unwrap();
+    assert!(graph.tints());
+    let text = svg(model, steps);
+    // Successive shapes of one colour share a path.
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    for path in text.split("<path ").skip(1) {
+        let fill = path
+            .split("fill=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap();
+        let shapes = path
+            .split(" d=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap();
+        let shapes = shapes.matches(['M', 'm']).count();
+        match counts.iter_mut().find(|(known, _)| known == fill) {
+            Some((_, count)) => *count += shapes,
+            None => counts.push((fill.to_owned(), shapes)),
+        }
+    }
+    counts.sort();
+    counts
+}
+
+fn hue(degrees: i32) -> String {
+    let colour = Colour::parse(&format!("hsl({degrees}, 100%, 50%)")).unwrap();
+    colour.to_string()
+}
+
+/// Tints of maps and of elements apply at every step: of step n, the binomial coefficient of n and k shapes have the k-fold
+/// drift.
+#[test]
+fn maps_and_elements_drift_at_every_step() {
+    let square = "polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]";
+    let system = model(&format!(
+        "kind: ifs
+maps: [{{scale: 1/2}}, {{scale: 1/2, shift: [1/2, 1/3], tint: {{hue: 36}}}}]
+initial: {{{square}}}
+style: {{fill: red}}
+"
+    ));
+    let rule = model(
+        "initiator: segment
+generator: [[0, 0], {to: [1/2, 0.1]}, {to: [1, 0], tint: {hue: 36}}]
+base_element: {points: [[0, 0], [1, 0], [1, 1/5], [0, 1/5]], closed: true}
+style: {fill: red}
+",
+    );
+    for drawn in [&system, &rule] {
+        assert_eq!(drawn.metadata().style.color_by, ColorBy::Tint);
+        let mut expected: Vec<_> = (0..=4).zip([1, 4, 6, 4, 1]).collect::<Vec<_>>();
+        let mut expected: Vec<(String, usize)> = expected
+            .drain(..)
+            .map(|(times, count)| (hue(36 * times), count))
+            .collect();
+        expected.sort();
+        assert_eq!(fills(drawn, 4), expected);
+    }
+    // A condensation set inside the maps has the drifts of all of them, once each.
+    let row = model(&format!(
+        "kind: ifs
+maps: [{{scale: 0.9, shift: [1, 0], tint: {{hue: 36}}}}]
+condensation: [{{{square}}}]
+style: {{fill: red}}
+"
+    ));
+    let mut expected: Vec<_> = (0..10).map(|number| (hue(36 * number), 1)).collect();
+    expected.sort();
+    assert_eq!(fills(&row, 9), expected);
+    // An initial set beside it is drawn in its place at the last step.
+    let both = model(&format!(
+        "kind: ifs
+maps: [{{scale: 0.5, shift: [1, 0], tint: {{hue: 36}}}}]
+condensation: [{{{square}}}]
+initial: {{{square}}}
+style: {{fill: red}}
+"
+    ));
+    let found = fills(&both, 3);
+    assert_eq!(
+        found.iter().map(|(_, count)| count).sum::<usize>(),
+        4,
+        "{found:?}"
+    );
+    assert!(
+        [0, 1, 2, 3]
+            .iter()
+            .all(|k| found.iter().any(|(fill, _)| *fill == hue(36 * k)))
+    );
+    // Equal maps with different tints are not one.
+    let equal = model(&format!(
+        "kind: ifs
+maps: [{{scale: 1/2}}, {{scale: 1/2, tint: {{hue: 120}}}}]
+initial: {{{square}}}
+style: {{fill: red}}
+"
+    ));
+    assert_eq!(
+        fills(&equal, 1),
+        [("#00ff00".into(), 1), ("#ff0000".into(), 1)]
+    );
+}
+
+#[test]
+fn tints_of_maps_and_elements_are_in_space_too() {
+    for text in [
+        "kind: ifs\nspace: 3\nmaps: [{scale: 1/2}, {scale: 1/2, shift: [1/2, 0, 0], tint: {hue: 120}}]\nstyle: {fill: red}\n",
+        "space: 3\ninitiator: [[0, 0, 0], [1, 0, 0]]\ngenerator: [[0, 0, 0], [1/2, 0, 1/5], {to: [1, 0, 0], tint: {color: lime}}]\n",
+    ] {
+        let model = model(text);
+        assert_eq!(model.metadata().style.color_by, ColorBy::Tint);
+        assert!(model.graph_in_space(3).unwrap().unwrap().tints(), "{text}");
+    }
+}
+
+#[test]
+fn mistakes_in_tints_of_maps_and_elements_are_reported() {
+    for (text, expected) in [
+        (
+            "kind: ifs\nmaps: [{scale: 1/2, tint: {}}]\n",
+            "a tint needs a `color`",
+        ),
+        (
+            "kind: ifs\nmaps: [{scale: 1/2, tint: {saturation: -3}}]\n",
+            "the saturation of this tint is -3",
+        ),
+        (
+            "initiator: segment\ngenerator: [[0, 0], {to: [1/2, 0], tint: {alpha: 1/2}}]\n",
+            "`alpha` goes with `color`",
+        ),
+        (
+            "initiator: segment\ngenerator: [[0, 0], {to: [1/2, 0], tint: {lightness: 2}}]\n",
+            "the lightness of this tint is 2",
+        ),
+    ] {
+        let source = kfrac::diagnostic::Source::new("test.yaml", text);
+        let catalogue = kfrac::catalogue::Catalogue::embedded();
+        let read = kfrac::document::Document::read(&source, &catalogue);
+        let diagnostics = read.and_then(|it| it.resolve(&[]).map(|_| ())).unwrap_err();
+        assert!(
+            diagnostics.to_string().contains(expected),
+            "{text}: {diagnostics}"
+        );
     }
 }

@@ -8,6 +8,7 @@ use crate::ifs::{AffineMap, Ifs, OutlineOf, System, Verdict};
 use super::instancing::instance;
 use crate::extent::{Bounded, Fineness, NoLimit, Own};
 use crate::graph::{Chain, Graph, Object, Replacement, Successor};
+use crate::instancing::Tint;
 
 /// Limit of the number of instances in a graph whose objects record the last map.
 const MAX_INSTANCES: usize = 4_000_000;
@@ -123,8 +124,11 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         }
         before.iter_mut().for_each(|maps| maps.sort_unstable());
         let maps = ifs.maps();
-        let is_same =
-            |a: usize, b: usize| maps[a].affine == maps[b].affine && before[a] == before[b];
+        let is_same = |a: usize, b: usize| {
+            maps[a].affine == maps[b].affine
+                && maps[a].tint == maps[b].tint
+                && before[a] == before[b]
+        };
         let first = |map: usize| (0..map).find(|&other| is_same(other, map)).unwrap_or(map);
         let firsts: Vec<usize> = (0..count).map(first).collect();
         for maps in &mut before {
@@ -215,6 +219,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         Graph {
             origins: maps,
             affine: true,
+            tints: objects.iter().any(|object| object.tint.is_some()),
             ..Graph::of(objects, outlines.collect::<Vec<_>>(), vec![start])
         }
     }
@@ -231,6 +236,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
                 || self.ifs.initial().is_some(),
             origin: map,
             last_map,
+            tint: map.and_then(|map| self.ifs.maps()[map].tint),
             ..Object::kept(base_element)
         }
     }
@@ -249,12 +255,17 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         last_map: Option<usize>,
     ) -> impl Iterator<Item = Object<M::Frame>> + '_ {
         let vanishes = Arc::new(Successor::default());
+        let with_first = self.drawn_with_first();
+        // Others are in the objects inside the maps, which have the tints.
+        let tint =
+            move |outline, tint: Option<Tint>| tint.filter(|_| with_first.contains(&outline));
         (0..self.outlines()).map(move |outline| Object {
             replacement: if outline < self.sets.len() {
                 Replacement::Kept
             } else {
                 Replacement::Fixed(Arc::clone(&vanishes))
             },
+            tint: tint(outline, self.object(1 + outline, map, last_map).tint),
             ..self.object(1 + outline, map, last_map)
         })
     }

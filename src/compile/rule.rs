@@ -154,6 +154,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
             depth += 1;
         }
         let beyond = self.objects.iter().any(Object::is_unresolved);
+        let tints = self.objects.iter().any(|object| object.tint.is_some());
         let seeds = rule
             .generators()
             .iter()
@@ -168,6 +169,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
             draws: rule.is_random(),
             affine: rule.is_affine(),
             seeds,
+            tints,
             middle: F::Point::of_coordinates([0.5, 0.0, 0.0]),
             ..Graph::of(
                 self.objects,
@@ -221,6 +223,7 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
         self.objects.push(Object {
             visible: class.visible,
             origin: class.origin,
+            tint: class.tint.0,
             index: Self::index(&state, self.depends.modulus),
             behaviour,
             replacement: if class.fertile {

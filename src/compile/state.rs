@@ -1,6 +1,9 @@
 //! Class and state of an element, which together determine its subtree, and the dependences of a rule.
 
+use std::hash::{Hash, Hasher};
+
 use crate::expression::{Dependence, Program, gcd};
+use crate::instancing::Tint;
 use crate::rule::{
     ElementContext, Generator, ListedElement, Placement, Rule, RuleFrame, Selection,
 };
@@ -16,6 +19,31 @@ pub(super) struct Class {
     pub(super) generator: Option<usize>,
     /// Generator that lists it; `None` for the initiator.
     pub(super) origin: Option<usize>,
+    pub(super) tint: TintKey,
+}
+
+/// Tint, compared by its bits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TintKey(pub(super) Option<Tint>);
+
+impl TintKey {
+    fn bits(self) -> Option<[u64; 6]> {
+        self.0.map(Tint::bits)
+    }
+}
+
+impl PartialEq for TintKey {
+    fn eq(&self, other: &Self) -> bool {
+        self.bits() == other.bits()
+    }
+}
+
+impl Eq for TintKey {}
+
+impl Hash for TintKey {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.bits().hash(state);
+    }
 }
 
 impl Class {
@@ -26,6 +54,7 @@ impl Class {
             fertile: element.fertile,
             generator: element.generator.filter(|_| element.fertile),
             origin,
+            tint: TintKey(element.tint),
         }
     }
 }

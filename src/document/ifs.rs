@@ -6,7 +6,7 @@
 use crate::diagnostic::Place;
 
 use super::read::{
-    CuboidDocument, EllipseDocument, EllipsoidDocument, ShaftDocument, SphereDocument,
+    CuboidDocument, EllipseDocument, EllipsoidDocument, ShaftDocument, SphereDocument, TintDocument,
 };
 use super::{KindDocument, MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
@@ -98,6 +98,8 @@ pub struct MapDocument {
     pub fixed: Option<WrittenPoint>,
     /// Relative probability in random iteration.
     pub weight: Option<WrittenNumber>,
+    /// Change of the colours of what the map draws.
+    pub tint: Option<Box<TintDocument>>,
     /// Source span of the map.
     pub place: Place,
 }

@@ -62,7 +62,7 @@ pub struct InstanceDocument {
     /// Transforms, in the order of application.
     pub transforms: Vec<TransformDocument>,
     /// Tint.
-    pub tint: Option<TintDocument>,
+    pub tint: Option<Box<TintDocument>>,
     /// Source span of the instance.
     pub place: Place,
 }

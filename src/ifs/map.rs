@@ -3,6 +3,7 @@
 use super::{AffineMap, PointOf};
 use crate::expression::{Affine, Arithmetic, Doubles};
 use crate::geometry::{DAffine2, DMat2, DVec2, Linear};
+use crate::instancing::Tint;
 
 /// A map of a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,16 +15,19 @@ pub struct Map<M = DAffine2> {
     /// Weight of the map in random iteration, relative to the other maps: positive. Either all maps have one,
     /// or none.
     pub weight: Option<f64>,
+    /// Tint of the images under the map, which applies again at every step.
+    pub tint: Option<Tint>,
 }
 
 impl<M: AffineMap> Map<M> {
-    /// Returns a map without name and weight.
+    /// Returns a map without name, weight and tint.
     #[must_use]
     pub fn new(affine: M) -> Self {
         Self {
             name: None,
             affine,
             weight: None,
+            tint: None,
         }
     }
 

@@ -12,6 +12,7 @@ use crate::ifs::{
     Verdict, WeightOwner,
 };
 use crate::metadata::Metadata;
+use crate::style::ColorBy;
 
 use super::Resolver;
 use super::instancing::StructureMap;
@@ -83,7 +84,7 @@ impl Resolver<OfIfs> {
     fn assembled<M: AffineMap>(
         &mut self,
         document: &IfsDocument,
-        metadata: Metadata,
+        mut metadata: Metadata,
         parts: Parts<M>,
     ) -> Option<System<M>> {
         let Parts {
@@ -136,6 +137,9 @@ impl Resolver<OfIfs> {
         }
         let contraction = ifs.contraction();
         self.check_contraction(document, &ifs, &contraction)?;
+        if ifs.maps().iter().any(|map| map.tint.is_some()) && !document.metadata.sets_colours {
+            metadata.style.color_by = ColorBy::Tint;
+        }
         Some(System {
             metadata,
             ifs,
@@ -206,6 +210,7 @@ impl Resolver<OfIfs> {
             name: document.name.as_ref().map(|name| name.value.clone()),
             affine: M::as_constant(&written)?,
             weight: weight?,
+            tint: self.constant_tint(document.tint.as_deref(), &document.place),
         };
         Some((map, written))
     }

@@ -3,7 +3,6 @@
 
 mod loops;
 mod maps;
-mod tint;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -19,8 +18,8 @@ use crate::metadata::Metadata;
 use crate::style::ColorBy;
 
 use super::Resolver;
+use super::tint::PreparedTint;
 pub(super) use maps::StructureMap;
-use tint::PreparedTint;
 
 /// Maximum number of objects after the expansion of levels.
 const MAX_OBJECTS: usize = 20_000;
@@ -268,7 +267,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 })
             }
         });
-        let tint = { document.tint.as_ref() }.map(|tint| self.tint(tint, scope));
+        let tint = { document.tint.as_deref() }.map(|tint| self.tint(tint, scope));
         Prepared {
             master,
             transforms: self.transforms(&document.transforms, scope),

@@ -18,7 +18,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::document::{RuleDocument, WrittenPoint};
 use crate::geometry::Point as _;
 use crate::metadata::Metadata;
-use crate::rule::{ElementContext, Rule, Selection, constant};
+use crate::rule::{ElementContext, Generator, ListedElement, Rule, Selection, constant};
 
 use crate::style::{ColorBy, Width};
 use generator::loops_shrink;
@@ -102,7 +102,11 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                 .for_each(|doubt| self.diagnostics.push(doubt));
         }
         let base_elements = std::mem::take(&mut self.kind.base_elements);
-        if base_elements.iter().any(F::has_colours) && !document.metadata.sets_colours {
+        let is_tinted = |element: &ListedElement| element.tint.is_some();
+        let has_colours = base_elements.iter().any(F::has_colours)
+            || initiator.elements.iter().any(is_tinted)
+            || { generators.iter().flat_map(Generator::elements) }.any(is_tinted);
+        if has_colours && !document.metadata.sets_colours {
             metadata.style.color_by = ColorBy::Tint;
         }
         Rule {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::diagnostic::Place;
 use crate::expression::{Affine, Dependence, Evaluation, Program};
 use crate::geometry::{Direction, Frame2};
+use crate::instancing::Tint;
 use crate::written::WrittenPoint;
 
 use crate::draws::{Corner, Path, Variable};
@@ -157,6 +158,8 @@ pub struct ListedElement {
     pub generator: Option<usize>,
     /// Number of its base element.
     pub base_element: usize,
+    /// Tint of the element and of all that replaces it.
+    pub tint: Option<Tint>,
 }
 
 impl ListedElement {

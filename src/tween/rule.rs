@@ -11,6 +11,7 @@ use crate::rule::{
 };
 use crate::written::{Written, WrittenPoint};
 
+use super::structure::tint_between;
 use super::{Side, Tween, TweenBy, TweenError, chain, maps};
 
 /// Frame of rules that have tweens.
@@ -135,6 +136,7 @@ impl Figure<'_> {
             joined: a.joined && b.joined,
             generator: both[self.selecting].generator,
             base_element: self.base_elements.number(sources(|it| it.base_element)),
+            tint: tint_between(self.tween, both.map(|it| it.tint)),
             ..nearer.clone()
         }
     }

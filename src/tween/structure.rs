@@ -57,17 +57,21 @@ fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectIns
         [Master::Shape(a), Master::Shape(b)] => M::set(tween, [a, b]).map(Master::Shape),
         _ => None,
     };
-    let tint = match both.map(|it| it.tint) {
+    ObjectInstance {
+        master: shape.unwrap_or_else(|| tween.pick(both).master.clone()),
+        tint: tint_between(tween, both.map(|it| it.tint)),
+        transforms: [map.written()].into(),
+        map,
+    }
+}
+
+/// Returns the tint between two; one that is alone fades.
+pub(super) fn tint_between(tween: Tween, both: [Option<Tint>; 2]) -> Option<Tint> {
+    match both {
         [Some(a), Some(b)] => Some(tint(tween, [a, b])),
         [Some(a), None] => Some(fading(a, tween.of(0))),
         [None, Some(b)] => Some(fading(b, tween.of(1))),
         [None, None] => None,
-    };
-    ObjectInstance {
-        master: shape.unwrap_or_else(|| tween.pick(both).master.clone()),
-        tint,
-        transforms: [map.written()].into(),
-        map,
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::ifs::{Condensation, Definition, Edge, Ifs, Map, System, Verdict};
 
 use super::maps::Tweened;
+use super::structure::tint_between;
 use super::{Side, Tween, TweenError};
 
 /// Returns the system between two.
@@ -54,6 +55,7 @@ fn map<M: Tweened>(tween: Tween, both: [Option<&Map<M>>; 2]) -> Option<Map<M>> {
             name: tween.pick([&a.name, &b.name]).clone(),
             affine: M::between(tween, [&a.affine, &b.affine]),
             weight: weight([a.weight, b.weight]),
+            tint: tint_between(tween, [a.tint, b.tint]),
         },
         [Some(own), None] => grown(tween, 0, own),
         [None, Some(own)] => grown(tween, 1, own),
@@ -69,6 +71,7 @@ fn grown<M: Tweened>(tween: Tween, side: Side, own: &Map<M>) -> Map<M> {
         name: own.name.clone(),
         affine: own.affine.shrunk(share, point),
         weight: own.weight.map(|weight| weight * share),
+        tint: own.tint,
     }
 }
 

@@ -13,6 +13,7 @@ use crate::metadata::MAX_STEPS;
 
 use super::base_element::BASE_ELEMENT_OF;
 use super::space::{InSpace, only_in_space};
+use super::tint::{TINT_OF, TintDocument};
 
 mapping! {
     /// An element of a list, as written.
@@ -49,6 +50,8 @@ mapping! {
     base_element: Option<Box<BaseElementDocument>> = BASE_ELEMENT_OF,
         "What this element looks like, if not like the others: a name from the library, or a shape \
          of its own.";
+    tint: Option<Box<TintDocument>> = TINT_OF,
+        "What it colours the element with, and all that replaces it.";
 }
 
 impl Listed {

@@ -17,6 +17,7 @@ use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, read_initial, read_set};
 use super::space::{self, SPACE, TURN};
+use super::tint::TINT_OF;
 use super::vertices::{VERTICES, read_vertices};
 use super::{KindTable, OfKind};
 
@@ -63,13 +64,14 @@ const MAP: Shape = Shape {
             weight: Form::Positive,
                 "How often random iteration picks the map, relative to the others: above 0, for all \
                  maps or for none.";
+            tint: TINT_OF, "What it colours the images of the map with, again at every step.";
         ],
     ],
     alternatives: &PLACEMENTS,
     hint: MAP_HINT,
 };
 
-/// A map without a weight.
+/// A map without a weight and without a tint.
 pub(super) const PLACE: Shape = Shape {
     what: "a map of a set",
     keys: &[&PLACING],
@@ -230,17 +232,19 @@ fn read_map(reader: &mut Reader, name: Option<Written<String>>, node: &Node) -> 
             shift: None,
             fixed: None,
             weight: None,
+            tint: None,
             place: node.place.clone(),
         };
     };
     MapDocument {
         name,
         weight: fields.optional(reader, "weight"),
+        tint: fields.optional(reader, "tint"),
         ..read_placing(reader, &fields)
     }
 }
 
-/// Reads a map without its name and weight.
+/// Reads a map without its name, weight and tint.
 pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocument {
     let linear = match reader.is_in_space {
         true => space::read_linear(reader, fields),
@@ -258,6 +262,7 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
         shift: reader.optional_complex(shift),
         fixed: reader.optional_complex(fields.take("fixed")),
         weight: None,
+        tint: None,
         place: fields.place.clone(),
     };
     if map.shift.is_some() && map.fixed.is_some() {

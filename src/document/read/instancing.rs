@@ -7,19 +7,18 @@ use crate::document::instancing::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
     UnionDocument,
 };
-use crate::document::mapping::mapping;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, Member, Shape, keys};
 use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
-use crate::style::Colour;
 
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_initial, read_set};
 use super::space::{SPACE, read_space};
+use super::tint::TINT_OF;
 use super::transform::{TRANSFORMS, read_transforms};
 use super::{KindTable, OfKind};
 
@@ -79,7 +78,7 @@ const INSTANCE: Shape = Shape {
             object: Form::Text,
                 "The object that it is one of; with its level in brackets, if it has one. In space, sphere, \
                  plane, cylinder and cone are objects unless the file has others of these names.";
-            tint: Form::Mapping(&TINT), "What it colours all that is in it with.";
+            tint: TINT_OF, "What it colours all that is in it with.";
             repeat: Form::Mapping(&LOOP),
                 "Further instances, each transformed once more than the one before: {count: 12, rotate: 30}.";
         ],
@@ -104,22 +103,6 @@ const LOOP: Shape = Shape {
     alternatives: &[],
     hint: "repeat: {count: 12, rotate: 30}",
 };
-
-mapping! {
-    /// A tint as written.
-    struct TintDocument: TINT = "a tint", "tint: {color: brown, alpha: 0.5}, or tint: {hue: 10, lightness: 0.1}";
-    color as colour: Option<Colour> = Form::Colour, "The colour, as CSS writes it.";
-    alpha: Option<WrittenNumber> = Form::Number,
-        "How much it covers of what comes from further inside, from 0 to 1; all if left out.";
-    hue: Option<WrittenNumber> = Form::Number,
-        "Degrees that are added to the hue, here and further inside.";
-    saturation: Option<WrittenNumber> = Form::Number,
-        "The share of the way to full saturation, here and further inside; to none, if negative.";
-    lightness: Option<WrittenNumber> = Form::Number,
-        "The share of the way to white, here and further inside; to black, if negative.";
-    opacity: Option<WrittenNumber> = Form::Number,
-        "The share of the way to full opacity, here and further inside; to none, if negative.";
-}
 
 impl OfKind for InstancingDocument {
     const TABLE: &'static KindTable = &KindTable {
@@ -231,29 +214,8 @@ fn read_instance(reader: &mut Reader, node: &Node) -> InstanceDocument {
         instance.master = read_master(reader, &fields);
         instance.transforms = read_transforms(reader, &fields);
         instance.tint = fields.optional(reader, "tint");
-        check_tint(reader, &fields);
     }
     instance
-}
-
-/// Reports a tint that changes nothing, or that has the coverage of no colour.
-fn check_tint(reader: &mut Reader, fields: &Fields<'_>) {
-    let Some(node) = fields.take("tint") else {
-        return;
-    };
-    let Value::Mapping(entries) = &node.value else {
-        return;
-    };
-    let find = |key: &str| entries.iter().find(|(known, _)| known.name == key);
-    if entries.is_empty() {
-        let message =
-            "a tint needs a `color`, or a change of `hue`, `saturation`, `lightness` or `opacity`";
-        reader.error_with_hint(&node.place, message, TINT.hint);
-    } else if let (None, Some((_, alpha))) = (find("color"), find("alpha")) {
-        let message = "`alpha` goes with `color`, and there is none";
-        let hint = "tint: {color: brown, alpha: 0.5}, or tint: {opacity: -0.5}";
-        reader.error_with_hint(&alpha.place, message, hint);
-    }
 }
 
 /// Reads the object or the shape that an instance refers to.

@@ -98,6 +98,7 @@ fn entry(document: &FractalDocument, element: &Element, from: Option<DVec2>, to:
         connected: true,
         generator: None,
         base_element: None,
+        tint: None,
         place: place.clone(),
     }))
 }

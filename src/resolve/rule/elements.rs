@@ -123,6 +123,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             joined: false,
             generator: None,
             base_element: 0,
+            tint: None,
         };
         let Some(listed) = listed else { return element };
         element.fertile = listed.fertile;
@@ -173,6 +174,7 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
                 );
             }
         }
+        element.tint = self.constant_tint(listed.tint.as_deref(), &listed.place);
         if let Some(document) = &listed.base_element {
             element.base_element = self.base_element(document);
         }

@@ -1,4 +1,4 @@
-//! Tints of instances: colours with their coverage, and drifts of colours.
+//! Tints: colours with their coverage, and drifts of colours.
 
 use crate::diagnostic::Place;
 use crate::document::TintDocument;
@@ -6,7 +6,7 @@ use crate::expression::{Program, Scope};
 use crate::instancing::{Drift, Tint};
 use crate::style::Colour;
 
-use super::super::Resolver;
+use super::Resolver;
 
 /// Tint with compiled expressions, whose first slot is the level.
 pub(super) struct PreparedTint {
@@ -43,7 +43,23 @@ impl<K> Resolver<K> {
         }
     }
 
-    /// Returns the tint of an instance at `place` for the values of the slots. Reports numbers out of range and returns
+    /// Evaluates a tint that may be left out, in the scope of parameters. Reports numbers out of range.
+    pub(super) fn constant_tint(
+        &mut self,
+        document: Option<&TintDocument>,
+        place: &Place,
+    ) -> Option<Tint> {
+        let document = document?;
+        let scope = std::mem::take(&mut self.constants);
+        let prepared = self.tint(document, &scope);
+        self.constants = scope;
+        // Unknown numbers have been reported.
+        let mut programs = prepared.drift.iter().chain([&prepared.alpha]);
+        let is_known = programs.all(|program| program.as_constant().is_some());
+        is_known.then(|| self.tint_at(&prepared, &[], place))?
+    }
+
+    /// Returns the tint that stands at `place` for the values of the slots. Reports numbers out of range and returns
     /// `None`.
     pub(super) fn tint_at(
         &mut self,
