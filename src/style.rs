@@ -303,6 +303,8 @@ pub struct Style {
     pub fill: Option<Colour>,
     /// Colour behind the picture; transparent if `None`.
     pub background: Option<Colour>,
+    /// Mixing of elements that overlap.
+    pub blend: Blend,
     /// Attribute to which the colours of the palette are assigned.
     pub color_by: ColorBy,
     /// Palette of the classes.
@@ -312,6 +314,33 @@ pub struct Style {
     pub color_range: Option<[f64; 2]>,
     /// Tubes that the lines of a turtle in space are drawn as; lines without a width if `None`.
     pub tube: Option<Tube>,
+}
+
+/// Mixing of the colours of elements that overlap (W3C, Compositing and Blending). Connected lines of one colour are one element.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Blend {
+    /// Successive elements of one colour are one area: where they overlap, a colour that is not opaque does not add up.
+    #[default]
+    Joined,
+    /// Each element covers those before it.
+    Normal,
+    /// Channels are multiplied: darker.
+    Multiply,
+    /// Channels are added: lighter. PDF has no such mode, and mixes by [`Blend::Screen`].
+    Add,
+    /// Differences from white are multiplied: lighter.
+    Screen,
+}
+
+impl Named for Blend {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("joined", Self::Joined),
+        ("normal", Self::Normal),
+        ("multiply", Self::Multiply),
+        ("add", Self::Add),
+        ("screen", Self::Screen),
+    ];
 }
 
 /// Tubes along the lines of a turtle in space: prisms and frusta that join in knobs.
@@ -363,6 +392,7 @@ impl Default for Style {
             join: Join::Round,
             fill: None,
             background: None,
+            blend: Blend::default(),
             color_by: ColorBy::None,
             palette: Palette::default(),
             color_range: None,

@@ -6,6 +6,7 @@ mod approximants;
 mod bad_input;
 mod bands;
 mod batches;
+mod blends;
 mod boxes;
 mod build;
 mod chaos;

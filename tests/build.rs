@@ -9,7 +9,7 @@ use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilde
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
-use kfrac::style::{Cap, Colour, Palette, Style, View, Width};
+use kfrac::style::{Blend, Cap, Colour, Palette, Style, View, Width};
 
 const SEGMENT: [(i32, i32); 2] = [(0, 0), (1, 0)];
 
@@ -216,7 +216,7 @@ generators:
 select:
   - {when: age >= 3 and age < 5, use: "seed: all"}
   - {use: grow}
-style: {stroke: teal, fill: "#11223344", background: white, width: {relative: 0.1}, cap: butt, join: bevel, color_by: age, palette: ["#000000", "#ff000080"], color_range: [0, 6.5]}
+style: {stroke: teal, fill: "#11223344", background: white, width: {relative: 0.1}, cap: butt, join: bevel, blend: screen, color_by: age, palette: ["#000000", "#ff000080"], color_range: [0, 6.5]}
 view: {window: [-1, -1, 3, 2.5], margin: 4}
 "##;
     let cup = BaseElement::new(
@@ -277,6 +277,7 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
             width: Width::Relative(0.1),
             cap: Cap::Butt,
             join: kfrac::style::Join::Bevel,
+            blend: Blend::Screen,
             color_by: kfrac::style::ColorBy::Age,
             palette: Palette::of_colours("", &colours),
             color_range: Some([0.0, 6.5]),

@@ -136,6 +136,7 @@ pub(crate) fn style(style: &Style) -> Entries {
             .set("width", width)
             .set("cap", Value::Text(style.cap.name().into()))
             .set("join", Value::Text(style.join.name().into()))
+            .set("blend", Value::Text(style.blend.name().into()))
             .set("color_by", Value::Text(style.color_by.name().into()))
             .set("palette", palette(&style.palette))
             .set_some("color_range", style.color_range.map(range))

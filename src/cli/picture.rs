@@ -6,7 +6,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::metadata::Metadata;
 use crate::render::Unit;
-use crate::style::{Cap, ColorBy, Colour, Join, Named, Palette, Style, View};
+use crate::style::{Blend, Cap, ColorBy, Colour, Join, Named, Palette, Style, View};
 
 use super::Failure;
 use super::length::{Length, StrokeWidth};
@@ -40,6 +40,12 @@ pub(super) struct PictureArguments {
     /// Shape of the corners of lines
     #[arg(long, value_parser = named::<Join>())]
     join: Option<Join>,
+    /// Mixing of elements that overlap
+    ///
+    /// `joined`: those of one colour are one area. With the others, each is drawn by itself: `normal` on top, `multiply` darker, `add`
+    /// and `screen` lighter. Has no effect on plots, on nested instances and on tones.
+    #[arg(long, value_parser = named::<Blend>())]
+    blend: Option<Blend>,
     /// Margin around the picture in pixels, or as a length (10mm, 0.5in) [default: 4 % of the long side; none around a
     /// window and in plots]
     #[arg(long, value_name = "PX", value_parser = Length::parse)]
@@ -81,6 +87,7 @@ impl PictureArguments {
             width: width.width(unit),
             cap: self.cap.unwrap_or(own.cap),
             join: self.join.unwrap_or(own.join),
+            blend: self.blend.unwrap_or(own.blend),
             fill: self.fill.map_or(own.fill, Ink::colour),
             background: match self.background {
                 Some(ink) => Some(ink.colour().unwrap_or(Colour::TRANSPARENT)),
@@ -156,11 +163,12 @@ impl PictureArguments {
     }
 
     /// Returns the options that apply to lines only, and whether they are given.
-    pub(super) fn of_lines(&self) -> [(&'static str, bool); 3] {
+    pub(super) fn of_lines(&self) -> [(&'static str, bool); 4] {
         [
             ("--stroke-width", self.stroke_width.is_some()),
             ("--cap", self.cap.is_some()),
             ("--join", self.join.is_some()),
+            ("--blend", self.blend.is_some()),
         ]
     }
 
@@ -195,6 +203,7 @@ impl PictureArguments {
         option("fill", colour(self.fill));
         option("cap", self.cap.map(|cap| cap.name().into()));
         option("join", self.join.map(|join| join.name().into()));
+        option("blend", self.blend.map(|blend| blend.name().into()));
         option("margin", self.margin.map(|margin| margin.to_string()));
         option("background", colour(self.background));
         option("color-by", self.color_by.map(|by| by.name().into()));

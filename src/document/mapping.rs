@@ -1,6 +1,6 @@
 //! Mappings whose document, checks, reader and schema come from one table of keys.
 
-use crate::style::{Cap, ColorBy, Colour, Join};
+use crate::style::{Blend, Cap, ColorBy, Colour, Join};
 
 use super::node::Node;
 use super::reader::{Fields, Reader};
@@ -116,6 +116,7 @@ macro_rules! variants {
 variants! {
     Cap: "cap";
     Join: "join";
+    Blend: "blend mode";
     ColorBy: "way to colour";
 }
 

@@ -1,7 +1,7 @@
 //! Reading of `style`.
 
 use crate::expression::Scope;
-use crate::style::{Cap, ColorBy, Colour, Join, Palette, Style, Tube, Width};
+use crate::style::{Blend, Cap, ColorBy, Colour, Join, Palette, Style, Tube, Width};
 
 use super::mapping::FromNode;
 use super::node::{Node, Value};
@@ -20,6 +20,8 @@ pub(super) const STYLE: Shape = Shape {
         cap: Form::variant::<Cap>(),
             "The ends of lines: a half disk, cut off at the end point, or half a width longer.";
         join: Form::variant::<Join>(), "The corners of lines: a disk, cut off, or pointed.";
+        blend: Form::variant::<Blend>(),
+            "How overlapping elements are mixed; if left out, those of one colour are one area.";
         color_by: Form::variant::<ColorBy>(),
             "What the colours of the palette mean: the step of an element's birth, the age or the \
              number of its fractal, its rank in it, the generator that it comes from, or its \
@@ -66,6 +68,7 @@ impl FromNode for Style {
             width: fields.read(reader, "width")?,
             cap: fields.read(reader, "cap")?,
             join: fields.read(reader, "join")?,
+            blend: fields.read(reader, "blend")?,
             color_by: fields.read(reader, "color_by")?,
             palette: fields.read(reader, "palette")?,
             color_range: { fields.take("color_range") }.and_then(|node| range(reader, node)),

@@ -18,7 +18,7 @@ use crate::render::{
     Canvas, Detail, Drawing, FINE, Layout, NoRoom, Options, Paint, Pen, Prepass, RenderError,
     Scene, Surface, pen, position, write_drawing,
 };
-use crate::style::{Colour, Named, Style, View};
+use crate::style::{Blend, Colour, Named, Style, View};
 
 use crate::readable::counted;
 
@@ -399,6 +399,10 @@ impl Drawing for Sheet<'_> {
 
     fn pen(&self) -> Pen {
         pen(self.style)
+    }
+
+    fn blend(&self) -> Blend {
+        self.style.blend
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {

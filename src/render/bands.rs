@@ -15,6 +15,7 @@ use crate::grow::{Growth, Progress, WalkError};
 use crate::parallel::with_team;
 use crate::style::Width;
 
+use super::blended;
 use super::drawing::Drawing;
 use super::error::RenderError;
 use super::layout::Layout;
@@ -98,8 +99,9 @@ pub(super) fn write_drawing(
 fn drawn(drawing: &impl Drawing, rows: Range<u32>, spare: Spare, threads: NonZero<usize>) -> Band {
     let (size, background) = (drawing.size(), drawing.background());
     with_team(threads, |team| {
-        let mut png = Png::begin_band(size, rows, background, spare, team)?;
-        drawing.draw(&mut png, team)?;
+        let png = Png::begin_band(size, rows, background, spare, team)?;
+        let mut png = png.blending(drawing.blend());
+        blended::draw(drawing, &mut png, team)?;
         Ok(png.into_pixels())
     })
 }

@@ -1,7 +1,7 @@
 //! Drawings, which any format takes.
 
 use crate::parallel::Team;
-use crate::style::Colour;
+use crate::style::{Blend, Colour};
 
 use super::error::RenderError;
 use super::options::Labels;
@@ -21,6 +21,10 @@ pub(crate) trait Drawing {
     fn has_default_ink(&self) -> bool {
         false
     }
+    /// Mixing of paths that overlap.
+    fn blend(&self) -> Blend {
+        Blend::Joined
+    }
     /// Draws onto a surface.
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError>;
 }
@@ -34,6 +38,7 @@ pub(super) struct Page<'a> {
     /// The pen of most strokes.
     pub(super) pen: Pen,
     pub(super) labels: &'a Labels,
+    pub(super) blend: Blend,
     /// Whether black becomes white on dark pages.
     pub(super) has_default_ink: bool,
     /// Whether every colour occurs once, as a layer.

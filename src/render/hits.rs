@@ -251,7 +251,7 @@ impl AreaBuffer {
         }
     }
 
-    /// Adds an edge. What lies beside the box is moved to its sides.
+    /// Adds an edge. Parts beside the box are moved to its sides.
     fn edge(&mut self, [from, to]: [DVec2; 2], stride: usize, rows: usize) {
         #[expect(clippy::cast_precision_loss, reason = "a picture is small")]
         let last = (stride - 1) as f64;

@@ -36,6 +36,7 @@ use super::options::Options;
 use super::picture::Picture;
 use super::prepass::Prepass;
 use super::svg::begin_document;
+use crate::style::Blend;
 use drawing::Drawing;
 
 /// Maximum number of symbols, all of which are held in memory.
@@ -73,6 +74,7 @@ pub(super) fn write(
         background: style.ground(),
         pen: super::paint::pen(style),
         labels: &options.labels,
+        blend: Blend::Joined,
         has_default_ink: style.has_default_ink(),
         has_layers: false,
     };

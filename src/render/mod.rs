@@ -20,6 +20,7 @@
 //! pixels alone lies in `png`, behind one method of surfaces.
 
 mod bands;
+mod blended;
 mod canvas;
 mod cells;
 mod census;

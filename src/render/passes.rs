@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::grow::{self, Division, walk_with};
 use crate::parallel::Team;
-use crate::style::{ColorBy, Colour};
+use crate::style::{Blend, ColorBy, Colour};
 
 use super::contribution::ContributionMask;
 use super::drawing::Drawing;
@@ -33,6 +33,10 @@ impl Drawing for Scene<'_> {
 
     fn has_default_ink(&self) -> bool {
         self.style.has_default_ink()
+    }
+
+    fn blend(&self) -> Blend {
+        self.style.blend
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {

@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::parallel::Team;
-use crate::style::Colour;
+use crate::style::{Blend, Colour};
 
 use super::drawing::Drawing;
 use super::error::RenderError;
@@ -36,6 +36,10 @@ impl<D: Drawing> Drawing for PenWay<'_, D> {
 
     fn has_default_ink(&self) -> bool {
         self.drawing.has_default_ink()
+    }
+
+    fn blend(&self) -> Blend {
+        self.drawing.blend()
     }
 
     fn draw<'w>(&'w self, surface: &mut impl Surface, team: &Team<'w>) -> Result<(), RenderError> {

@@ -11,6 +11,7 @@ use crate::parallel::with_team;
 #[cfg(feature = "cli")]
 use crate::style::Colour;
 
+use super::blended;
 use super::cells::DrawingMethod;
 use super::drawing::Drawing;
 use super::error::RenderError;
@@ -187,8 +188,9 @@ pub(crate) fn draw_paths(drawing: &impl Drawing, options: &Options) -> Result<Pi
         if let Some(density) = options.density() {
             return Ok(Pixels::of(hits::pixmap(drawing, &density, team)?));
         }
-        let mut png = Png::begin(size, drawing.background(), Spare::default(), team)?;
-        drawing.draw(&mut png, team)?;
+        let png = Png::begin(size, drawing.background(), Spare::default(), team)?;
+        let mut png = png.blending(drawing.blend());
+        blended::draw(drawing, &mut png, team)?;
         let (pixmap, _) = png.into_pixels();
         Ok(Pixels::of(pixmap))
     })

@@ -43,7 +43,7 @@ use std::ops::Range;
 pub(super) use tiny_skia::Pixmap;
 
 use crate::parallel::{Pipeline, Team};
-use crate::style::Colour;
+use crate::style::{Blend, Colour};
 
 use self::chunk::{Chunk, Command};
 pub(super) use self::coverage::flattened;
@@ -173,6 +173,12 @@ impl<'t, 'w> Png<'t, 'w> {
         })
     }
 
+    /// Sets the mixing of paths that overlap, for drawings that are [separated](super::blended).
+    pub(super) fn blending(mut self, blend: Blend) -> Self {
+        self.outline.blend_by(blend);
+        self
+    }
+
     /// Returns the pixels of the rows, and memory for another band.
     pub(super) fn into_pixels(mut self) -> (Pixmap, Spare) {
         self.settle();
@@ -254,7 +260,9 @@ impl Surface for Png<'_, '_> {
     #[inline]
     fn begin(&mut self, paint: &Paint) -> io::Result<()> {
         // There may be a path for every stroke, each of another width.
+        let is_joined = self.outline.is_joined();
         if let (Some(stroke), None) = (paint.stroke, paint.fill)
+            && is_joined
             && self.part.continues_in(stroke.colour)
             && let Some(stroker) = self.strokers.stroker(stroke.pen)
         {
@@ -266,7 +274,7 @@ impl Surface for Png<'_, '_> {
         if self.part.settles_before(paint) {
             self.settle();
         }
-        let may_cover = self.part.may_cover();
+        let may_cover = is_joined && self.part.may_cover();
         let stroke = paint.stroke.filter(|_| may_cover);
         self.stroker = stroke.and_then(|stroke| self.strokers.stroker(stroke.pen));
         let strokes = self.stroker.is_some();

@@ -6,7 +6,7 @@ mod path;
 use std::io::{self, Write};
 
 use crate::parallel::{Pipeline, Team};
-use crate::style::{Cap, Colour, Join, Named};
+use crate::style::{Blend, Cap, Colour, Join, Named};
 
 use super::drawing::Page;
 use super::paint::{FINE, Paint, Pen, Position, Stroke};
@@ -218,6 +218,7 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
         unit,
         background,
         labels,
+        blend,
         has_default_ink,
         has_layers,
         ..
@@ -244,6 +245,15 @@ pub(super) fn begin_document(out: &mut impl Write, page: &Page<'_>) -> io::Resul
     }
     if has_default_ink && background.is_none() {
         writeln!(out, "<style>{ON_DARK_PAGES}</style>")?;
+    }
+    let mode = match blend {
+        Blend::Joined | Blend::Normal => None,
+        Blend::Multiply => Some("multiply"),
+        Blend::Add => Some("plus-lighter"),
+        Blend::Screen => Some("screen"),
+    };
+    if let Some(mode) = mode {
+        writeln!(out, "<style>path{{mix-blend-mode:{mode}}}</style>")?;
     }
     if let Some(background) = background {
         let opacity = opacity("fill", background);

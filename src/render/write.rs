@@ -17,7 +17,7 @@ use super::picture::Picture;
 use super::plot::{Plot, Plotted};
 use super::png::{Png, write_pixels};
 use super::svg::Svg;
-use super::{bands, dxf, gcode, hits, hpgl, instanced, plot};
+use super::{bands, blended, dxf, gcode, hits, hpgl, instanced, plot};
 
 /// Grows a graph and writes the approximant as a picture.
 ///
@@ -140,6 +140,7 @@ fn write_paths(
         unit: options.unit,
         background: drawing.background(),
         pen: drawing.pen(),
+        blend: drawing.blend(),
         has_default_ink: drawing.has_default_ink() && !options.plot,
         labels: &options.labels,
         has_layers: options.plot,
@@ -147,19 +148,20 @@ fn write_paths(
     with_team(options.threads, |team| match format {
         PathFormat::Svg => {
             let mut svg = Svg::begin(out, &page, team)?;
-            drawing.draw(&mut svg, team)?;
+            blended::draw(drawing, &mut svg, team)?;
             Ok(svg.finish()?)
         }
         PathFormat::Png => {
             let spare = options.spares.take();
-            let mut png = Png::begin(page.size, page.background, spare, team)?;
-            drawing.draw(&mut png, team)?;
+            let png = Png::begin(page.size, page.background, spare, team)?;
+            let mut png = png.blending(page.blend);
+            blended::draw(drawing, &mut png, team)?;
             options.spares.put(png.write(options, out)?);
             Ok(())
         }
         PathFormat::Pdf => {
             let mut pdf = Pdf::begin(out, &page, team)?;
-            drawing.draw(&mut pdf, team)?;
+            blended::draw(drawing, &mut pdf, team)?;
             Ok(pdf.finish()?)
         }
     })

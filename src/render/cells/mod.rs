@@ -14,7 +14,7 @@ use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{CellSearch, Field, FoundCells, Growth, Layer, LimitCells, Stopped, WalkError};
 use crate::parallel::Team;
-use crate::style::{ColorBy, Colour, Style};
+use crate::style::{Blend, ColorBy, Colour, Style};
 
 use self::plan::LimitStyle;
 use super::canvas::{Canvas, Size};
@@ -192,7 +192,8 @@ impl<'a> DrawingMethod<'a> {
             Ok(Self::Elements(Box::new(layout)))
         };
         // Cells do not know how many elements cover them.
-        let detail = options.detail.filter(|_| options.density().is_none());
+        let is_joined = options.density().is_none() && options.style.blend == Blend::Joined;
+        let detail = options.detail.filter(|_| is_joined);
         let Some(detail) = detail.filter(|detail| detail.decides_steps) else {
             return elements(growth);
         };

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use crate::parallel::{Pipeline, Team};
-use crate::style::{Cap, Colour, Join};
+use crate::style::{Blend, Cap, Colour, Join};
 
 use super::drawing::Page;
 use super::options::Labels;
@@ -55,6 +55,8 @@ pub(super) struct Pdf<'t, 'w, W> {
     /// Operator that paints the current path.
     operator: &'static str,
     labels: Labels,
+    /// Blend mode of all paths, unless it is the normal one.
+    blend: Option<&'static str>,
 }
 
 impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
@@ -64,6 +66,7 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             unit,
             background,
             labels,
+            blend,
             ..
         } = *page;
         let point = unit.millimetres() * POINTS;
@@ -81,6 +84,11 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             opacities: BTreeSet::new(),
             operator: "n",
             labels: labels.clone(),
+            blend: match blend {
+                Blend::Joined | Blend::Normal => None,
+                Blend::Multiply => Some("Multiply"),
+                Blend::Add | Blend::Screen => Some("Screen"),
+            },
         };
         // Positions are in hundredths of a unit of the picture, from its upper left corner, y down.
         let scale = real(point / user_unit / FINE);
@@ -95,6 +103,9 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             let [wide, high] = size.map(|side| u64::from(side) * 100);
             pdf.text(&format!("0 0 {wide} {high} re f\n"));
         }
+        if pdf.blend.is_some() {
+            pdf.text("/Blend gs\n");
+        }
         Ok(pdf)
     }
 
@@ -108,7 +119,9 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             let key = if opacity.of_strokes { "CA" } else { "ca" };
             format!("/{}<</{key} {value}>>", name(*opacity))
         });
-        let resources = format!("<</ExtGState<<{}>>>>", states.collect::<String>());
+        let blend = self.blend.map(|mode| format!("/Blend<</BM/{mode}>>"));
+        let states: String = states.chain(blend).collect();
+        let resources = format!("<</ExtGState<<{states}>>>>");
         let [width, height] = self.page.map(real);
         let user_unit = match self.user_unit {
             1.0 => String::new(),

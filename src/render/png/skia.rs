@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use tiny_skia::{
-    FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, PathSegment, Pixmap, PixmapMut,
-    PixmapPaint, Point, StrokeDash, Transform,
+    BlendMode, FillRule, LineCap, LineJoin, Paint as Ink, PathBuilder, PathSegment, Pixmap,
+    PixmapMut, PixmapPaint, Point, StrokeDash, Transform,
 };
 
 use crate::render::paint::{FINE, Paint, Position, Stroke};
-use crate::style::{Cap, Colour, Join};
+use crate::style::{Blend, Cap, Colour, Join};
 
 use super::split::{ROWS, split};
 
@@ -40,6 +40,8 @@ pub(super) struct Outline {
     is_broken: bool,
     /// First row of the band and first row after it, if the picture is drawn in bands.
     band: Option<[u32; 2]>,
+    /// Whether paths are joined, and covered by others; otherwise each is mixed with those before it.
+    blend: Blend,
     /// Layer that collects the pieces of a translucent path before it is laid over the rest.
     layer: Option<Pixmap>,
 }
@@ -62,6 +64,16 @@ impl Outline {
 
     pub(super) fn begin(&mut self, paint: Paint) {
         self.paint = paint;
+    }
+
+    /// Sets the mixing of paths.
+    pub(super) fn blend_by(&mut self, blend: Blend) {
+        self.blend = blend;
+    }
+
+    /// Returns whether overlapping parts of a path are one area.
+    pub(super) fn is_joined(&self) -> bool {
+        self.blend == Blend::Joined
     }
 
     #[inline]
@@ -150,10 +162,11 @@ impl Outline {
             .or(paint.stroke.map(|stroke| stroke.colour))
             .map_or(255, |colour| colour.rgba()[3]);
         let in_pieces = opacity < 255 && (self.layer.is_some() || !is_whole);
+        let blend = self.blend;
         let draw = |pixmap: &mut Pixmap, paint: &Paint| match self.band {
-            band if is_long => draw_long(pixmap, &path, paint, band, pieces),
-            None => draw(pixmap, &path, paint),
-            Some(rows) => draw_band(pixmap, &path, paint, rows),
+            band if is_long => draw_long(pixmap, &path, (paint, blend), band, pieces),
+            None => draw(pixmap, &path, (paint, blend)),
+            Some(rows) => draw_band(pixmap, &path, (paint, blend), rows),
         };
         if !in_pieces {
             draw(pixmap, &paint);
@@ -188,16 +201,22 @@ fn pixels(position: Position) -> [f32; 2] {
     position.map(|fine| (fine as f64 / FINE) as f32)
 }
 
-fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
+fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, (paint, blend): (&Paint, Blend)) {
     let none = Transform::identity();
     if let Some(fill) = paint.fill {
-        pixmap.fill_path(path, &ink(fill), FillRule::Winding, none, None);
+        pixmap.fill_path(path, &ink(fill, blend), FillRule::Winding, none, None);
     }
     // A stroke of width 0 is empty, not a hairline.
     if let Some(stroke) = paint.stroke
         && stroke.pen.width > 0.0
     {
-        pixmap.stroke_path(path, &ink(stroke.colour), &shape(&stroke), none, None);
+        pixmap.stroke_path(
+            path,
+            &ink(stroke.colour, blend),
+            &shape(&stroke),
+            none,
+            None,
+        );
     }
 }
 
@@ -205,7 +224,7 @@ fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint) {
 fn draw_long(
     pixmap: &mut Pixmap,
     path: &tiny_skia::Path,
-    paint: &Paint,
+    (paint, blend): (&Paint, Blend),
     band: Option<[u32; 2]>,
     pieces: usize,
 ) {
@@ -221,7 +240,7 @@ fn draw_long(
             let part = PixmapMut::from_bytes(bytes, width, rows);
             if let (Some(piece), Some(mut part)) = (piece, part) {
                 let none = Transform::identity();
-                part.fill_path(&piece, &ink(colour), FillRule::Winding, none, None);
+                part.fill_path(&piece, &ink(colour, blend), FillRule::Winding, none, None);
             }
             top += rows;
         }
@@ -232,6 +251,7 @@ fn draw_long(
             ..*paint
         },
         band,
+        blend,
         ..Outline::default()
     };
     let pixel = |point: Point| [point.x, point.y];
@@ -251,11 +271,16 @@ fn draw_long(
 }
 
 /// Draws the part of a path that lies in the given rows of a picture.
-fn draw_band(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint, rows: [u32; 2]) {
+fn draw_band(
+    pixmap: &mut Pixmap,
+    path: &tiny_skia::Path,
+    (paint, blend): (&Paint, Blend),
+    rows: [u32; 2],
+) {
     let none = Transform::identity();
     let mut fill = |path: Option<tiny_skia::Path>, colour| {
         if let Some(path) = path {
-            pixmap.fill_path(&path, &ink(colour), FillRule::Winding, none, None);
+            pixmap.fill_path(&path, &ink(colour, blend), FillRule::Winding, none, None);
         }
     };
     if let Some(colour) = paint.fill {
@@ -269,8 +294,16 @@ fn draw_band(pixmap: &mut Pixmap, path: &tiny_skia::Path, paint: &Paint, rows: [
     }
 }
 
-fn ink(colour: Colour) -> Ink<'static> {
-    let mut ink = Ink::default();
+fn ink(colour: Colour, blend: Blend) -> Ink<'static> {
+    let mut ink = Ink {
+        blend_mode: match blend {
+            Blend::Joined | Blend::Normal => BlendMode::SourceOver,
+            Blend::Multiply => BlendMode::Multiply,
+            Blend::Add => BlendMode::Plus,
+            Blend::Screen => BlendMode::Screen,
+        },
+        ..Ink::default()
+    };
     let [red, green, blue, opacity] = colour.rgba();
     ink.set_color_rgba8(red, green, blue, opacity);
     ink
@@ -366,8 +399,8 @@ mod tests {
         };
         for paint in [fill, both] {
             let [mut whole, mut long] = [(); 2].map(|()| Pixmap::new(80, 60).unwrap());
-            draw(&mut whole, &path, &paint);
-            draw_long(&mut long, &path, &paint, None, 4);
+            draw(&mut whole, &path, (&paint, Blend::Joined));
+            draw_long(&mut long, &path, (&paint, Blend::Joined), None, 4);
             let differences = differences(&whole, &long);
             let sum: u64 = differences.iter().map(|&off| u64::from(off)).sum();
             let mean = sum as f64 / differences.len() as f64;
@@ -388,9 +421,9 @@ mod tests {
             has_holes: false,
         };
         let mut whole = Pixmap::new(80, 60).unwrap();
-        draw_long(&mut whole, &path, &paint, None, 4);
+        draw_long(&mut whole, &path, (&paint, Blend::Joined), None, 4);
         let mut band = Pixmap::new(80, 20).unwrap();
-        draw_long(&mut band, &path, &paint, Some([20, 40]), 3);
+        draw_long(&mut band, &path, (&paint, Blend::Joined), Some([20, 40]), 3);
         assert!(band.data() == &whole.data()[4 * 80 * 20..4 * 80 * 40]);
     }
 }
