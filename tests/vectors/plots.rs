@@ -367,3 +367,51 @@ fn hatching_covers_what_is_visible() {
     assert!((drawn - outlines).abs() < 0.01);
     assert_eq!(plotted.hidden, 2);
 }
+
+#[test]
+fn the_command_line_hatches() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |line: &str| {
+        let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+        let arguments = command.current_dir(folder.path()).args(line.split(' '));
+        let output = arguments.output().unwrap();
+        (
+            output.status.success(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let (is_done, said) = run(
+        "grow pythagoras-squares --steps 6 --plot --hatch 30,120deg --hatch-spacing 2mm -o a.svg",
+    );
+    assert!(
+        is_done && said.contains("hidden in whole or in part"),
+        "{said}"
+    );
+    let svg = std::fs::read_to_string(folder.path().join("a.svg")).unwrap();
+    assert!(svg.contains("--hatch=30deg,120deg") && svg.contains("--hatch-spacing=2mm"));
+    let (is_done, said) = run("grow a.svg --occlude no -o b.hpgl");
+    assert!(is_done && !said.contains("hidden"), "{said}");
+    for (line, expected) in [
+        (
+            "menger --plot --hatch cross -o a.svg",
+            "is not for its faces",
+        ),
+        ("koch --hatch 45deg -o a.svg", "applies to plots"),
+        (
+            "koch --plot --hatch-spacing 1mm -o a.svg",
+            "add --hatch 45deg",
+        ),
+        (
+            "koch --plot --hatch tartan -o a.svg",
+            "or cross, or contour",
+        ),
+        ("koch --plot --occlude maybe -o a.svg", "expected yes or no"),
+        (
+            "koch --plot --hatch cross --hatch-spacing 0 -o a.svg",
+            "at least 0.1 pixels",
+        ),
+    ] {
+        let (is_done, said) = run(&format!("grow {line}"));
+        assert!(!is_done && said.contains(expected), "{line}: {said}");
+    }
+}

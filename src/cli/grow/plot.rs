@@ -29,13 +29,13 @@ pub(super) struct PlotArguments {
     /// pen each if they are no more than eight; otherwise there is one pen for all.
     #[arg(long, value_name = "N", value_parser = pens)]
     pens: Option<NonZero<usize>>,
-    /// Whether filled shapes of a plot hide what lies under them [default: yes]
+    /// Whether filled shapes of a plot of the plane hide what lies under them [default: yes]
     ///
     /// Shapes hide by the order of the picture: later elements lie above earlier ones, and fills that are not opaque hide
     /// nothing. `no` draws all outlines.
     #[arg(long, value_name = "YES|NO", value_parser = yes_or_no)]
     occlude: Option<bool>,
-    /// Hatches the fills of a plot: 45deg, 30,120, cross or contour
+    /// Hatches the fills of a plot of the plane: 45deg, 30,120, cross or contour
     ///
     /// Angles are those of parallel lines, counter-clockwise from the horizontal; `cross` stands for 45,135, and `contour` for
     /// lines inside the outlines at equal distances from them. Hatching has the colour of the fill; fills in the colour of the
@@ -63,9 +63,13 @@ impl PlotArguments {
     }
 
     /// Returns the options that apply to plots only, and whether they are given.
-    pub(super) fn of_plots(&self) -> [(&'static str, bool); 4] {
+    pub(super) fn of_plots(&self) -> impl Iterator<Item = (&'static str, bool)> {
+        { [("--pens", self.pens.is_some())].into_iter() }.chain(self.of_areas())
+    }
+
+    /// Returns the options of filled areas in plots, and whether they are given.
+    pub(super) fn of_areas(&self) -> [(&'static str, bool); 3] {
         [
-            ("--pens", self.pens.is_some()),
             ("--occlude", self.occlude.is_some()),
             ("--hatch", self.hatch.is_some()),
             ("--hatch-spacing", self.hatch_spacing.is_some()),

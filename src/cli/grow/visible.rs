@@ -45,7 +45,9 @@ pub(super) fn draw(
             ": turn it with --from and --up",
         ),
     ];
-    for (option, is_asked, instead) in refused {
+    // Its plots have the visible edges, without areas.
+    let of_areas = { plot.of_areas() }.map(|(option, is_asked)| (option, is_asked, ""));
+    for (option, is_asked, instead) in refused.into_iter().chain(of_areas) {
         if is_asked {
             let message =
                 format!("{name} lies in space, and {option} is not for its faces{instead}");
@@ -80,7 +82,6 @@ pub(super) fn draw(
         unit: size.unit,
         plot: plot.is_asked(),
         pens: plot.pens(picture),
-        hatch: plot.hatch(size.unit),
         machine: plot.machine(),
         drawn: arguments.drawn.unwrap_or(1.0),
         threads: growth.threads(),

@@ -67,12 +67,7 @@ pub fn write_visible(
     let visible = Visible::of(graph, growth, options, space)?;
     let size = visible.size;
     let elements = visible.elements;
-    // Its polygons hide one another already.
-    let options = Options {
-        occlude: false,
-        ..options.clone()
-    };
-    let plotted = write_in(&visible, &options, growth.cancel, out)?;
+    let plotted = write_in(&visible, options, growth.cancel, out)?;
     Ok(Picture {
         size,
         window: None,
