@@ -20,7 +20,7 @@ pub(super) struct PlotArguments {
     ///
     /// No edge is drawn twice, strokes whose ends meet are merged, and the strokes are ordered for short
     /// pen-up travel. Filled shapes become outlines that hide what lies under them, and each pen is a layer. All
-    /// strokes are held in memory, up to about 200 bytes per element, which --max-elements limits.
+    /// strokes are held in memory, about 200 bytes per line and 1 kB per filled shape, which --max-elements limits.
     #[arg(long)]
     plot: bool,
     /// Largest number of pens of a plot; similar colours share one

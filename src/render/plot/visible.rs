@@ -1,5 +1,7 @@
 //! Visible lines of a plot: the parts of strokes that no area hides, and hatching.
 
+use std::io;
+
 use crate::geometry::DVec2;
 use crate::render::error::RenderError;
 use crate::render::paint::{FINE, position};
@@ -13,6 +15,9 @@ use super::strokes::Strokes;
 /// Length below which a remaining part of a stroke is left out, in positions.
 const SPECK: f64 = 8.0;
 
+/// Limit of the number of lines of a hatching, which are held in memory.
+const MAX_HATCH_LINES: usize = 20_000_000;
+
 /// Lines of a plot, processed from the top down.
 pub(super) struct Visible<'a> {
     pub(super) points: &'a mut Points,
@@ -23,6 +28,8 @@ pub(super) struct Visible<'a> {
     pub(super) hidden: u64,
     /// Visible part of a stroke so far.
     part: Vec<Point>,
+    /// Number of lines of the hatching.
+    hatch_lines: usize,
 }
 
 impl<'a> Visible<'a> {
@@ -41,6 +48,7 @@ impl<'a> Visible<'a> {
             strokes: vec![Strokes::default(); layers.len()],
             hidden: 0,
             part: Vec::new(),
+            hatch_lines: 0,
         };
         let mut left: Vec<_> = layers.iter().map(Strokes::len).collect();
         for turn in areas.turns().iter().rev() {
@@ -129,6 +137,13 @@ impl<'a> Visible<'a> {
             HatchPattern::Contour => {
                 super::contours::contours(area, spacing, |line| lines.push(line.to_vec()));
             }
+        }
+        self.hatch_lines += lines.len();
+        if self.hatch_lines > MAX_HATCH_LINES {
+            let message = format!(
+                "the hatching has more than {MAX_HATCH_LINES} lines; a larger spacing has fewer"
+            );
+            return Err(io::Error::other(message).into());
         }
         // The order of strokes is reversed.
         for line in lines.into_iter().rev() {
