@@ -1,5 +1,6 @@
 //! Styles and views: strokes, fills, colours by class, the visible window, and cameras in space.
 
+mod blend;
 mod camera;
 mod light;
 mod palette;
@@ -11,6 +12,7 @@ use std::fmt;
 
 use crate::geometry::{DVec3, Homothety};
 
+pub use blend::Blend;
 pub use camera::{Camera, CameraError};
 pub use light::{Light, Shade};
 pub use palette::{Palette, UnknownPalette};
@@ -314,33 +316,6 @@ pub struct Style {
     pub color_range: Option<[f64; 2]>,
     /// Tubes that the lines of a turtle in space are drawn as; lines without a width if `None`.
     pub tube: Option<Tube>,
-}
-
-/// Mixing of the colours of elements that overlap (W3C, Compositing and Blending). Connected lines of one colour are one element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Blend {
-    /// Successive elements of one colour are one area: where they overlap, a colour that is not opaque does not add up.
-    #[default]
-    Joined,
-    /// Each element covers those before it.
-    Normal,
-    /// Channels are multiplied: darker.
-    Multiply,
-    /// Channels are added: lighter. PDF has no such mode, and mixes by [`Blend::Screen`].
-    Add,
-    /// Differences from white are multiplied: lighter.
-    Screen,
-}
-
-impl Named for Blend {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("joined", Self::Joined),
-        ("normal", Self::Normal),
-        ("multiply", Self::Multiply),
-        ("add", Self::Add),
-        ("screen", Self::Screen),
-    ];
 }
 
 /// Tubes along the lines of a turtle in space: prisms and frusta that join in knobs.

@@ -32,7 +32,7 @@ fn graph() -> Graph {
     Graph::compile(&rule, 0).unwrap()
 }
 
-/// Returns the colours in the middle of the units of the middle row, from the left: under one square, two, three and one.
+/// Returns the colours in the middle of the units of the middle row, from the left: under one square, two, two and one.
 fn row(options: &Options) -> [[u8; 4]; 4] {
     let drawn = pixels(&graph(), &Growth::steps(0), options).unwrap();
     let bytes = drawn.into_straight();
@@ -41,7 +41,6 @@ fn row(options: &Options) -> [[u8; 4]; 4] {
 
 #[test]
 fn overlapping_elements_are_mixed() {
-    // Channels from 0 to 255, after one, two and two squares, the last after the first of the row above.
     let mixed = |fill: &str, blend: Blend| {
         row(&options(fill, blend)).map(|pixel| [pixel[0], pixel[1], pixel[2]])
     };

@@ -46,7 +46,7 @@ use plot::PlotArguments;
 use pyramid::PyramidArguments;
 use scene::SceneArguments;
 use svg::SvgArguments;
-use tile::{TileArguments, Tiled};
+use tile::TileArguments;
 use zoom::ZoomArguments;
 
 /// Grows a rule and draws it, or lists its elements
@@ -484,21 +484,6 @@ impl Arguments {
                 start.elapsed().as_secs_f64(),
             ));
         }
-    }
-
-    /// Returns the copies of a set in the picture, if they are asked for.
-    fn tiled(&self, loaded: &Loaded, goal: Goal) -> Result<Option<Tiled>, Failure> {
-        if !self.tile.is_asked() {
-            return Ok(None);
-        }
-        let steps = match goal {
-            Goal::Steps(steps, _) => Some(steps),
-            Goal::Detail(_) => None,
-        };
-        let graph = loaded.compile(goal.steps())?;
-        let view = self.view(loaded.model.metadata());
-        let growth = (steps, self.growth.seed.first());
-        self.tile.tiled(&graph, growth, &view, self.size.size)
     }
 
     /// Returns the view of the picture. That of a file shows its set, and none of the copies.

@@ -209,6 +209,15 @@ impl Arguments {
         [self.rule.clone()].into_iter().chain(further).collect()
     }
 
+    /// Returns the format of a sheet of pixels: PNG, unless another is asked for.
+    fn format_of_pixels(&self) -> Result<render::Format, Failure> {
+        let path = self.output.as_deref();
+        match (self.format, path.filter(|path| *path != Path::new("-"))) {
+            (None, None) => Ok(render::Format::Png),
+            (asked, path) => format::choose(asked, path),
+        }
+    }
+
     /// Returns the output file.
     fn path(&self, extension: &str) -> PathBuf {
         let default = || match self.further.is_empty() {

@@ -23,6 +23,7 @@ pub(super) fn draw<'w>(
         surface,
         paint: Paint::default(),
         is_open: false,
+        failed: Ok(()),
     };
     drawing.draw(&mut separator, team)
 }
@@ -34,10 +35,20 @@ struct Separator<'s, S> {
     paint: Paint,
     /// Whether the surface has an open path.
     is_open: bool,
+    /// Error between two subpaths, which is returned at the next opportunity.
+    failed: io::Result<()>,
 }
 
 impl<S: Surface> Separator<'_, S> {
+    /// Begins a path with the paint of the current one.
+    fn next_path(&mut self) -> io::Result<()> {
+        self.close_path()?;
+        self.is_open = true;
+        self.surface.begin(&self.paint)
+    }
+
     fn close_path(&mut self) -> io::Result<()> {
+        std::mem::replace(&mut self.failed, Ok(()))?;
         match std::mem::take(&mut self.is_open) {
             true => self.surface.end(),
             false => Ok(()),
@@ -57,10 +68,7 @@ impl<S: Surface> Surface for Separator<'_, S> {
 
     fn move_to(&mut self, to: Position) {
         if !self.paint.has_holes {
-            // Errors of writing come again with the next path, or with its end.
-            let _ = self.close_path();
-            let _ = self.surface.begin(&self.paint);
-            self.is_open = true;
+            self.failed = self.next_path();
         }
         self.surface.move_to(to);
     }

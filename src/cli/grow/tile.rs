@@ -1,6 +1,7 @@
 //! `kfrac grow --tile`: wallpapers and friezes of a picture.
 
 use crate::extent::bounding_box;
+use crate::fractal::Goal;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::graph::{CompileError, Graph};
 use crate::grow::Growth;
@@ -11,6 +12,7 @@ use crate::symmetry::{Tiling, TilingGroup};
 
 use super::super::rule::Loaded;
 use super::super::{Failure, number, picture};
+use super::Arguments;
 
 /// Options of tilings.
 #[derive(clap::Args, Clone)]
@@ -158,4 +160,21 @@ fn extent(graph: &Graph, steps: u32, seed: u64) -> Option<Bounds> {
 
 fn explained(error: NoRoom) -> Failure {
     anyhow::Error::new(error).into()
+}
+
+impl Arguments {
+    /// Returns the copies of a set in the picture, if they are asked for.
+    pub(super) fn tiled(&self, loaded: &Loaded, goal: Goal) -> Result<Option<Tiled>, Failure> {
+        if !self.tile.is_asked() {
+            return Ok(None);
+        }
+        let steps = match goal {
+            Goal::Steps(steps, _) => Some(steps),
+            Goal::Detail(_) => None,
+        };
+        let graph = loaded.compile(goal.steps())?;
+        let view = self.view(loaded.model.metadata());
+        let growth = (steps, self.growth.seed.first());
+        self.tile.tiled(&graph, growth, &view, self.size.size)
+    }
 }

@@ -1,6 +1,5 @@
 //! Sheets of random iteration.
 
-use std::path::Path;
 use std::time::Instant;
 
 use crate::figure::sheet::{Fit, write_pixels};
@@ -11,7 +10,7 @@ use crate::style::View;
 use super::super::chaos::{GameArguments, PlaneGame};
 use super::super::labels::labels_of_rules;
 use super::super::steps::Several;
-use super::super::{Failure, format, output, readable};
+use super::super::{Failure, output, readable};
 use super::Arguments;
 use super::contents::Contents;
 
@@ -80,13 +79,7 @@ impl Arguments {
 
     /// Refuses formats and options that points do not have.
     fn refuse_of_elements(&self) -> Result<(), Failure> {
-        let path = self.output.as_deref();
-        let path = path.filter(|path| *path != Path::new("-"));
-        let asked = match (self.format, path) {
-            (None, None) => Format::Png,
-            (asked, path) => format::choose(asked, path)?,
-        };
-        if asked != Format::Png {
+        if self.format_of_pixels()? != Format::Png {
             let message = "--method chaos draws points: write a .png";
             return Err(Failure::Usage(message.into()));
         }

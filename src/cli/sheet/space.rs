@@ -1,6 +1,5 @@
 //! Sheets of sets in space.
 
-use std::path::Path;
 use std::time::Instant;
 
 use anyhow::anyhow;
@@ -12,7 +11,7 @@ use crate::style::{Named, Style};
 
 use super::super::labels::labels_of_rules;
 use super::super::steps::{self, Several};
-use super::super::{Failure, format, output, readable};
+use super::super::{Failure, output, readable};
 use super::contents::Contents;
 use super::{Arguments, DrawnSheet};
 
@@ -124,12 +123,7 @@ impl Arguments {
 
     /// Refuses formats and options that sets in space do not have.
     fn refuse_of_plane(&self, name: &str) -> Result<(), Failure> {
-        let path = self.output.as_deref();
-        let path = path.filter(|path| *path != Path::new("-"));
-        let asked = match (self.format, path) {
-            (None, None) => Format::Png,
-            (asked, path) => format::choose(asked, path)?,
-        };
+        let asked = self.format_of_pixels()?;
         if asked != Format::Png {
             let asked = asked.name();
             let message = format!("{name} lies in space, and is drawn as .png, not as .{asked}");

@@ -30,7 +30,7 @@ impl Hatch {
     /// Least distance of lines, in units of the picture.
     pub const LEAST_SPACING: f64 = 0.1;
 
-    /// Returns a hatching with parallel lines in directions in degrees; a spacing below the least is raised to it.
+    /// Returns a hatching; a spacing below [`Hatch::LEAST_SPACING`] is raised to it.
     #[must_use]
     pub fn new(pattern: HatchPattern, spacing: f64) -> Self {
         Self {

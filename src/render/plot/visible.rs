@@ -20,12 +20,12 @@ const MAX_HATCH_LINES: usize = 20_000_000;
 
 /// Lines of a plot, processed from the top down.
 pub(super) struct Visible<'a> {
-    pub(super) points: &'a mut Points,
-    pub(super) occlusion: Occlusion,
+    points: &'a mut Points,
+    occlusion: Occlusion,
     /// Strokes of each layer, in reverse order.
     strokes: Vec<Strokes>,
     /// Number of edges that are hidden, in whole or in part.
-    pub(super) hidden: u64,
+    hidden: u64,
     /// Visible part of a stroke so far.
     part: Vec<Point>,
     /// Number of lines of the hatching.
@@ -33,7 +33,8 @@ pub(super) struct Visible<'a> {
 }
 
 impl<'a> Visible<'a> {
-    /// Removes from the strokes of each layer the parts that areas hide, and hatches areas.
+    /// Removes from the strokes of each layer the parts that areas hide, and hatches areas. Returns the number of edges that
+    /// are hidden, in whole or in part. `size` is the longer side of the picture, in positions.
     pub(super) fn find(
         layers: &mut [Strokes],
         areas: &Areas,
@@ -159,6 +160,6 @@ impl<'a> Visible<'a> {
 
     fn point(&mut self, place: DVec2) -> Result<Point, RenderError> {
         let point = self.points.at(position(place));
-        Ok(point.ok_or_else(super::too_many_points)?)
+        Ok(point.ok_or_else(super::plotter::too_many_points)?)
     }
 }
