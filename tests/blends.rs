@@ -123,18 +123,7 @@ fn files_and_the_command_line_have_blend_modes() {
     let folder = folder.path();
     let text = format!("{SQUARES}style: {{fill: teal, blend: multiply}}\nsteps: 0\n");
     std::fs::write(folder.join("squares.yaml"), text).unwrap();
-    let run = |line: &str| {
-        let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
-        let output = command
-            .current_dir(folder)
-            .args(line.split(' '))
-            .output()
-            .unwrap();
-        (
-            output.status.success(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
-    };
+    let run = |line: &str| common::run(folder, line);
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     assert!(run("grow squares.yaml -o a.svg -q").0);
     assert!(read("a.svg").contains("mix-blend-mode:multiply"));

@@ -1,11 +1,8 @@
 //! Hits: pictures of the numbers of elements that cover pixels.
 
 use std::num::NonZero;
-use std::path::Path;
 
-use assert_cmd::Command;
-
-use crate::common;
+use crate::common::{self, run};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{Options, Size, Tone, pixels};
@@ -94,19 +91,6 @@ fn edges_of_one_curve_add_up() {
     assert!(faint > 2000, "{faint} pixels of single edges are fainter");
     options.threads = NonZero::new(3).unwrap();
     assert!(draw(&options).into_straight() == bytes);
-}
-
-fn run(folder: &Path, line: &str) -> (bool, String) {
-    let mut command = Command::cargo_bin("kfrac").unwrap();
-    let output = command
-        .current_dir(folder)
-        .args(line.split(' '))
-        .output()
-        .unwrap();
-    (
-        output.status.success(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
 }
 
 #[test]

@@ -157,3 +157,12 @@ pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     }
     found
 }
+
+/// Runs a command line in a folder; returns whether it succeeds, and its messages.
+pub(crate) fn run(folder: &Path, line: &str) -> (bool, String) {
+    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+    let command = command.current_dir(folder).args(line.split(' '));
+    let output = command.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    (output.status.success(), said)
+}

@@ -371,15 +371,7 @@ fn hatching_covers_what_is_visible() {
 #[test]
 fn the_command_line_hatches() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |line: &str| {
-        let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
-        let arguments = command.current_dir(folder.path()).args(line.split(' '));
-        let output = arguments.output().unwrap();
-        (
-            output.status.success(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
-    };
+    let run = |line: &str| common::run(folder.path(), line);
     let (is_done, said) = run(
         "grow pythagoras-squares --steps 6 --plot --hatch 30,120deg --hatch-spacing 2mm -o a.svg",
     );
