@@ -189,7 +189,7 @@ impl<'a> Estimator<'a> {
     /// Returns the number of classes of colour, each of which takes a walk; at most 64.
     fn classes(&self, step: u32, fractals: f64) -> f64 {
         let classes = match self.options.style.color_by.property() {
-            ColorProperty::Uniform | ColorProperty::Tint => 1.0,
+            ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => 1.0,
             ColorProperty::Fractal => fractals,
             ColorProperty::Index => 64.0,
             ColorProperty::Step | ColorProperty::Age => f64::from(step) + 1.0,

@@ -2,7 +2,7 @@
 
 use crate::expression::Program;
 use crate::geometry::Homothety;
-use crate::style::{SpaceView, Style, View};
+use crate::style::{DensityView, SpaceView, Style, View};
 use crate::symmetry::Symmetry;
 
 /// Maximum number of steps that a file may propose.
@@ -73,6 +73,8 @@ pub struct Metadata {
     pub view: View,
     /// View of a set in space.
     pub space: SpaceView,
+    /// Hits of pixels, as they are drawn in a PNG.
+    pub density: DensityView,
 }
 
 impl Metadata {

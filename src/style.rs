@@ -2,6 +2,8 @@
 
 mod blend;
 mod camera;
+mod color_by;
+mod density;
 mod light;
 mod palette;
 mod similar;
@@ -10,10 +12,13 @@ mod space;
 
 use std::fmt;
 
-use crate::geometry::{DVec3, Homothety};
+use crate::geometry::{DVec2, DVec3, Homothety};
 
 pub use blend::Blend;
 pub use camera::{Camera, CameraError};
+pub use color_by::ColorBy;
+pub(crate) use color_by::ColorProperty;
+pub use density::{DensityView, Method, Tone};
 pub use light::{Light, Shade};
 pub use palette::{Palette, UnknownPalette};
 #[cfg(feature = "cli")]
@@ -152,80 +157,6 @@ pub enum Join {
     Miter,
 }
 
-/// Attribute of an element that determines its colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ColorBy {
-    /// No attribute: all elements have one colour.
-    #[default]
-    None,
-    /// Step in which the element was born.
-    Step,
-    /// Age of the element's fractal.
-    Age,
-    /// Number of the element's fractal.
-    Fractal,
-    /// Rank of the element in its fractal.
-    Index,
-    /// Generator from which the element comes; the initiator counts as the first class.
-    Generator,
-    /// Direction of the element.
-    Direction,
-    /// The map of a system that is applied first (innermost).
-    FirstMap,
-    /// The map of a system that is applied last (outermost), which shows the tiling.
-    LastMap,
-    /// Number of hits of a pixel in random iteration. Approximants are drawn in one colour.
-    Hits,
-    /// Tints of the objects of a structure, or colours that the turtle of an L-system sets.
-    Tint,
-    /// In space: the height of the normal of a face, from downwards to upwards. In the plane there is one colour.
-    Normal,
-}
-
-/// Property that determines the class of an element by colour: all that rooms beside `render::Classes` need to know of a
-/// [`ColorBy`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ColorProperty {
-    /// There is one class.
-    Uniform,
-    /// There is one class, and objects have colours of their own.
-    Tint,
-    Step,
-    Age,
-    Fractal,
-    Index,
-    /// The object of the graph.
-    Object,
-    Direction,
-}
-
-impl ColorBy {
-    /// Returns the property on which the class of an element depends.
-    #[inline]
-    pub(crate) fn property(self) -> ColorProperty {
-        match self {
-            Self::None | Self::Hits | Self::Normal => ColorProperty::Uniform,
-            Self::Tint => ColorProperty::Tint,
-            Self::Step => ColorProperty::Step,
-            Self::Age => ColorProperty::Age,
-            Self::Fractal => ColorProperty::Fractal,
-            Self::Index => ColorProperty::Index,
-            Self::Generator | Self::FirstMap | Self::LastMap => ColorProperty::Object,
-            Self::Direction => ColorProperty::Direction,
-        }
-    }
-
-    /// Returns whether the colours of elements come from the palette.
-    #[must_use]
-    pub fn takes_palette(self) -> bool {
-        !matches!(
-            self.property(),
-            ColorProperty::Uniform | ColorProperty::Tint
-        )
-    }
-}
-
 /// Enumerations whose variants have names in files and on the command line.
 pub trait Named: Sized + Copy + 'static {
     /// All variants with their names.
@@ -269,23 +200,6 @@ impl Named for Join {
     ];
 }
 
-impl Named for ColorBy {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("none", Self::None),
-        ("step", Self::Step),
-        ("age", Self::Age),
-        ("fractal", Self::Fractal),
-        ("index", Self::Index),
-        ("generator", Self::Generator),
-        ("direction", Self::Direction),
-        ("first-map", Self::FirstMap),
-        ("last-map", Self::LastMap),
-        ("hits", Self::Hits),
-        ("tint", Self::Tint),
-        ("normal", Self::Normal),
-    ];
-}
-
 /// Appearance of elements.
 ///
 /// Open base elements are stroked. Closed base elements are filled with the colour of their class, or
@@ -311,8 +225,9 @@ pub struct Style {
     pub color_by: ColorBy,
     /// Palette of the classes.
     pub palette: Palette,
-    /// Steps, or ages, of the first and of the last colour of the palette, where colours are by step or age; 0 and the
-    /// last one of the picture if `None`.
+    /// Values of the first and of the last colour of the palette, where colours are by step, age, angle, length or place: in degrees
+    /// or in the units of the plane. `None` is 0 and the last step or age, a full turn, the lengths of the shortest and the
+    /// longest element, or the sides of the picture.
     pub color_range: Option<[f64; 2]>,
     /// Tubes that the lines of a turtle in space are drawn as; lines without a width if `None`.
     pub tube: Option<Tube>,
@@ -397,6 +312,21 @@ impl Style {
         Self {
             stroke: self.stroke.filter(|_| self.fill.is_some()).or(Some(colour)),
             color_by: ColorBy::None,
+            ..self
+        }
+    }
+
+    /// Returns the style in the coordinates that the homothety maps to those of this style.
+    #[must_use]
+    pub(crate) fn within(self, place: &Homothety) -> Self {
+        let within = |end: f64| match self.color_by {
+            ColorBy::X => place.origin_of(DVec2::new(end, 0.0)).x,
+            ColorBy::Y => place.origin_of(DVec2::new(0.0, end)).y,
+            ColorBy::Length | ColorBy::Distance => end / place.ratio(),
+            _ => end,
+        };
+        Self {
+            color_range: self.color_range.map(|range| range.map(within)),
             ..self
         }
     }

@@ -9,7 +9,7 @@ use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilde
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
-use kfrac::style::{Blend, Cap, Colour, Palette, Style, View, Width};
+use kfrac::style::{Blend, Cap, Colour, DensityView, Method, Palette, Style, Tone, View, Width};
 
 const SEGMENT: [(i32, i32); 2] = [(0, 0), (1, 0)];
 
@@ -200,7 +200,7 @@ generators:
       sway: uniform(-tilt, tilt)
       size: choice(0.5, 0.75)
     move:
-      - {rotate: sway, scale: [size, 0.5], shift: [0, 0.25], about: [0.5, 0.5], points: [1, 2]}
+      - {rotate: sway, scale: [size, 0.5], translate: [0, 0.25], about: [0.5, 0.5], points: [1, 2]}
       - {scale: 0.75, points: all}
     parts:
       - connected: false
@@ -218,6 +218,7 @@ select:
   - {use: grow}
 style: {stroke: teal, fill: "#11223344", background: white, width: {relative: 0.1}, cap: butt, join: bevel, blend: screen, color_by: age, palette: ["#000000", "#ff000080"], color_range: [0, 6.5]}
 view: {window: [-1, -1, 3, 2.5], margin: 4}
+density: {method: chaos, points: 2500k, tone: linear, gamma: 2, oversample: 3, kernel: 4.5}
 "##;
     let cup = BaseElement::new(
         DVec2::ZERO,
@@ -240,7 +241,7 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
             MoveBuilder::new()
                 .rotate("sway")
                 .scale(("size", 0.5))
-                .shift((0, 0.25))
+                .translate((0, 0.25))
                 .about((0.5, 0.5))
                 .points([1, 2]),
         )
@@ -286,7 +287,16 @@ view: {window: [-1, -1, 3, 2.5], margin: 4}
         .view(&View {
             window: Some([-1.0, -1.0, 3.0, 2.5]),
             margin: Some(4.0),
-        });
+        })
+        .density(
+            &DensityView::default()
+                .method(Some(Method::Chaos))
+                .points(Some(2_500_000))
+                .tone(Some(Tone::Linear))
+                .gamma(Some(2.0))
+                .oversample(Some(3))
+                .kernel(Some(4.5)),
+        );
     assert_is_written(text, &rule);
 }
 

@@ -9,8 +9,8 @@ use kfrac::chaos::{
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::grow::Progress;
 use kfrac::ifs::{Condensation, Definition, Edge, Ifs, Map, Moments, Shape};
-use kfrac::render::{Density, Labels, Shades, Tone, write_density};
-use kfrac::style::{Colour, Palette};
+use kfrac::render::{Density, Labels, Shades, write_density};
+use kfrac::style::{Colour, Palette, Tone};
 
 const FERN: [[f64; 7]; 4] = [
     [0.0, 0.0, 0.0, 0.16, 0.0, 0.0, 0.01],

@@ -5,8 +5,8 @@ use std::num::NonZero;
 use crate::common::{self, run};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
-use kfrac::render::{Options, Size, Tone, pixels};
-use kfrac::style::{ColorBy, Colour, Palette, View};
+use kfrac::render::{Options, Size, pixels};
+use kfrac::style::{ColorBy, Colour, Palette, Tone, View};
 
 /// Squares of side 2 from (0, 0), from (1, 1) and, twice, from (2, 0).
 const SQUARES: &str = "initiator:

@@ -108,7 +108,7 @@ fn files_that_are_there_are_kept() {
     );
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(read("a.yaml"), "mine");
-    assert!(read("a-2.yaml").contains("shift"));
+    assert!(read("a-2.yaml").contains("translate"));
     let output = kfrac(folder.path())
         .args(["import", "maps.IFS", "--force"])
         .output()

@@ -100,8 +100,8 @@ impl MoveBuilder {
     }
 
     /// Sets the translation. The default is (0, 0).
-    pub fn shift(self, shift: impl Into<PointText>) -> Self {
-        Self(self.0.set("shift", shift.into().0))
+    pub fn translate(self, translation: impl Into<PointText>) -> Self {
+        Self(self.0.set("translate", translation.into().0))
     }
 
     /// Sets the centre of scaling and rotation. The default is (0, 0).

@@ -65,8 +65,8 @@ impl MapBuilder {
     }
 
     /// Sets the translation that is added last.
-    pub fn shift(self, shift: impl Into<PointText>) -> Self {
-        self.set("shift", shift.into().0)
+    pub fn translate(self, translation: impl Into<PointText>) -> Self {
+        self.set("translate", translation.into().0)
     }
 
     /// Sets the fixed point of the map, as an alternative to a translation.
@@ -91,6 +91,6 @@ impl MapBuilder {
 impl From<DAffine2> for MapBuilder {
     fn from(map: DAffine2) -> Self {
         let rows = map.matrix2.transpose();
-        Self::matrix([rows.x_axis, rows.y_axis]).shift(map.translation)
+        Self::matrix([rows.x_axis, rows.y_axis]).translate(map.translation)
     }
 }

@@ -55,6 +55,11 @@ macro_rules! of_all_kinds {
             self.set("symmetry", written::symmetry(symmetry))
         }
 
+        /// Sets how hits of pixels are drawn in a PNG.
+        pub fn density(self, density: &crate::style::DensityView) -> Self {
+            self.set("density", written::density(density).value())
+        }
+
         /// Sets the view: the window and the margin.
         pub fn view(self, view: &View) -> Self {
             self.set("view", written::view(view).value())

@@ -65,8 +65,8 @@
 //!
 //! let stem = SetBuilder::segment((0, 0), (0, 1));
 //! let system = SystemBuilder::new()
-//!     .map(MapBuilder::scale(0.6).rotate(40).shift((0, 1)))
-//!     .map(MapBuilder::scale(0.6).rotate(-40).shift((0, 1)))
+//!     .map(MapBuilder::scale(0.6).rotate(40).translate((0, 1)))
+//!     .map(MapBuilder::scale(0.6).rotate(-40).translate((0, 1)))
 //!     .condensation(stem.clone())
 //!     .build()?;
 //! let twig = |angle| InstanceBuilder::of("tree").scale(0.6).rotate(angle).translate((0, 1));

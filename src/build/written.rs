@@ -4,7 +4,7 @@ use crate::document::node::{Key, Node, Value};
 use crate::geometry::{DVec2, DVec3};
 use crate::metadata::Description;
 use crate::rule::{BaseElement, Piece};
-use crate::style::{Colour, Named, Palette, SpaceView, Style, Tube, View, Width};
+use crate::style::{Colour, DensityView, Named, Palette, SpaceView, Style, Tube, View, Width};
 use crate::symmetry::Symmetry;
 
 use super::{NumberText, PointText};
@@ -165,6 +165,20 @@ fn palette(palette: &Palette) -> Value {
     } else {
         sequence(palette.colours().iter().copied().map(colour_text))
     }
+}
+
+/// Returns the entries of a density that are given.
+pub(crate) fn density(density: &DensityView) -> Entries {
+    let number = |value: f64| NumberText::from(value).0;
+    let name = |name: &str| Value::Text(name.into());
+    let points = { density.points }.map(|points| Value::Text(points.to_string()));
+    Entries::default()
+        .set_some("method", density.method.map(|it| name(it.name())))
+        .set_some("points", points)
+        .set_some("tone", density.tone.map(|it| name(it.name())))
+        .set_some("gamma", density.gamma.map(number))
+        .set_some("oversample", density.oversample.map(|it| number(it.into())))
+        .set_some("kernel", density.kernel.map(number))
 }
 
 /// Returns the entries of a view that differ from the defaults.

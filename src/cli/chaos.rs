@@ -21,8 +21,8 @@ use crate::geometry::{DVec3, Homothety};
 use crate::grow::Progress;
 use crate::ifs::{PointOf, System, Verdict};
 use crate::metadata::Metadata;
-use crate::render::{RenderError, Tone};
-use crate::style::{ColorBy, Named};
+use crate::render::RenderError;
+use crate::style::{ColorBy, DensityView, Method, Named, Tone};
 
 use super::growth::GrowthArguments;
 use super::picture::{self, PictureArguments};
@@ -34,12 +34,12 @@ use super::{Failure, number};
 #[derive(clap::Args, Clone)]
 #[command(next_help_heading = "Random iteration")]
 pub(super) struct ChaosArguments {
-    /// Method of iteration of a system of maps: all compositions of maps, or a random walk
+    /// Method of iteration of a system of maps: all compositions of maps, or a random walk [default: deterministic]
     ///
     /// Random iteration (the chaos game) moves a point by one map after the other, chosen at random by their
     /// weights, and draws every point that it reaches. It produces PNGs, and tables of points.
-    #[arg(long, value_parser = picture::named::<Method>(), default_value = "deterministic")]
-    method: Method,
+    #[arg(long, value_parser = picture::named::<Method>())]
+    method: Option<Method>,
     /// Number of points to draw: 500k, 10M, 2G [default: 10M; 100k for tables]
     #[arg(long, value_name = "N", value_parser = points_of_text, allow_negative_numbers = true)]
     points: Option<u64>,
@@ -49,6 +49,17 @@ pub(super) struct ChaosArguments {
     /// --palette or --color-by hits.
     #[arg(long, value_parser = picture::named::<Tone>())]
     tone: Option<Tone>,
+    /// Exponent of tones, which are raised to its inverse: the larger, the better few hits are shown [default: 1]
+    #[arg(long, value_name = "G", value_parser = gamma)]
+    gamma: Option<f64>,
+    /// Number of bins across a pixel of random iteration, whose colours are averaged [default: 1]
+    #[arg(long, value_name = "N", value_parser = number::whole("a number of bins", 1..=DensityView::MAX_OVERSAMPLE))]
+    oversample: Option<u32>,
+    /// Radius in pixels over which a point that is alone is spread, so that thin parts are smooth [default: none]
+    ///
+    /// The radius is that of flam3's density estimation: for n points in a pixel, it is less by the factor n^(-2/5).
+    #[arg(long, value_name = "PX", value_parser = kernel)]
+    kernel: Option<f64>,
     /// Start of the walks, if not on the attractor; the way there is drawn; may be given several times
     #[arg(long, value_name = "X,Y[,Z]", value_parser = start, allow_hyphen_values = true)]
     start: Vec<StartPoint>,
@@ -66,20 +77,6 @@ pub(super) struct GameArguments<'a> {
     /// Number of steps, for colours by the first map.
     pub(super) steps: Option<u32>,
     pub(super) seed: u64,
-}
-
-/// Method of iteration of a system of maps.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Method {
-    Deterministic,
-    Chaos,
-}
-
-impl Named for Method {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("deterministic", Self::Deterministic),
-        ("chaos", Self::Chaos),
-    ];
 }
 
 /// Start of walks: a point of the plane, which in space lies in z = 0, or of space.
@@ -112,10 +109,56 @@ fn start(text: &str) -> Result<StartPoint, String> {
     place.ok_or_else(|| "expected a point X,Y, or X,Y,Z in space".into())
 }
 
+/// Parses an exponent of tones.
+fn gamma(text: &str) -> Result<f64, String> {
+    above_zero(text, "an exponent", DensityView::MAX_GAMMA)
+}
+
+/// Parses a radius of the kernel.
+fn kernel(text: &str) -> Result<f64, String> {
+    above_zero(text, "a radius in pixels", DensityView::MAX_KERNEL)
+}
+
+fn above_zero(text: &str, what: &str, most: f64) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| *number > 0.0 && *number <= most);
+    number.ok_or_else(|| format!("expected {what} above 0, up to {most}"))
+}
+
 impl ChaosArguments {
+    /// Returns the arguments with the values of a file where none are given. Values for random iteration apply only if that is
+    /// the method.
+    pub(super) fn or(&self, file: DensityView) -> Self {
+        let method = self.method.or(file.method);
+        let file = match method {
+            Some(Method::Chaos) => file,
+            _ => DensityView {
+                points: None,
+                oversample: None,
+                kernel: None,
+                ..file
+            },
+        };
+        Self {
+            method,
+            points: self.points.or(file.points),
+            tone: self.tone.or(file.tone),
+            gamma: self.gamma.or(file.gamma),
+            oversample: self.oversample.or(file.oversample),
+            kernel: self.kernel.or(file.kernel),
+            start: self.start.clone(),
+            walk: self.walk,
+        }
+    }
+
+    /// Returns the method that is given.
+    pub(super) fn method(&self) -> Option<Method> {
+        self.method
+    }
+
     /// Returns whether random iteration is requested.
     pub(super) fn is_asked(&self) -> bool {
-        self.method == Method::Chaos
+        self.method == Some(Method::Chaos)
     }
 
     /// Returns whether a number of points is given.
@@ -139,9 +182,12 @@ impl ChaosArguments {
     fn options(&self, points: u64, color_by: ColorBy, steps: u32) -> Vec<(&'static str, String)> {
         let mut options = vec![("method", Method::Chaos.name().into())];
         options.push(("points", points.to_string()));
-        if let Some(tone) = self.tone {
-            options.push(("tone", tone.name().into()));
-        }
+        options.extend(self.tones());
+        let bins = self
+            .oversample
+            .map(|count| ("oversample", count.to_string()));
+        let kernel = self.kernel.map(|radius| ("kernel", radius.to_string()));
+        options.extend(bins.into_iter().chain(kernel));
         options.extend(self.start.iter().map(|start| ("start", start.to_string())));
         if let Start::Points { steps, .. } = self.start(|_| ()) {
             options.push(("walk", steps.to_string()));
@@ -150,6 +196,36 @@ impl ChaosArguments {
             options.push(("steps", steps.to_string()));
         }
         options
+    }
+
+    /// Returns the options of tones that are given, with their values.
+    pub(super) fn tones(&self) -> Vec<(&'static str, String)> {
+        let tone = self.tone.map(|tone| ("tone", tone.name().to_owned()));
+        let gamma = self.gamma.map(|gamma| ("gamma", gamma.to_string()));
+        tone.into_iter().chain(gamma).collect()
+    }
+
+    /// Returns the exponent of tones.
+    pub(super) fn gamma(&self) -> f64 {
+        self.gamma.unwrap_or(1.0)
+    }
+
+    /// Refuses options of pictures of the plane.
+    fn refuse_in_space(&self) -> Result<(), Failure> {
+        let given = self.of_plane().into_iter().find(|(_, is_given)| *is_given);
+        given.map_or(Ok(()), |(option, _)| {
+            let message = format!("{option} is for pictures of the plane");
+            Err(Failure::Usage(message))
+        })
+    }
+
+    /// Returns the options of pictures of the plane, and whether they are given.
+    fn of_plane(&self) -> [(&'static str, bool); 3] {
+        [
+            ("--gamma", self.gamma.is_some()),
+            ("--oversample", self.oversample.is_some()),
+            ("--kernel", self.kernel.is_some()),
+        ]
     }
 
     /// Returns the tone that is given for hits of elements.
@@ -163,10 +239,9 @@ impl ChaosArguments {
             return Ok(());
         }
         let tone = self.tone.filter(|_| !has_tone);
-        for (option, is_given) in self
-            .of_points()
-            .into_iter()
-            .chain([("--tone", tone.is_some())])
+        let gamma = self.gamma.filter(|_| self.tone.is_none());
+        for (option, is_given) in { self.of_points().into_iter() }
+            .chain([("--tone", tone.is_some()), ("--gamma", gamma.is_some())])
         {
             if is_given {
                 let message = format!("{option} applies to random iteration: add --method chaos");
@@ -180,9 +255,11 @@ impl ChaosArguments {
     }
 
     /// Returns the options that apply to random iteration only, and whether they are given.
-    fn of_points(&self) -> [(&'static str, bool); 2] {
+    fn of_points(&self) -> [(&'static str, bool); 4] {
         [
             ("--points", self.points.is_some()),
+            ("--oversample", self.oversample.is_some()),
+            ("--kernel", self.kernel.is_some()),
             ("--start", !self.start.is_empty()),
         ]
     }

@@ -361,8 +361,16 @@ impl Arguments {
         Ok(path)
     }
 
-    /// Writes what the plan asks for; returns the path, a summary and the number of bytes.
-    fn grow(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+    /// Writes what the plan asks for, or what the file has drawn where the command line is silent; returns the path, a summary
+    /// and the number of bytes.
+    fn grow(&self, plan: &Plan, loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+        match plan::of_file(self, loaded.model.metadata().density) {
+            Some((arguments, plan)) => arguments.write(&plan, loaded),
+            None => self.write(plan, loaded),
+        }
+    }
+
+    fn write(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
         if let (Some(share), Some(steps)) = (self.between, self.steps()) {
             loaded.model = loaded.model.between(steps, share);
         }

@@ -360,6 +360,9 @@ fn rows<F: Bounded>(
     steps: u32,
     mut estimate: impl FnMut(u32, &Forecast<'_, F>) -> Option<SizeEstimate>,
 ) -> Option<Vec<ForecastRow>> {
+    if graph.is_of_one_step() {
+        return None;
+    }
     let mut forecast = graph.forecast()?;
     let mut rows = Vec::new();
     for step in 0..=steps {

@@ -65,8 +65,9 @@ pub(super) struct PictureArguments {
     #[arg(long, value_name = "PICTURE", value_parser = palette::from_picture, conflicts_with = "palette")]
     #[arg(value_hint = clap::ValueHint::FilePath)]
     palette_from: Option<Palette>,
-    /// Steps of the first and the last colour of --color-by step, or ages of --color-by age, as 0..8 [default: 0 and the
-    /// last one of the picture]
+    /// Values of the first and the last colour: steps, ages, degrees, lengths or coordinates, as 0..8 [default: those of the picture]
+    ///
+    /// Applies to --color-by step, age, angle, length, x, y and distance. Lengths and coordinates are in the rule's units.
     #[arg(long, value_name = "FIRST..LAST", value_parser = ColorRange::parse, allow_hyphen_values = true)]
     color_range: Option<ColorRange>,
 }
@@ -216,7 +217,7 @@ impl PictureArguments {
     }
 }
 
-/// Steps or ages of the first and the last colour of the palette.
+/// Values of the first and the last colour of the palette.
 #[derive(Clone, Copy)]
 struct ColorRange([f64; 2]);
 
@@ -230,7 +231,7 @@ impl ColorRange {
         });
         match ends {
             Some([first, last]) if first < last => Ok(Self([first, last])),
-            _ => Err("expected two steps, the smaller one first, as in 0..8".into()),
+            _ => Err("expected two numbers, the smaller one first, as in 0..8".into()),
         }
     }
 }
@@ -322,6 +323,11 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
             ColorBy::LastMap => "The map that is applied last: the tiling",
             ColorBy::Hits => "The number of hits of random iteration per pixel",
             ColorBy::Tint => "The tints of the objects of a structure",
+            ColorBy::Angle => "In the plane, the angle of the element to the x axis",
+            ColorBy::Length => "In the plane, the length of the element, by equal ratios",
+            ColorBy::X => "In the plane, the place of the element, from left to right",
+            ColorBy::Y => "In the plane, the place of the element, from bottom to top",
+            ColorBy::Distance => "In the plane, the distance of the element from the centre of the picture",
             ColorBy::Normal => "In space, the height of the normal: from faces that look down to those that look up",
         })
     });

@@ -313,6 +313,7 @@ impl Arguments {
             let steps = goals.iter().map(|goal| goal.steps()).max().unwrap_or(0);
             let mut graph = loaded.compile_for(steps, style.color_by)?;
             let view = self.view(loaded).within(graph.place());
+            let style = style.within(graph.place());
             for goal in goals {
                 let cell = |steps| SheetCell {
                     name: contents.caption(individual, goal),

@@ -1,22 +1,23 @@
 //! `kfrac show`: draws a production rule as a figure.
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use clap::ValueHint;
 
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
-use crate::figure::rule;
+use crate::figure::rule::{self, Topology};
 use crate::model::Kind;
 use crate::render::space::Camera;
 use crate::render::{self, Size};
-use crate::style::Named;
+use crate::style::{ColorBy, Named};
 
 use super::component::Component;
 use super::labels::labels;
 use super::picture;
 use super::rule::{Loaded, RuleArguments};
-use super::{Failure, camera, format, help, length, output, text};
+use super::{Failure, camera, format, help, length, number, output, text};
 
 /// Draws a rule as a figure: its components, maps, objects or productions
 ///
@@ -44,10 +45,23 @@ pub(super) struct Arguments {
     /// [default: 30,25]
     #[arg(long, value_name = "AZ,EL", value_parser = camera::direction, allow_hyphen_values = true)]
     from: Option<[f64; 2]>,
+    /// Draws the instancing graph: objects as circles, instances as arrows [default topology: cyclic]
+    ///
+    /// cyclic: objects that instance each other or themselves, as for the limit set. levels: those of each step, down to the base
+    /// elements. tree: a circle for each instance (Hart 1992, figures 1 to 3).
+    #[arg(long, value_name = "TOPOLOGY", value_parser = picture::named::<Topology>())]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "cyclic")]
+    graph: Option<Topology>,
+    /// Number of steps of --graph=levels and --graph=tree [default: 3]
+    #[arg(long, value_name = "N", value_parser = number::whole("a number of steps", 0..=64_u32), requires = "graph")]
+    steps: Option<u32>,
     /// Suppresses all messages except errors
     #[arg(long, short)]
     quiet: bool,
 }
+
+/// Number of steps of graphs where none is given.
+const STEPS: u32 = 3;
 
 const MORE: &str = "\
 Examples:
@@ -57,6 +71,8 @@ Examples:
       Draws a rule with the given parameter, as a PNG on white
   kfrac show menger --from 20,30
       Draws the maps of a system in space as they are seen from a direction
+  kfrac show sierpinski-triangles --graph=levels --steps 3
+      Draws the instancing graph of an approximant, by levels
   kfrac show hilbert-lsystem
       Draws the productions of an L-system
   kfrac show generators/dragon
@@ -79,9 +95,19 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         return Err(camera::in_plane("from", &loaded));
     }
     let alone = component.as_ref().map(Component::shelf);
-    let suffix = alone.map_or("-rule".into(), |shelf| {
-        format!("-{}", shelf.kind().replace('_', "-"))
-    });
+    if let (Some(_), Some(shelf)) = (arguments.graph, alone) {
+        let message = format!(
+            "--graph draws the graph of a rule, and {} is {}",
+            loaded.name,
+            shelf.noun()
+        );
+        return Err(Failure::Usage(message));
+    }
+    let suffix = match (alone, arguments.graph) {
+        (Some(shelf), _) => format!("-{}", shelf.kind().replace('_', "-")),
+        (None, Some(_)) => "-graph".into(),
+        (None, None) => "-rule".into(),
+    };
     let default = arguments.rule.file(&suffix, format.name());
     let path = arguments.output.as_ref().unwrap_or(&default);
     let options = arguments.options(&loaded, alone, format);
@@ -89,14 +115,20 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let Loaded {
             model, document, ..
         } = &loaded;
-        rule::write(model, document, alone, &options, out)
-            .map_err(|error| output::explain(error, path))
+        match arguments.graph {
+            Some(topology) => arguments.write_graph(&loaded, topology, &options, path, out),
+            None => rule::write(model, document, alone, &options, out)
+                .map_err(|error| output::explain(error, path)),
+        }
     })?;
     if !arguments.quiet {
         text::print_message(&format!(
             "{}: the {} of {}, {width} x {height} pixels, {}",
             output::called(path),
-            alone.map_or_else(|| loaded.model.kind().noun(), Shelf::noun),
+            match arguments.graph {
+                Some(_) => "graph",
+                None => alone.map_or_else(|| loaded.model.kind().noun(), Shelf::noun),
+            },
             loaded.name,
             readable::bytes(bytes),
         ));
@@ -105,6 +137,30 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 impl Arguments {
+    /// Draws the instancing graph.
+    fn write_graph(
+        &self,
+        loaded: &Loaded,
+        topology: Topology,
+        options: &rule::RuleFigureOptions,
+        path: &Path,
+        out: &mut impl Write,
+    ) -> Result<[u32; 2], Failure> {
+        let own = loaded.model.metadata().steps;
+        let steps = match topology {
+            Topology::Cyclic => self.steps.or(own).unwrap_or(STEPS),
+            _ => self.steps.unwrap_or(STEPS),
+        };
+        let written = if loaded.model.is_in_space() {
+            let graph = loaded.drawn_in_space(Some(steps), ColorBy::None)?.graph;
+            rule::write_graph_in_space(&graph, topology, steps, options, out)
+        } else {
+            let graph = loaded.compile_for(steps, ColorBy::None)?;
+            rule::write_graph(&graph, topology, steps, options, out)
+        };
+        written.map_err(|error| output::explain(error, path))
+    }
+
     fn options(
         &self,
         loaded: &Loaded,
@@ -112,6 +168,7 @@ impl Arguments {
         format: render::Format,
     ) -> rule::RuleFigureOptions {
         let shown = match alone {
+            _ if self.graph.is_some() => "The instancing graph".into(),
             Some(shelf) => format!("The {}", shelf.noun()),
             None => match loaded.model.kind() {
                 Kind::Rule => "The production rule".into(),
@@ -129,6 +186,8 @@ impl Arguments {
             .from
             .map(|from| from.map(|it| it.to_string()).join(","));
         options.extend(from.map(|from| ("from", from)));
+        options.extend(self.graph.map(|graph| ("graph", graph.name().into())));
+        options.extend(self.steps.map(|steps| ("steps", steps.to_string())));
         let view = &loaded.model.metadata().space;
         let camera = Camera::default().up(view.up);
         rule::RuleFigureOptions {

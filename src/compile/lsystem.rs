@@ -150,6 +150,7 @@ fn derived<F: TurtleFrame>(
         tints: words.has_colours(),
         draws: !words.is_deterministic(),
         affine: tube.is_some(),
+        only: Some(steps),
         ..Graph::of(strings.objects, outlines, vec![initiator])
     };
     graph.find_widths();

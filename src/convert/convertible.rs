@@ -61,7 +61,7 @@ impl Convertible for DAffine2 {
             entries.set("matrix", matrix(self.matrix2))
         };
         let shift = self.translation;
-        linear.set_some("shift", (shift != DVec2::ZERO).then(|| point(shift)))
+        linear.set_some("translate", (shift != DVec2::ZERO).then(|| point(shift)))
     }
 
     fn placing(&self, master: Entries) -> Entries {
@@ -103,7 +103,7 @@ impl Convertible for DAffine3 {
             None => Entries::default().set("matrix", rows(&self.matrix3)),
         };
         let shift = self.translation;
-        entries.set_some("shift", (shift != DVec3::ZERO).then(|| place(shift)))
+        entries.set_some("translate", (shift != DVec3::ZERO).then(|| place(shift)))
     }
 
     fn placing(&self, master: Entries) -> Entries {

@@ -250,9 +250,10 @@ fn headed(metadata: &Metadata, kind: Kind, own: Entries) -> Entries {
             "hausdorff_dimension",
             metadata.hausdorff_dimension.map(number),
         );
-    let (style, view) = (
+    let (style, view, density) = (
         written::style(&metadata.style),
         written::view(&metadata.view).and(written::space_view(&metadata.space)),
+        written::density(&metadata.density),
     );
     let some = |entries: Entries| (!entries.is_empty()).then(|| entries.value());
     entries
@@ -262,4 +263,5 @@ fn headed(metadata: &Metadata, kind: Kind, own: Entries) -> Entries {
         )
         .set_some("style", some(style))
         .set_some("view", some(view))
+        .set_some("density", some(density))
 }

@@ -3,8 +3,8 @@
 use crate::chaos::Histogram;
 use crate::document::Mode;
 use crate::draws::Path;
-use crate::render::{Levels, Pixels, Tone};
-use crate::style::Palette;
+use crate::render::{Levels, Pixels};
+use crate::style::{Palette, Tone};
 
 use super::random::{below, uniform};
 

@@ -1,6 +1,6 @@
 //! Mappings whose document, checks, reader and schema come from one table of keys.
 
-use crate::style::{Blend, Cap, ColorBy, Colour, Join};
+use crate::style::{Blend, Cap, ColorBy, Colour, Join, Method, Tone};
 
 use super::node::Node;
 use super::reader::{Fields, Reader};
@@ -118,6 +118,8 @@ variants! {
     Join: "join";
     Blend: "blend mode";
     ColorBy: "way to colour";
+    Method: "method";
+    Tone: "tone";
 }
 
 /// Makes a document, the definition of its keys, and its reader from a table: `keys!` with the type of each value

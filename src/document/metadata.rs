@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::diagnostic::{Place, did_you_mean};
 use crate::expression::PARTS;
 use crate::metadata::Description;
-use crate::style::{SpaceView, Style, View};
+use crate::style::{DensityView, SpaceView, Style, View};
 
 use super::symmetry::SymmetryDocument;
 use super::{FilmOption, Written, WrittenNumber};
@@ -33,6 +33,8 @@ pub struct MetadataDocument {
     pub view: View,
     /// View of a set in space.
     pub space: SpaceView,
+    /// Hits of pixels, as they are drawn in a PNG.
+    pub density: DensityView,
     /// Options of the film of the file, in its order.
     pub animation: Vec<FilmOption>,
     /// Names of parameters that ranges of repetitions use.

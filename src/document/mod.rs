@@ -12,6 +12,7 @@ mod animation;
 mod assemble;
 mod data;
 mod dataset;
+mod density;
 mod ifs;
 mod instancing;
 mod lsystem;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Severity, Source, did_you_mean};
-use crate::expression::{Expression, is_name};
+use crate::expression::{Expression, UNIT, is_name};
 use crate::style::Named;
 
 use super::node::{Key, Node, Value};
@@ -267,6 +267,9 @@ impl Reader {
     pub(super) fn point(&mut self, node: &Node) -> WrittenPoint {
         let hint = "a point is written [x, y]";
         let mut point = WrittenPoint::unknown(&node.place);
+        if let Some(complex) = self.complex(node) {
+            return complex;
+        }
         let Value::Sequence(entries) = &node.value else {
             self.mismatch(node, "a point", hint);
             return point;
@@ -313,16 +316,47 @@ impl Reader {
         WrittenPoint::unknown(&node.place)
     }
 
+    /// Reads a formula of complex numbers, such as `s^2` or `1/(2 - i)`; `None` if the value is none. Points in space are lists.
+    pub(super) fn complex(&mut self, node: &Node) -> Option<WrittenPoint> {
+        let Value::Text(text) = &node.value else {
+            return None;
+        };
+        if self.is_in_space {
+            let message = format!("'{text}' is no list of coordinates, and this lies in space");
+            self.error_with_hint(&node.place, message, "write [x, y, z]");
+            return Some(WrittenPoint::unknown(&node.place));
+        }
+        if is_name(text) && text != UNIT {
+            return Some(WrittenPoint::named(text, &node.place));
+        }
+        let number = self.number(node);
+        let place = node.place.clone();
+        let parts = match number.value.complex_parts() {
+            Ok(parts) => parts,
+            Err(error) => {
+                let within = node.within(error.range.clone());
+                self.diagnostics.push(error.at(&within));
+                return Some(WrittenPoint::unknown(&place));
+            }
+        };
+        let [x, y] = parts.map(|value| Written {
+            value,
+            place: place.clone(),
+        });
+        Some(WrittenPoint {
+            x,
+            y,
+            z: None,
+            place,
+        })
+    }
+
     /// Reads a point, or the name of a complex parameter.
     pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<WrittenPoint> {
         let node = node?;
         match &node.value {
-            Value::Text(name) if is_name(name) => Some(WrittenPoint::named(name, &node.place)),
-            Value::Text(text) => {
-                let message = format!("'{text}' is neither a point nor a name");
-                let hint = "write [x, y], or the name of a complex parameter";
-                self.error_with_hint(&node.place, message, hint);
-                Some(WrittenPoint::unknown(&node.place))
+            Value::Text(name) if is_name(name) && name != UNIT => {
+                Some(WrittenPoint::named(name, &node.place))
             }
             _ => Some(self.point(node)),
         }

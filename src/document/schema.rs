@@ -200,10 +200,10 @@ impl Definitions {
                 Object::default().with("anyOf", list(written))
             }
             Form::Point => self.defined("point", |definitions| {
-                definitions.form(&Form::List(&Form::Number, 2, Some(2)))
+                definitions.either(&[Form::List(&Form::Number, 2, Some(2)), Form::Expression])
             }),
             Form::Place => self.defined("place", |definitions| {
-                definitions.form(&Form::List(&Form::Number, 2, Some(3)))
+                definitions.either(&[Form::List(&Form::Number, 2, Some(3)), Form::Expression])
             }),
             Form::List(of, least, most) => {
                 let enough =

@@ -156,6 +156,39 @@ macro_rules! keys {
 
 pub(super) use keys;
 
+/// Words of one meaning, of which a kind of file knows one or two.
+const SYNONYMS: [&[&str]; 13] = [
+    &[
+        "translate",
+        "shift",
+        "move",
+        "offset",
+        "position",
+        "pos",
+        "translation",
+    ],
+    &["rotate", "turn", "rotation", "angle", "rot"],
+    &["scale", "size", "factor", "ratio"],
+    &["weight", "probability", "prob", "chance"],
+    &["maps", "transforms", "functions"],
+    &["generator", "motif"],
+    &["initiator", "axiom", "initial"],
+    &["productions", "rules"],
+    &[
+        "steps",
+        "iterations",
+        "depth",
+        "level",
+        "levels",
+        "order",
+        "generations",
+    ],
+    &["stroke", "color", "colour"],
+    &["width", "thickness", "linewidth", "stroke_width"],
+    &["params", "parameters", "variables", "constants"],
+    &["title", "name", "label"],
+];
+
 impl Shape {
     /// Iterates over the definitions of all keys.
     pub(super) fn members(&self) -> impl Iterator<Item = &'static Member> + Clone + use<> {
@@ -165,6 +198,12 @@ impl Shape {
     /// Iterates over the names of all keys.
     fn names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
         self.members().map(|member| member.name)
+    }
+
+    /// Returns the key that has the meaning of a word of other formats.
+    fn synonym(&self, word: &str) -> Option<&'static str> {
+        let group = { SYNONYMS.iter() }.find(|group| group.contains(&word))?;
+        self.names().find(|known| group.contains(known))
     }
 
     /// Maps keys to known keys. An unknown key is reported and mapped to the nearest known key if that
@@ -181,7 +220,7 @@ impl Shape {
             if let Some(known) = self.names().find(|known| is(key, known)) {
                 return Some(known);
             }
-            let near = nearest(&key.name, self.names());
+            let near = nearest(&key.name, self.names()).or_else(|| self.synonym(&key.name));
             let hint = match near {
                 Some(near) => format!("did you mean '{near}'?"),
                 None => {

@@ -24,13 +24,13 @@ pub(super) const STYLE: Shape = Shape {
             "How overlapping elements are mixed; if left out, those of one colour are one area.";
         color_by: Form::variant::<ColorBy>(),
             "What the colours of the palette mean: the step of an element's birth, the age or the \
-             number of its fractal, its rank in it, the generator that it comes from, or its \
-             direction.";
+             number of its fractal, its rank in it, the generator that it comes from, its direction, or in the plane its \
+             angle, length, place or distance from the centre of the picture.";
         palette: Form::Either(&[Form::Choice(|| Choice { names: Palette::names().collect(), default: Palette::default().name().into(), }), Form::List(&Form::Colour, 1, None)]),
             "The colours for `color_by`: a palette's name, or a list of colours that are mixed evenly.";
         color_range: Form::List(&Form::Number, 2, Some(2)),
-            "Where colours are by step or age: that of the palette's first colour and that of its last one; 0 and the \
-             last of the picture if left out.";
+            "Where colours are by step, age, angle, length or place: the value of the palette's first colour and that of its last \
+             one, in degrees or units of the rule; those of the picture if left out.";
         tube: Form::Either(&[Form::Whole(3, Some(48)), Form::Mapping(&TUBE)]),
             "In L-systems in space: lines are tubes of so many sides, or `{sides: 8, width: 0.1}`.";
     ]],
@@ -164,7 +164,7 @@ impl FromNode for Tube {
     }
 }
 
-/// Reads the steps or ages of the first and the last colour.
+/// Reads the values of the first and the last colour.
 fn range(reader: &mut Reader, node: &Node) -> Option<[f64; 2]> {
     const HINT: &str = "color_range: [0, 8]";
     let entries = reader.list(node, "a list of two numbers", HINT);

@@ -34,6 +34,9 @@ impl Expression {
             Node::Name(name) if scope.get(name).is_none() => {
                 return Err(scope.unknown(name, self.range()));
             }
+            Node::Part(name, part) if scope.part(name, *part).is_none() => {
+                return Err(scope.unknown(name, self.range()));
+            }
             Node::Call(function, _) if function.meaning == Meaning::Distribution => {
                 let message = format!("'{}' cannot be used in a formula", function.name);
                 let hint = "a distribution belongs under `random:`, where it gets a name";
@@ -45,7 +48,9 @@ impl Expression {
             _ => self.check_type(needed)?,
         }
         match &self.node {
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Unknown => Ok(()),
+            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Part(..) | Node::Unknown => {
+                Ok(())
+            }
             Node::Prefix(operator, operand) => operand.check(operator.takes(), scope),
             Node::Infix(operator, operands) => check_all(&operands[..], operator.takes(), scope),
             Node::Call(function, arguments) => match (function.meaning, arguments.as_slice()) {
@@ -104,14 +109,8 @@ impl Compiler<'_> {
                 self.unfolded.push(Op::Constant(value));
                 self.constant(value, range)
             }
-            Node::Name(name) => match self.scope.get(name) {
-                Some(Named::Constant(value, written)) => {
-                    self.unfolded.push(written);
-                    self.constant(value, range)
-                }
-                Some(Named::Slot(slot)) => self.slot(slot),
-                None => Err(self.scope.unknown(name, range)),
-            },
+            Node::Name(name) => self.named(self.scope.get(name), name, range),
+            Node::Part(name, part) => self.named(self.scope.part(name, *part), name, range),
             Node::Unknown => self.slot(UNKNOWN),
             Node::Prefix(operation, operand) => self.one(*operation, operand, expression),
             Node::Infix(operation, operands) => {
@@ -137,6 +136,17 @@ impl Compiler<'_> {
                 // The parser refuses wrong numbers of arguments, and `check` refuses distributions.
                 _ => Err(ExpressionError::new(range, "this call has no value")),
             },
+        }
+    }
+
+    fn named(&mut self, found: Option<Named>, name: &str, range: Range<usize>) -> Checked {
+        match found {
+            Some(Named::Constant(value, written)) => {
+                self.unfolded.push(written);
+                self.constant(value, range)
+            }
+            Some(Named::Slot(slot)) => self.slot(slot),
+            None => Err(self.scope.unknown(name, range)),
         }
     }
 

@@ -7,7 +7,8 @@
 //! Operators in order of increasing precedence: `or`, `and`, `not`, comparisons (which do not chain),
 //! `+ -`, `* / %`, negation, `^` (right-associative: `-2^2` is -4, `2^3^2` is 512). `||`, `&&` and `!`
 //! are alternative spellings of `or`, `and` and `not`. Every name denotes a number; the parts of a
-//! complex number `s` have the names `s.re` and `s.im`. Conditions result from comparisons, `odd`,
+//! complex number `s` have the names `s.re` and `s.im`. A point may be a formula of complex numbers, such as
+//! `1/(-2 + i)`, whose parts are two expressions (see `complex`). Conditions result from comparisons, `odd`,
 //! `even`, `true` and `false`, and numbers and conditions never convert to each other. Trigonometric
 //! functions take and return degrees and are exact where the value is representable (see `degrees`).
 //!
@@ -17,6 +18,7 @@
 mod affine;
 mod circle;
 mod compile;
+mod complex;
 pub(crate) mod degrees;
 mod functions;
 mod interval;
@@ -35,6 +37,7 @@ mod tests;
 use std::ops::Range;
 
 pub use affine::Affine;
+pub(crate) use complex::UNIT;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision, leading};
@@ -108,6 +111,8 @@ enum Node {
     Number(f64),
     Truth(bool),
     Name(String),
+    /// The real part (0) or the imaginary part (1) of a name, which may be real.
+    Part(String, usize),
     Prefix(One, Box<Expression>),
     Infix(Two, Box<[Expression; 2]>),
     Call(&'static Function, Vec<Expression>),
@@ -121,6 +126,7 @@ impl PartialEq for Expression {
             (Node::Number(a), Node::Number(b)) => a.to_bits() == b.to_bits(),
             (Node::Truth(a), Node::Truth(b)) => a == b,
             (Node::Name(a), Node::Name(b)) => a == b,
+            (Node::Part(a, of), Node::Part(b, other)) => of == other && a == b,
             (Node::Prefix(f, a), Node::Prefix(g, b)) => f == g && a == b,
             (Node::Infix(f, a), Node::Infix(g, b)) => f == g && a == b,
             (Node::Call(f, a), Node::Call(g, b)) => f.name == g.name && a == b,
@@ -205,7 +211,7 @@ impl Expression {
     #[must_use]
     pub fn yields(&self) -> Type {
         match &self.node {
-            Node::Number(_) | Node::Name(_) | Node::Unknown => Type::Number,
+            Node::Number(_) | Node::Name(_) | Node::Part(..) | Node::Unknown => Type::Number,
             Node::Truth(_) => Type::Condition,
             Node::Prefix(operator, _) => operator.yields(),
             Node::Infix(operator, _) => operator.yields(),
@@ -219,12 +225,12 @@ impl Expression {
     }
 
     /// Returns all names with their ranges, in the order of the text: parameters, variables and the
-    /// constants `pi`, `phi` and `e`, but not functions.
+    /// constants `pi`, `phi` and `e`, but not functions. A part of a complex number has the name of the number.
     #[must_use]
     pub fn names(&self) -> Vec<(&str, Range<usize>)> {
         let mut names = Vec::new();
         self.visit(&mut |expression| {
-            if let Node::Name(name) = &expression.node {
+            if let Node::Name(name) | Node::Part(name, _) = &expression.node {
                 names.push((name.as_str(), expression.range()));
             }
         });
@@ -289,11 +295,16 @@ impl Expression {
     #[must_use]
     pub fn mistakes(&self, result: Type, scope: &Scope) -> Vec<ExpressionError> {
         let mut unknown: Vec<(&str, ExpressionError)> = Vec::new();
-        for (name, range) in self.names() {
-            if scope.get(name).is_none() && unknown.iter().all(|(known, _)| *known != name) {
-                unknown.push((name, scope.unknown(name, range)));
+        self.visit(&mut |expression| {
+            let (name, is_known) = match &expression.node {
+                Node::Name(name) => (name, scope.get(name).is_some()),
+                Node::Part(name, part) => (name, scope.part(name, *part).is_some()),
+                _ => return,
+            };
+            if !is_known && unknown.iter().all(|(known, _)| known != name) {
+                unknown.push((name, scope.unknown(name, expression.range())));
             }
-        }
+        });
         if unknown.is_empty() {
             return compile::compile(self, result, scope)
                 .err()
@@ -307,7 +318,7 @@ impl Expression {
     fn visit<'a>(&'a self, f: &mut impl FnMut(&'a Self)) {
         f(self);
         match &self.node {
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Unknown => {}
+            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Part(..) | Node::Unknown => {}
             Node::Prefix(_, operand) => operand.visit(f),
             Node::Infix(_, operands) => operands.iter().for_each(|part| part.visit(f)),
             Node::Call(_, arguments) => arguments.iter().for_each(|part| part.visit(f)),

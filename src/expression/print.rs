@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use super::lex::PARTS;
 use super::operator::{ATOM, One, Two};
 use super::{Expression, Node};
 
@@ -11,6 +12,7 @@ impl Display for Expression {
             Node::Number(value) => write_number(f, *value),
             Node::Truth(value) => write!(f, "{value}"),
             Node::Name(name) => f.write_str(name),
+            Node::Part(name, part) => write!(f, "{name}{}", PARTS[*part]),
             Node::Unknown => f.write_str("?"),
             Node::Prefix(operator, operand) => {
                 f.write_str(if *operator == One::Not { "not " } else { "-" })?;
@@ -46,9 +48,12 @@ impl Expression {
         let own = match &self.node {
             Node::Prefix(operator, _) => operator.precedence(),
             Node::Infix(operator, _) => operator.precedence(),
-            Node::Number(_) | Node::Truth(_) | Node::Name(_) | Node::Call(..) | Node::Unknown => {
-                ATOM
-            }
+            Node::Number(_)
+            | Node::Truth(_)
+            | Node::Name(_)
+            | Node::Part(..)
+            | Node::Call(..)
+            | Node::Unknown => ATOM,
         };
         if own < precedence {
             write!(f, "({self})")

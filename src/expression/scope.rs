@@ -138,6 +138,18 @@ impl Scope {
             .or(self.open.then_some(Named::Slot(UNKNOWN)))
     }
 
+    /// Returns the real part (0) or the imaginary part (1) of a name. A real number is its real part.
+    pub(super) fn part(&self, name: &str, part: usize) -> Option<Named> {
+        let whole = || {
+            let whole = self.get(name)?;
+            Some(match part {
+                0 => whole,
+                _ => Named::Constant(0.0, Op::Constant(0.0)),
+            })
+        };
+        self.get(&format!("{name}{}", PARTS[part])).or_else(whole)
+    }
+
     /// Returns whether the name has a meaning, or may have one.
     pub(crate) fn knows(&self, name: &str) -> bool {
         self.get(name).is_some()

@@ -7,6 +7,7 @@
 
 mod block;
 mod components;
+mod graph;
 mod ink;
 mod key;
 mod lines;
@@ -26,6 +27,7 @@ use std::num::NonZero;
 use crate::catalogue::Shelf;
 use crate::document::Document;
 use crate::geometry::{Bounds, DAffine2, DVec2, Frame2, Frame3};
+use crate::graph::Graph;
 use crate::model::Model;
 use crate::parallel::Team;
 use crate::render::space::{Camera, SpaceError};
@@ -37,6 +39,7 @@ use crate::style::Colour;
 use super::LABEL;
 use super::text::Font;
 use block::Block;
+pub use graph::Topology;
 
 /// Options of a figure.
 #[derive(Clone, Debug)]
@@ -109,6 +112,40 @@ pub fn write(
         }
         _ => return Err(RenderError::NoFigure(model.kind())),
     };
+    Figure::write(page, options, out)
+}
+
+/// Draws the instancing graph of a model of the plane and writes it; returns width and height in pixels. The levels and the tree are
+/// those of approximant `steps`.
+///
+/// # Errors
+///
+/// Returns an error if the picture is too large, or if `out` fails.
+pub fn write_graph(
+    graph: &Graph,
+    topology: Topology,
+    steps: u32,
+    options: &RuleFigureOptions,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let page = graph::page(graph, topology, steps, (), &options.labels.title);
+    Figure::write(page, options, out)
+}
+
+/// Draws the instancing graph of a model in space as [`write_graph`] does.
+///
+/// # Errors
+///
+/// As for [`write_graph`], and if the camera is not valid.
+pub fn write_graph_in_space(
+    graph: &Graph<Frame3>,
+    topology: Topology,
+    steps: u32,
+    options: &RuleFigureOptions,
+    out: &mut impl Write,
+) -> Result<[u32; 2], RenderError> {
+    let view = options.camera.rotation().map_err(SpaceError::from)?;
+    let page = graph::page(graph, topology, steps, view, &options.labels.title);
     Figure::write(page, options, out)
 }
 

@@ -140,7 +140,7 @@ fn written(map: &DAffine2) -> String {
     };
     if is_similar(&map.matrix2) && !flips {
         return format!(
-            "scale: {}, rotate: {}, shift: {shift}",
+            "scale: {}, rotate: {}, translate: {shift}",
             ratio(along),
             turn(angle)
         );
@@ -148,7 +148,7 @@ fn written(map: &DAffine2) -> String {
     let other = libm::atan2(-sign * y.x, sign * y.y).to_degrees();
     let scale = format!("[{}, {}]", ratio(along), ratio(across));
     let rotate = format!("[{}, {}]", turn(angle), turn(other));
-    format!("scale: {scale}, rotate: {rotate}, shift: {shift}")
+    format!("scale: {scale}, rotate: {rotate}, translate: {shift}")
 }
 
 fn point(point: DVec2) -> String {

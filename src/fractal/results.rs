@@ -453,6 +453,7 @@ impl Fractal {
         let graph = self.compile_for(goal.steps(), options.style.color_by)?;
         let drawn = goal.reach(graph, compile, |graph, steps| {
             let options = Options {
+                style: options.style.clone().within(graph.place()),
                 view: options.view.within(graph.place()),
                 ..options.clone()
             };

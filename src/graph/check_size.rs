@@ -29,6 +29,10 @@ impl<F: Frame> Graph<F> {
         let Some(mut forecast) = self.forecast() else {
             return Ok(None);
         };
+        if self.is_of_one_step() {
+            let elements = forecast.elements().to_u64();
+            return Ok(elements.filter(|elements| *elements <= max_elements));
+        }
         let most = Count::from(max_elements);
         let mut deepest = None;
         let mut refused = false;

@@ -68,6 +68,8 @@ pub struct Graph<F: Frame = Frame2> {
     /// initiator.
     pub(crate) roots: Arc<Roots<F>>,
     pub(crate) depth: Option<u32>,
+    /// Number of steps of the approximant that the graph consists of, if it knows no other.
+    pub(crate) only: Option<u32>,
     /// State between two steps, if the last step is still growing.
     pub(crate) between: Option<Between<F>>,
     /// Reason why the model, as its graph does not show, has no limit set.
@@ -116,6 +118,7 @@ impl<F: Frame> Graph<F> {
             listed: None,
             roots: Arc::default(),
             depth: None,
+            only: None,
             between: None,
             no_limit: None,
             regular: true,
@@ -136,6 +139,11 @@ impl<F: Frame> Graph<F> {
         self.between
             .as_ref()
             .map_or(0.0, |between| 1.0 - between.share)
+    }
+
+    /// Returns whether the graph consists of one approximant and does not know those before.
+    pub(crate) fn is_of_one_step(&self) -> bool {
+        self.only.is_some_and(|steps| steps > 0)
     }
 
     /// Returns the source of instances that are computed for each element.

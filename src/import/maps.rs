@@ -62,7 +62,7 @@ impl System {
         let (matrix, shift) = matrix_and_shift(map, self.layout.axes);
         let map = Entries::default()
             .set("matrix", matrix)
-            .set_some("shift", shift)
+            .set_some("translate", shift)
             .set_some("weight", weight);
         self.maps.push(map.value());
     }

@@ -8,7 +8,7 @@ use crate::geometry::{Frame as _, Frame3};
 use crate::graph::{Chain, CompileError, Graph, Instance, Object, Replacement};
 use crate::grow::{Element, Elements, FractalInfo, Growth, WalkError};
 use crate::rule::Rule;
-use crate::style::{ColorBy, Style};
+use crate::style::{ColorBy, Palette, Style};
 
 use super::Model;
 
@@ -33,11 +33,20 @@ pub struct DrawnInSpace {
 }
 
 impl DrawnInSpace {
-    /// Adapts a style to the graph: colours by a property that the origins of objects stand for are those by generator.
+    /// Adapts a style to the graph: colours by a property that the origins of objects stand for are those by generator, with the
+    /// colours that a range gives them.
     pub fn colour(&self, style: &mut Style) {
-        if self.records == Some(style.color_by) {
-            style.color_by = ColorBy::Generator;
+        if self.records != Some(style.color_by) {
+            return;
         }
+        if style.range().is_some() {
+            // The origins are steps or ages from 0.
+            let count = u32::try_from(self.graph.origins()).unwrap_or(u32::MAX);
+            let last = f64::from(count.saturating_sub(1));
+            let colours = (0..count).map(|value| style.colour_of_value(value.into(), last));
+            style.palette = Palette::of_colours("", &colours.collect::<Vec<_>>());
+        }
+        style.color_by = ColorBy::Generator;
     }
 }
 

@@ -33,7 +33,7 @@ impl Prepass<'_> {
     ) -> Result<Option<Self>, WalkError<Infallible>> {
         let graph = self.graph();
         let by_age = self.style().color_by == ColorBy::Age && graph.seeds;
-        if by_age || self.culling().is_bounded() {
+        if by_age || self.needs_lengths() || self.culling().is_bounded() {
             return Ok(None);
         }
         let shortest = self.culling().shortest().filter(|&shortest| shortest > 0.0);

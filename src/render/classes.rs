@@ -111,7 +111,7 @@ impl Classes {
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u128 {
         match self.by.property() {
-            ColorProperty::Uniform | ColorProperty::Tint => 0,
+            ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => 0,
             ColorProperty::Step => element.born.into(),
             ColorProperty::Age => fractal.age.into(),
             ColorProperty::Fractal => fractal.number.into(),
@@ -198,7 +198,7 @@ impl Classes {
     /// Returns the colour of a class; `None` if the palette is not used.
     #[must_use]
     pub(crate) fn colour(&self, class: u64, style: &Style) -> Option<Colour> {
-        if !self.by.takes_palette() {
+        if !self.by.takes_palette() || self.by.property() == ColorProperty::Frame {
             return None;
         }
         let last_class = self.count() - 1;

@@ -1,5 +1,7 @@
 //! Pictures of histograms: the number of hits of every pixel in a chaos game.
 
+mod kernel;
+
 use std::io::Write;
 
 use tiny_skia::{ColorU8, Pixmap, PremultipliedColorU8};
@@ -8,7 +10,8 @@ use crate::chaos::{Histogram, RandomPoints, Start, WeightedMaps};
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 use crate::ifs::{System, Verdict};
-use crate::style::{Colour, Named, Palette, View};
+use crate::parallel::all_cores;
+use crate::style::{Colour, Palette, Tone, View};
 
 use super::canvas::{Canvas, Size};
 use super::error::RenderError;
@@ -17,41 +20,6 @@ use super::options::PngEncoding;
 #[cfg(feature = "cli")]
 use super::pixels::Pixels;
 use super::png::{Spare, Spares, TooManyPixels, write_pixels};
-
-/// Mapping of a number of hits to a tone from 0 to 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Tone {
-    /// Logarithmic: log(1 + hits) / log(1 + the largest number of hits of a pixel).
-    #[default]
-    Log,
-    /// Proportional to the largest number of hits of a pixel.
-    Linear,
-    /// 1 for every pixel that is hit.
-    Plain,
-}
-
-impl Named for Tone {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("log", Self::Log),
-        ("linear", Self::Linear),
-        ("plain", Self::Plain),
-    ];
-}
-
-impl Tone {
-    /// Returns the tone of a number of hits, where `most` is the largest number. Hits may be parts of a pixel.
-    pub(super) fn of(self, hits: f64, most: f64) -> f64 {
-        if hits == 0.0 {
-            return 0.0;
-        }
-        match self {
-            Self::Log => libm::log1p(hits) / libm::log1p(most),
-            Self::Linear => hits / most,
-            Self::Plain => hits.min(1.0),
-        }
-    }
-}
 
 /// Number of parts of a hit that covers a pixel, in counts of the hits of elements.
 pub(super) const UNIT: u32 = 256;
@@ -75,6 +43,13 @@ pub enum Shades {
 pub struct Density {
     /// Mapping of hits to tones; logarithmic by default.
     pub tone: Tone,
+    /// Exponent above 0: tones are raised to its inverse; 1 by default.
+    pub gamma: f64,
+    /// Number of bins of the histogram across a pixel, whose colours are averaged; 1 by default.
+    pub oversample: u32,
+    /// Radius, in pixels, over which a point that is alone in its bin is spread. That of n points is less by the factor
+    /// n^(-2/5), as in the density estimation of flam3. 0, the default, spreads nothing.
+    pub kernel: f64,
     /// Colours; black ink by default.
     pub shades: Shades,
     /// Colour of the background; `None` for transparency.
@@ -85,6 +60,9 @@ pub struct Density {
 
 setters!(Density {
     tone: Tone,
+    gamma: f64,
+    oversample: u32,
+    kernel: f64,
     shades: Shades,
     background: Option<Colour>,
     png: PngEncoding,
@@ -94,6 +72,9 @@ impl Default for Density {
     fn default() -> Self {
         Self {
             tone: Tone::default(),
+            gamma: 1.0,
+            oversample: 1,
+            kernel: 0.0,
             shades: Shades::Ink(Colour::BLACK),
             background: None,
             png: PngEncoding::default(),
@@ -164,6 +145,9 @@ fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
     [DVec2::new(left, low), DVec2::new(right, high)]
 }
 
+/// Largest number of bins of all classes whose hits are spread.
+const MAX_SPREAD: usize = 1 << 26;
+
 /// Number of hits below which colours are tabulated.
 const FEW_HITS: u64 = 4096;
 
@@ -210,7 +194,7 @@ fn pixmap(
     spares: &Spares,
     histogram: &Histogram,
     density: &Density,
-) -> Result<Pixmap, TooManyPixels> {
+) -> Result<Pixmap, RenderError> {
     let size @ [width, height] = histogram.size();
     let mut pixmap = { spares.take().take_pixels(size) }
         .or_else(|| Pixmap::new(width, height))
@@ -218,56 +202,107 @@ fn pixmap(
     let classes: Vec<_> = (0..histogram.classes())
         .map(|class| histogram.counts(class))
         .collect();
-    match classes.as_slice() {
-        [counts] => paint(&mut pixmap, density, &classes, 1, |place| {
-            counts[place].into()
+    let classes = classes.as_slice();
+    let radius = density.kernel * f64::from(density.oversample);
+    match classes {
+        _ if radius > 0.0 => {
+            let bins: usize = classes.iter().map(|counts| counts.len()).sum();
+            if bins > MAX_SPREAD {
+                return Err(RenderError::TooManyToSpread { bins });
+            }
+            let size = size.map(|side| side as usize);
+            let spread = kernel::spread(size, classes, radius, all_cores().get());
+            let count = classes.len();
+            let hits = |place: usize| spread[place * count..][..count].iter().copied();
+            paint(&mut pixmap, density, kernel::WEIGHT, hits);
+        }
+        [counts] => paint(&mut pixmap, density, 1, |place| {
+            [u64::from(counts[place])].into_iter()
         }),
-        _ => paint(&mut pixmap, density, &classes, 1, |place| {
-            let hits = classes.iter().map(|counts| u64::from(counts[place]));
-            hits.sum()
+        _ => paint(&mut pixmap, density, 1, |place| {
+            classes.iter().map(move |counts| u64::from(counts[place]))
         }),
     }
-    Ok(pixmap)
+    match density.oversample {
+        0 | 1 => Ok(pixmap),
+        side => Ok(averaged(&pixmap, side)?),
+    }
 }
 
 /// Paints every pixel by its hits in 1/[`UNIT`].
 pub(super) fn painted(pixmap: &mut Pixmap, density: &Density, hits: &[u32]) {
-    paint(pixmap, density, &[hits], UNIT, |place| hits[place].into());
+    paint(pixmap, density, UNIT, |place| {
+        [u64::from(hits[place])].into_iter()
+    });
 }
 
-/// Paints every pixel. `hits` returns the number of hits of a pixel in 1/`unit`, over all classes.
-fn paint(
+/// Returns the picture whose pixels are the means of squares of pixels. Sides that are no multiples lose their last pixels.
+fn averaged(bins: &Pixmap, side: u32) -> Result<Pixmap, TooManyPixels> {
+    let size @ [width, height] = [bins.width(), bins.height()].map(|length| length / side);
+    let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+    let [across, step, columns] = [bins.width(), side, width].map(|count| count as usize);
+    let count = side * side;
+    for (place, pixel) in pixmap.pixels_mut().iter_mut().enumerate() {
+        let first = place / columns * step * across + place % columns * step;
+        let mut sums = [0; 4];
+        for row in bins.pixels()[first..].chunks(across).take(step) {
+            for bin in &row[..step] {
+                let channels = [bin.red(), bin.green(), bin.blue(), bin.alpha()];
+                for (sum, channel) in sums.iter_mut().zip(channels) {
+                    *sum += u32::from(channel);
+                }
+            }
+        }
+        let mean = |sum: u32| byte(((sum + count / 2) / count).into());
+        let [red, green, blue, alpha] = sums.map(mean);
+        *pixel = PremultipliedColorU8::from_rgba(red, green, blue, alpha).unwrap_or(*pixel);
+    }
+    Ok(pixmap)
+}
+
+/// Paints every pixel. `hits` returns the numbers of hits of a pixel in 1/`unit`, for every class.
+fn paint<I: Iterator<Item = u64>>(
     pixmap: &mut Pixmap,
     density: &Density,
-    classes: &[&[u32]],
     unit: u32,
-    hits: impl Fn(usize) -> u64,
+    hits: impl Fn(usize) -> I,
 ) {
     let pixels = pixmap.pixels_mut();
-    let most = (0..pixels.len()).map(&hits).max().unwrap_or(0);
+    let sum = |place: usize| hits(place).sum::<u64>();
+    let most = (0..pixels.len()).map(sum).max().unwrap_or(0);
     let colours = colours(density).map(premultiplied);
     #[expect(clippy::cast_precision_loss, reason = "a tone has 255 steps")]
     let whole = |count: u64| count as f64 / f64::from(unit);
     let level = |all: u64| match all {
         0 => 0,
-        _ => level(density.tone.of(whole(all), whole(most))),
+        _ => level(density.tone_of(whole(all), whole(most))),
     };
     let few: Vec<_> = (0..most.saturating_add(1).min(FEW_HITS))
         .map(|all| (level(all), colours[usize::from(level(all))]))
         .collect();
     for (place, pixel) in pixels.iter_mut().enumerate() {
-        let all = hits(place);
+        let all = sum(place);
         let known = usize::try_from(all).ok().and_then(|all| few.get(all));
         *pixel = match (&density.shades, known) {
             (Shades::Classes(inks), _) if all > 0 && !inks.is_empty() => {
-                let shares = classes.iter().map(|counts| u64::from(counts[place]));
-                let ink = mean(shares.zip(inks.iter().cycle()), all);
+                let ink = mean(hits(place).zip(inks.iter().cycle()), all);
                 let level = known.map_or_else(|| level(all), |(level, _)| *level);
                 premultiplied(laid_on(density.background, ink, level))
             }
             (_, Some((_, colour))) => *colour,
             (_, None) => colours[usize::from(level(all))],
         };
+    }
+}
+
+impl Density {
+    /// Returns the tone of a number of hits, where `most` is the largest number.
+    fn tone_of(&self, hits: f64, most: f64) -> f64 {
+        let tone = self.tone.of(hits, most);
+        match self.gamma {
+            1.0 => tone,
+            gamma => libm::pow(tone, 1.0 / gamma),
+        }
     }
 }
 
@@ -355,6 +390,25 @@ mod tests {
         assert_eq!(laid_on(None, ink, 51).rgba(), [200, 100, 0, 51]);
         let inks = [Colour::BLACK, Colour::grey(100)];
         assert_eq!(mean([1, 3].into_iter().zip(&inks), 4), Colour::grey(75));
+    }
+
+    #[test]
+    fn pixels_are_means_of_bins() {
+        let mut bins = Pixmap::new(4, 2).unwrap();
+        let levels = [0, 40, 255, 255, 80, 120, 255, 255];
+        for (pixel, level) in bins.pixels_mut().iter_mut().zip(levels) {
+            *pixel = premultiplied(Colour::of_rgba([level, 0, 0, 255]));
+        }
+        let mean = averaged(&bins, 2).unwrap();
+        let reds: Vec<u8> = mean.pixels().iter().map(|pixel| pixel.red()).collect();
+        assert_eq!((mean.width(), mean.height(), reds), (2, 1, vec![60, 255]));
+    }
+
+    #[test]
+    fn gamma_lifts_low_tones() {
+        let density = Density::default().tone(Tone::Linear).gamma(2.0);
+        assert_eq!(density.tone_of(9.0, 9.0), 1.0);
+        assert!((density.tone_of(1.0, 4.0) - 0.5).abs() < 1e-15);
     }
 
     #[test]

@@ -39,6 +39,12 @@ pub enum RenderError {
     /// The picture is too large for memory.
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
+    /// A density has too many bins for its kernel.
+    #[error("{bins} bins of hits are too many to be spread by a kernel; 67,108,864 are the most")]
+    TooManyToSpread {
+        /// Number of bins of all classes.
+        bins: usize,
+    },
     /// A set in space cannot be drawn.
     #[error(transparent)]
     Space(#[from] SpaceError),
@@ -84,6 +90,12 @@ pub enum NoZoom {
          numbers; a single colour draws them"
     )]
     Numbers,
+    /// A range of lengths or coordinates is in the units of the whole, and a zoom is drawn in pixels.
+    #[error(
+        "lengths and coordinates of a zoom have no range in the units of the whole; without the range, colours are those of \
+         the picture"
+    )]
+    Range,
 }
 
 /// Change of [`Options`] or of the growth with which a picture can be drawn after all.
@@ -116,7 +128,7 @@ impl RenderError {
     #[must_use]
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
-            Self::NotInstanced(NotInstanced::Colours { .. }) | Self::NoZoom(NoZoom::Numbers) => {
+            Self::NotInstanced(NotInstanced::Colours { .. }) | Self::NoZoom(_) => {
                 Remedy::OtherColours
             }
             Self::NotInstanced(NotInstanced::Areas) => Remedy::NoFill,

@@ -63,11 +63,14 @@ impl<'g> Prepass<'g> {
         seeds: bool,
     ) -> Option<Self> {
         let mut prepass = Self::new(graph, style, steps);
+        if prepass.needs_lengths() {
+            return None;
+        }
         let with_ages = style.color_by == ColorBy::Age && seeds;
         let stands = ElementKinds::at(graph, growth.steps, with_ages)?;
         prepass.bounds = prepass.known_bounds(growth)?;
         let used: Vec<u128> = match style.color_by.property() {
-            ColorProperty::Uniform | ColorProperty::Tint => vec![0],
+            ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => vec![0],
             ColorProperty::Age if seeds => {
                 stands.values(|stands| (growth.steps - stands.seeded).into())
             }

@@ -3,8 +3,7 @@
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use crate::chaos::Histogram;
-
-use super::density::Tone;
+use crate::style::Tone;
 
 /// Picture of 8 bits a channel, in rows from the top: grey levels, or red, green and blue (sRGB).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +40,8 @@ impl Levels {
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
-    /// use kfrac::render::{Levels, Tone};
+    /// use kfrac::render::Levels;
+    /// use kfrac::style::Tone;
     ///
     /// let fern = kfrac::Fractal::named("barnsley-fern")?.histogram(100_000, (256, 256))?;
     /// let picture = Levels::of_hits(&fern, Tone::Log);

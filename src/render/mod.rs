@@ -33,6 +33,7 @@ mod display;
 mod drawing;
 mod dxf;
 mod error;
+mod frame_colours;
 mod gcode;
 mod hits;
 mod hpgl;
@@ -65,7 +66,7 @@ mod write;
 mod zoomed;
 
 pub use canvas::{Canvas, NoRoom, Size};
-pub use density::{Density, Shades, Tone, density_canvas, write_density};
+pub use density::{Density, Shades, density_canvas, write_density};
 #[cfg(feature = "cli")]
 pub(crate) use density::{density_pixels, write_density_with};
 pub(crate) use drawing::Drawing;

@@ -4,10 +4,10 @@ use std::num::NonZero;
 
 use crate::metadata::Metadata;
 use crate::parallel::all_cores;
-use crate::style::{ColorBy, Colour, Named, Style, View};
+use crate::style::{ColorBy, Colour, Named, Style, Tone, View};
 
 use super::canvas::Size;
-use super::density::{Density, Shades, Tone};
+use super::density::{Density, Shades};
 use super::gcode::Machine;
 use super::plot::{Hatch, Pens};
 use super::png::Spares;
@@ -132,6 +132,8 @@ pub struct Options {
     /// Tone by which the pixels of a PNG show how many elements cover them, in one ink, or in the palette if the style is coloured
     /// [by hits](crate::style::ColorBy::Hits); `None` for elements on top of each other. Has no effect on plots.
     pub tone: Option<Tone>,
+    /// Exponent above 0 of those tones: they are raised to its inverse; 1 by default.
+    pub gamma: f64,
     /// Encoding of a PNG.
     pub png: PngEncoding,
     /// Size below which elements are not replaced; none by default.
@@ -162,6 +164,7 @@ setters!(Options {
     band: u64,
     drawn: f64,
     tone: Option<Tone>,
+    gamma: f64,
     png: PngEncoding,
     detail: Option<Detail>,
     labels: Labels,
@@ -186,6 +189,7 @@ impl Default for Options {
             band: 1 << 21,
             drawn: 1.0,
             tone: None,
+            gamma: 1.0,
             png: PngEncoding::default(),
             detail: None,
             short_cuts: ShortCuts::default(),
@@ -206,9 +210,11 @@ impl Options {
         };
         Some(Density {
             tone,
+            gamma: self.gamma,
             shades,
             background: self.style.ground(),
             png: self.png,
+            ..Density::default()
         })
     }
 

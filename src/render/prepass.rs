@@ -16,6 +16,7 @@ use crate::style::{ColorBy, Style, Width};
 
 use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
+use super::frame_colours::length;
 use super::paint::{overhang, relative_overhang};
 use super::short_cuts::ShortCuts;
 
@@ -24,6 +25,11 @@ const SPAN: u64 = 1 << 12;
 
 /// Approximate maximum number of points of a span, on which the size of its sketch depends.
 const MAX_POINTS: usize = 1 << 16;
+
+/// Returns the range of the values of two ranges.
+fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
 
 /// Returns the approximate number of elements of a span, which is also the maximum for a run.
 pub(super) fn span(graph: &Graph) -> u64 {
@@ -85,6 +91,8 @@ pub(crate) struct Prepass<'g> {
     pub strokes: bool,
     /// Number of elements.
     pub elements: u64,
+    /// Lengths of the shortest and the longest visible element, if colours depend on them.
+    pub(super) lengths: [f64; 2],
     /// Whether a visible element lies beyond the range of numbers.
     pub(super) is_beyond: bool,
     /// Number of fractals.
@@ -125,6 +133,7 @@ impl<'g> Prepass<'g> {
             bounds: Bounds::EMPTY,
             strokes: false,
             elements: 0,
+            lengths: [f64::INFINITY, 0.0],
             is_beyond: false,
             fractals: 0,
             largest_index: 0,
@@ -221,6 +230,11 @@ impl<'g> Prepass<'g> {
         (classes, classes.all().collect())
     }
 
+    /// Returns whether colours depend on the lengths of all elements, which a walk finds.
+    pub(super) fn needs_lengths(&self) -> bool {
+        self.style.color_by == ColorBy::Length && self.style.color_range.is_none()
+    }
+
     pub(super) fn is_stroked(&self, object: &Object) -> bool {
         let base_element = &self.graph.base_elements()[object.base_element];
         !base_element.is_closed() || self.style.outlines_polygons()
@@ -270,6 +284,9 @@ impl<'g> Prepass<'g> {
     /// Determines the bounding box, and whether any outline is stroked, without a walk. `None` if the graph
     /// does not bound all subtrees, or if only some of the outlines are stroked.
     pub(super) fn glimpsed(mut self, growth: &Growth<'_>, reaches: &[f64]) -> Option<Self> {
+        if self.needs_lengths() {
+            return None;
+        }
         let objects = || self.graph.objects().iter();
         let mut drawn = objects().filter(|object| object.visible);
         self.strokes = drawn.clone().any(|object| self.is_stroked(object));
@@ -307,6 +324,7 @@ impl<'g> Prepass<'g> {
         self.is_met |= span.is_met;
         self.is_beyond |= span.is_beyond;
         self.elements += span.elements;
+        self.lengths = joined(self.lengths, span.lengths);
         self.fractals += span.fractals;
         let last_index = span
             .last_index
@@ -422,6 +440,9 @@ impl Visitor for Prepass<'_> {
             self.use_value_of(element, &fractal);
             self.strokes |= self.is_stroked(object);
             self.is_beyond |= !element.frame.is_in_range();
+            if self.needs_lengths() {
+                self.lengths = joined(self.lengths, [length(element); 2]);
+            }
             if !self.is_bounded {
                 let base_element = &self.graph.base_elements()[object.base_element];
                 let pad = self.pad(object) * element.frame.stretch();

@@ -10,6 +10,7 @@ use crate::style::{Colour, Style, Width};
 use super::canvas::Canvas;
 use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
+use super::frame_colours::FrameColours;
 use super::png::LevelOfDetail;
 use super::prepass::Prepass;
 use super::prepass::Ranks;
@@ -26,6 +27,8 @@ pub(crate) struct Scene<'a> {
     pub(super) canvas: Canvas,
     pub(super) culling: Culling,
     pub(super) classes: Classes,
+    /// Colours of elements by their frames, if colours are by frame.
+    pub(super) frames: Option<FrameColours>,
     pub(super) passes: Vec<Pass>,
     /// Number of elements.
     pub(super) elements: u64,
@@ -84,6 +87,7 @@ impl<'a> Scene<'a> {
             canvas,
             culling: prepass.culling().clone(),
             classes,
+            frames: FrameColours::of(style, graph, canvas.window(), prepass.lengths),
             passes,
             elements: prepass.elements,
             ranks: prepass.ranks.clone(),

@@ -311,10 +311,13 @@ impl<'a> Sketcher<'a> {
         }
     }
 
-    /// Returns the colour of a tinted element whose colour is `own` without the tint; `None` without tints.
+    /// Returns the colour of an element that has one of its own, by its frame or by a tint on the colour `own`.
     #[inline]
     fn colour(&self, element: &Element, own: Colour) -> Option<Colour> {
         let Scene { graph, style, .. } = self.scene;
+        if let Some(frames) = &self.scene.frames {
+            return Some(frames.at(element, graph));
+        }
         let is_tinted = graph.tints() && style.color_by == ColorBy::Tint;
         is_tinted.then(|| element.appearance.on(own))
     }

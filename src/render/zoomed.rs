@@ -7,7 +7,7 @@ use crate::geometry::DVec2;
 use crate::graph::Graph;
 use crate::grow::Growth;
 use crate::model::Model;
-use crate::style::{ColorBy, Style, View, Width};
+use crate::style::{ColorBy, ColorProperty, Style, View, Width};
 use crate::zoom::{self, Address, Factor, ZoomWindow};
 
 use super::canvas::{Canvas, Size};
@@ -239,6 +239,10 @@ const ROUGH: f64 = 1.0 / 256.0;
 fn check(style: &Style) -> Result<(), RenderError> {
     if matches!(style.color_by, ColorBy::Index | ColorBy::Fractal) {
         return Err(NoZoom::Numbers.into());
+    }
+    let is_by_frame = style.color_by.property() == ColorProperty::Frame;
+    if is_by_frame && style.color_by != ColorBy::Angle && style.color_range.is_some() {
+        return Err(NoZoom::Range.into());
     }
     Ok(())
 }

@@ -31,6 +31,7 @@ impl<K> Resolver<K> {
             style: document.style.clone(),
             view: document.view,
             space: document.space.clone(),
+            density: document.density,
         }
     }
 

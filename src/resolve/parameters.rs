@@ -127,9 +127,11 @@ pub(super) fn order(params: &[ParameterDocument]) -> (Vec<usize>, Vec<usize>) {
     let mut needs = vec![Vec::new(); params.len()];
     for (index, param) in params.iter().enumerate() {
         let numbers_of = |number: &WrittenNumber| -> Vec<usize> {
-            let names = number.value.names().into_iter();
+            // A formula of complex numbers needs both parts.
+            let names = { number.value.names().into_iter() }
+                .flat_map(|(name, _)| ["", PARTS[0], PARTS[1]].map(|part| format!("{name}{part}")));
             names
-                .filter_map(|(name, _)| numbers.get(name).copied())
+                .filter_map(|name| numbers.get(name.as_str()).copied())
                 .collect()
         };
         let written = [Some(&param.value), param.min.as_ref(), param.max.as_ref()];

@@ -18,7 +18,7 @@ pub(super) fn parameters(
 ) -> impl Iterator<Item = Diagnostic> {
     let is_used = |parameter: &&ParameterDocument| match &parameter.whole {
         None => used.contains(&parameter.name.value),
-        Some(whole) => PARTS
+        Some(whole) => ["", PARTS[0], PARTS[1]]
             .iter()
             .any(|part| used.contains(&format!("{}{part}", whole.value))),
     };

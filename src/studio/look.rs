@@ -89,7 +89,7 @@ const SPACE: [&str; 11] = [
     "slice",
 ];
 /// Options of random iteration.
-const DENSITY: [&str; 3] = ["method", "points", "tone"];
+const DENSITY: [&str; 6] = ["method", "points", "tone", "gamma", "oversample", "kernel"];
 
 impl Look {
     /// Returns the arguments of everything but rule, size and view, for a set of the plane or of space.

@@ -33,7 +33,7 @@ fn everything_that_a_system_says_can_be_said() {
 kind: ifs
 params: {lean: 30}
 maps:
-  left: {scale: [0.5, 0.6], rotate: [lean, 20], shift: [0, 1], weight: 2}
+  left: {scale: [0.5, 0.6], rotate: [lean, 20], translate: [0, 1], weight: 2}
   right: {times: [0.3, -0.2], conjugate: true, fixed: [1, 1], weight: 1}
   '3': {matrix: [[1/2, 0], [0.1, 1/3]], weight: 1/2}
 edges: {left: [left, right], right: {'3': 2, left: 1}, '3': [left]}
@@ -53,7 +53,7 @@ dimension: 1.5
         .map(
             MapBuilder::scales((0.5, 0.6))
                 .rotate_axes(("lean", 20))
-                .shift((0, 1))
+                .translate((0, 1))
                 .weight(2)
                 .name("left"),
         )

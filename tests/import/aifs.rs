@@ -91,9 +91,9 @@ fn sets_that_refer_to_each_other_are_those_of_geometry() {
 kind: ifs
 maps:
   - {scale: 1/2}
-  - {scale: 1/2, shift: [1/2, 0]}
-  - {scale: 1/2, shift: [cos(36)/2, sin(36)/2]}
-  - {scale: 1/2, rotate: 180, shift: [(1 + cos(36))/2, sin(36)/2]}
+  - {scale: 1/2, translate: [1/2, 0]}
+  - {scale: 1/2, translate: [cos(36)/2, sin(36)/2]}
+  - {scale: 1/2, rotate: 180, translate: [(1 + cos(36))/2, sin(36)/2]}
 ";
     fs::write(folder.path().join("triangle.yaml"), quarters).unwrap();
     assert_same(folder.path(), "acute.yaml", "triangle.yaml", "0.01");

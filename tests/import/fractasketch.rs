@@ -36,8 +36,8 @@ fn lines_that_are_kept_belong_to_the_set() {
     let system = "\
 kind: ifs
 maps:
-  - {times: [-1/2, 1/2], shift: [0, 1]}
-  - {times: [1/2, 1/2], shift: [0, 1]}
+  - {times: [-1/2, 1/2], translate: [0, 1]}
+  - {times: [1/2, 1/2], translate: [0, 1]}
 condensation:
   - {segment: [[0, 0], [0, 1]]}
 ";

@@ -38,9 +38,9 @@ fn curves_are_those_of_the_library() {
 kind: ifs
 maps:
   - {scale: 1/2}
-  - {scale: 1/2, shift: [1/2, 0]}
-  - {scale: 1/2, shift: [1/4, 1/4]}
-  - {scale: 1/2, rotate: 180, shift: [3/4, 1/4]}
+  - {scale: 1/2, translate: [1/2, 0]}
+  - {scale: 1/2, translate: [1/4, 1/4]}
+  - {scale: 1/2, rotate: 180, translate: [3/4, 1/4]}
 ";
     fs::write(folder.path().join("triangle.yaml"), triangle).unwrap();
     assert_same(folder.path(), "out/sweep.yaml", "triangle.yaml", "0.01");

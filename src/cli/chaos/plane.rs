@@ -120,16 +120,22 @@ impl<'a> PlaneGame<'a> {
         options.on_paper()
     }
 
-    /// Returns the hits of the pixels of a canvas.
+    /// Returns the number of bins across a pixel.
+    fn oversample(&self) -> u32 {
+        self.iteration.arguments.chaos.oversample.unwrap_or(1)
+    }
+
+    /// Returns the hits of the bins of a canvas.
     fn histogram(
         &self,
         canvas: &Canvas,
         progress: Option<&Progress>,
     ) -> Result<Histogram, Failure> {
         let game = self.iteration.game(progress);
+        let side = self.oversample();
         let window = HistogramWindow {
-            to_pixels: canvas.to_pixels(),
-            size: canvas.size(),
+            to_pixels: DAffine2::from_scale(DVec2::splat(side.into())) * canvas.to_pixels(),
+            size: canvas.size().map(|length| length.saturating_mul(side)),
         };
         let histogram = play(&self.iteration.system, &window, &game).map_err(|error| {
             match error {
@@ -154,6 +160,9 @@ impl<'a> PlaneGame<'a> {
         let render::Options { style, .. } = self.picture_options(size);
         Density {
             tone: chaos.tone.unwrap_or_default(),
+            gamma: chaos.gamma(),
+            oversample: self.oversample(),
+            kernel: chaos.kernel.unwrap_or(0.0),
             shades: self.shades(&style, picture.ink(self.source.metadata())),
             background: style.ground(),
             png: growth.png_encoding(),

@@ -37,6 +37,7 @@ impl<'a> SpaceGame<'a> {
                 loaded.model.kind().name()
             )));
         };
+        arguments.chaos.refuse_in_space()?;
         let start = arguments.chaos.start(|start| start.place);
         Self::new(arguments, loaded, source, Homothety::IDENTITY, start)
     }

@@ -239,7 +239,7 @@ impl<'a> Drawing<'a> {
         let style = picture.style_in(self.loaded.model.metadata(), size.unit);
         match self.arguments.chaos.tone_of_elements() {
             Some(_) => Style {
-                color_by: match picture.shows_hits_by_palette() {
+                color_by: match picture.shows_hits_by_palette() || style.color_by == ColorBy::Hits {
                     true => ColorBy::Hits,
                     false => ColorBy::None,
                 },
@@ -338,7 +338,7 @@ impl<'a> Drawing<'a> {
         options.extend(self.arguments.own_options());
         options.extend(picture.options());
         let tone = self.arguments.chaos.tone_of_elements();
-        options.extend(tone.map(|tone| ("tone", tone.name().into())));
+        options.extend(self.arguments.chaos.tones());
         let Paper { mut size, unit } = *size;
         let mut view = self.arguments.view(self.loaded.model.metadata());
         if let Some(tiled) = &self.tiled {
@@ -346,7 +346,7 @@ impl<'a> Drawing<'a> {
         }
         render::Options {
             format: self.format,
-            style: self.style(),
+            style: self.style().within(place),
             view: view.within(place),
             size,
             unit,
@@ -355,6 +355,7 @@ impl<'a> Drawing<'a> {
             occlude: plot.occludes(),
             hatch: plot.hatch(unit),
             tone,
+            gamma: self.arguments.chaos.gamma(),
             machine: plot.machine(),
             instanced: matches!(self.shown, ShownPart::Nested),
             threads: growth.threads(),

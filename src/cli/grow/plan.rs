@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::export;
 use crate::render::{self, MeshFormat, Unit, ZoomTarget};
-use crate::style::{ColorBy, Named};
+use crate::style::{ColorBy, DensityView, Method, Named};
 
 use super::super::{Failure, format};
 use super::Arguments;
@@ -100,6 +100,37 @@ impl Named for Format {
 /// Message for a zoom of random iteration in the plane.
 pub(super) const NO_ZOOM_OF_POINTS: &str =
     "--zoom magnifies elements, and --method chaos draws points: --view shows a part of them";
+
+/// Returns the arguments and the plan for the density of a file: random iteration, unless an option of elements is given, or
+/// tones of elements. `None` if the file has no density, or if it does not apply to what is written.
+pub(super) fn of_file(arguments: &Arguments, file: DensityView) -> Option<(Arguments, Plan)> {
+    if file == DensityView::default() {
+        return None;
+    }
+    let chaos = &arguments.chaos;
+    let has_elements = arguments.steps.is_some()
+        || arguments.between.is_some()
+        || arguments.turn.is_some()
+        || arguments.zoom.is_asked();
+    let is_of_points = file.method == Some(Method::Chaos) && !chaos.is_asked();
+    if is_of_points && (has_elements || chaos.method().is_some()) {
+        return None;
+    }
+    let arguments = Arguments {
+        chaos: chaos.or(file),
+        ..arguments.clone()
+    };
+    let plan = Plan::of(&arguments).ok()?;
+    let is_png = matches!(
+        plan,
+        Plan::Chaos(None)
+            | Plan::Picture {
+                format: render::Format::Png,
+                ..
+            }
+    );
+    (is_png || chaos.is_asked()).then_some((arguments, plan))
+}
 
 impl Plan {
     /// Returns the plan of the arguments; an error if they exclude each other.

@@ -158,9 +158,17 @@ pub(super) fn write(
     let name = name_of(&arguments.rule.rule).to_string_lossy();
     let drawing = Drawing::new(arguments, loaded, Format::Png, &ShownPart::Window, place)?;
     let graph = drawing.graph()?;
-    let options = drawing.options(drawing.goal, graph.place());
+    let mut options = drawing.options(drawing.goal, graph.place());
     drawing.check_tiles(&graph, &options)?;
     let canvas = drawing.frame_of_tiles(&graph, &options)?;
+    // Tiles have the colours of the whole.
+    let [left, bottom, width, height] = canvas.window();
+    let range = match options.style.color_by {
+        ColorBy::X => Some([left, left + width]),
+        ColorBy::Y => Some([bottom, bottom + height]),
+        _ => None,
+    };
+    options.style.color_range = options.style.color_range.or(range);
     let pyramid = Pyramid::new(canvas, asked.side(), asked.overlap());
     let deepest = pyramid.deepest();
     let mut levels: Vec<u32> = match &asked.level {
@@ -259,6 +267,18 @@ impl Drawing<'_> {
                 "--color-by {} distinguishes steps, whose number differs from tile to tile if --detail decides it: give --steps too, \
                  or --color-by none",
                 color_by.name()
+            )));
+        }
+        let has_range = options.style.color_range.is_some();
+        if color_by == ColorBy::Distance || color_by == ColorBy::Length && !has_range {
+            return Err(Failure::Usage(format!(
+                "--color-by {} depends on the whole picture, and a tile is drawn by itself: use angle, x or y{}",
+                color_by.name(),
+                match color_by {
+                    ColorBy::Length =>
+                        ", or give the lengths of the first and the last colour, as --color-range 0.01..1",
+                    _ => "",
+                }
             )));
         }
         if let Goal::Steps(steps, None) = self.goal {

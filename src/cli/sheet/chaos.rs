@@ -20,17 +20,24 @@ impl Arguments {
         self.refuse_of_elements()?;
         self.space.refuse_in_plane(contents.first())?;
         let path = self.path("png");
-        let games = contents.individuals.iter().map(|individual| {
-            let arguments = GameArguments {
-                chaos: &self.chaos,
-                growth: &self.growth,
-                picture: &self.picture,
-                steps: self.steps.as_ref().map(Several::largest),
-                seed: individual.seed,
-            };
-            let view = self.view(&individual.loaded);
-            PlaneGame::new(arguments, &individual.loaded, view, None)
-        });
+        let chaos: Vec<_> = { contents.individuals.iter() }
+            .map(|individual| self.chaos.or(individual.loaded.model.metadata().density))
+            .collect();
+        let games = contents
+            .individuals
+            .iter()
+            .zip(&chaos)
+            .map(|(individual, chaos)| {
+                let arguments = GameArguments {
+                    chaos,
+                    growth: &self.growth,
+                    picture: &self.picture,
+                    steps: self.steps.as_ref().map(Several::largest),
+                    seed: individual.seed,
+                };
+                let view = self.view(&individual.loaded);
+                PlaneGame::new(arguments, &individual.loaded, view, None)
+            });
         let mut games = games.collect::<Result<Vec<_>, Failure>>()?;
         if contents.fit == Fit::All {
             let mut all = Bounds::EMPTY;

@@ -219,6 +219,9 @@ impl FromNode for Vec<PieceDocument> {
 }
 
 fn read_piece(reader: &mut Reader, node: &Node) -> Option<PieceDocument> {
+    if let Some(point) = reader.complex(node) {
+        return Some(PieceDocument::Line(point));
+    }
     if let Value::Sequence(_) = node.value {
         return Some(PieceDocument::Line(reader.point(node)));
     }

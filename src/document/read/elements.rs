@@ -230,6 +230,9 @@ impl FromNode for Vec<Entry> {
 
 fn read_entry(reader: &mut Reader, node: &Node) -> Entry {
     let unknown = || Entry::Point(WrittenPoint::unknown(&node.place));
+    if let Some(point) = reader.complex(node) {
+        return Entry::Point(point);
+    }
     match &node.value {
         Value::Sequence(_) => Entry::Point(reader.point(node)),
         Value::Mapping(_) => read_listed(reader, node)

@@ -67,7 +67,8 @@ mapping! {
          in order.";
     scale: Option<Vec<WrittenNumber>> = Form::Either(&[Form::Number, Form::Place]),
         "A factor, or one along x and one along y; in space also along z.";
-    shift: Option<WrittenPoint> = Form::Place, "What is added last: [x, y], in space [x, y, z].";
+    translate: Option<WrittenPoint> = Form::Place, "What is added last: [x, y], in space [x, y, z].";
+    shift: Option<WrittenPoint> = Form::Place, "Another name of `translate`.";
     about: Option<WrittenPoint> = Form::Place,
         "The centre of scaling and turning; [0, 0] if left out.";
     points: WhichPoints =

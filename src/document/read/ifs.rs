@@ -80,10 +80,7 @@ pub(super) const PLACE: Shape = Shape {
 };
 
 const MAP_HINT: &str =
-    "{scale: 1/2, rotate: 45, shift: [1, 0]} or {matrix: [[a, b], [c, d]], shift: [e, f]}";
-
-/// A point, or the name of a complex parameter.
-const COMPLEX: Form = Form::Either(&[Form::Place, Form::Expression]);
+    "{scale: 1/2, rotate: 45, translate: [1, 0]} or {matrix: [[a, b], [c, d]], translate: [e, f]}";
 
 /// Keys that define a map.
 const PLACING: [Member; 8] = keys![
@@ -99,13 +96,12 @@ const PLACING: [Member; 8] = keys![
     ]),
         "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis; in space a \
          turn about an axis, {y: 30} or {axis: [1, 1, 0], angle: 30}, or a list of turns in order.";
-    times: COMPLEX,
-        "A complex factor s, as [real part, imaginary part] or the name of a complex parameter: z goes \
-         to s z.";
+    times: Form::Place,
+        "A complex factor s, as [real part, imaginary part], a complex parameter or a formula, 1/(2 - i): z goes to s z.";
     conjugate: Form::Flag(false), "With `times`: z goes to s conj z.";
-    shift: COMPLEX, "What is added last: [x, y], or the name of a complex parameter.";
-    translate: COMPLEX, "Another name of `shift`.";
-    fixed: COMPLEX, "In place of `shift`: the point that stays where it is.";
+    translate: Form::Place, "What is added last: [x, y], a complex parameter or a formula.";
+    shift: Form::Place, "Another name of `translate`.";
+    fixed: Form::Place, "In place of `translate`: the point that stays where it is.";
 ];
 
 const PLACEMENTS: [KeySet; 3] = [
@@ -251,11 +247,11 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
         false => read_linear(reader, fields),
     };
     if fields.take("shift").is_some() && fields.take("translate").is_some() {
-        let message = "`translate` is another name of `shift`";
+        let message = "`shift` is another name of `translate`";
         let hint = "write one of them";
-        reader.error_with_hint(fields.place_of("translate"), message, hint);
+        reader.error_with_hint(fields.place_of("shift"), message, hint);
     }
-    let shift = fields.take("shift").or(fields.take("translate"));
+    let shift = fields.take("translate").or(fields.take("shift"));
     let map = MapDocument {
         name: None,
         linear,
@@ -266,7 +262,7 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
         place: fields.place.clone(),
     };
     if map.shift.is_some() && map.fixed.is_some() {
-        let message = "`fixed` stands in place of `shift`";
+        let message = "`fixed` stands in place of `translate`";
         let hint = "write one of them";
         reader.error_with_hint(fields.place_of("fixed"), message, hint);
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::diagnostic::Diagnostics;
 use crate::document::animation::{ANIMATION, read_animation};
+use crate::document::density::{DENSITY, read_density};
 use crate::document::metadata::MetadataDocument;
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
@@ -29,7 +30,7 @@ pub(in crate::document) const DESCRIPTION: [Member; 5] = keys![
 const FORMAT: u32 = 1;
 
 /// Keys for the defaults of growing and drawing, and for published properties.
-pub(super) const LIKING: [Member; 7] = keys![
+pub(super) const LIKING: [Member; 8] = keys![
     steps: Form::Whole(0, Some(MAX_STEPS)),
         "The number of steps, unless another is asked for.";
     dimension: Form::Number, "The published similarity dimension. It does not change the picture.";
@@ -40,6 +41,7 @@ pub(super) const LIKING: [Member; 7] = keys![
          similarity dimension; `none` takes back that of a parent.";
     style: Form::Mapping(&STYLE), "How it is drawn.";
     view: Form::Mapping(&VIEW), "Which part of the plane is drawn, or how a set in space is seen.";
+    density: Form::Mapping(&DENSITY), "How often the pixels of a PNG are hit, by elements or by random iteration, as tones.";
     animation: Form::Mapping(&ANIMATION), "How `kfrac animate` makes a film of it, unless other options are given.";
 ];
 
@@ -66,6 +68,7 @@ pub(in crate::document) fn read_metadata(
         style: fields.read(reader, "style").unwrap_or_default(),
         view,
         space,
+        density: read_density(reader, fields, in_space),
         animation: { fields.take("animation") }
             .map(|node| read_animation(reader, node))
             .unwrap_or_default(),

@@ -15,7 +15,7 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
     keys: &[&keys![
         alone value: NUMBER,
             "Its value, where nothing else is set. It may use the parameters above it. A list of two \
-             is a complex number, as are its limits then: [real part, imaginary part].";
+             is a complex number, as are its limits then: [real part, imaginary part]; so is a formula with i, 1/(2 - i).";
         min: NUMBER, "The least value that it may be set to.";
         max: NUMBER, "The largest value that it may be set to.";
         about: Form::Text, "What it means.";
@@ -44,9 +44,17 @@ pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<Param
         .collect()
 }
 
+/// Returns whether a value is a complex number: a list, or a formula with the imaginary unit.
+pub(super) fn is_complex(node: &Node) -> bool {
+    match &node.value {
+        Value::Sequence(_) => true,
+        Value::Text(text) => Expression::parse(text).is_ok_and(|it| it.has_imaginary_unit()),
+        _ => false,
+    }
+}
+
 /// Reads a parameter, or the two parts of a complex parameter.
 fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocument> {
-    let is_complex = |node: &Node| matches!(node.value, Value::Sequence(_));
     let mut parameter = ParameterDocument {
         name: written(key),
         whole: None,
@@ -75,7 +83,7 @@ fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocum
     };
     // A complex value requires complex limits, and a complex limit a complex value.
     let complex = |reader: &mut Reader, node: &Node, what: &str| {
-        if let Value::Number(_) | Value::Text(_) = node.value {
+        if !is_complex(node) && matches!(node.value, Value::Number(_) | Value::Text(_)) {
             let message = format!("'{}' is complex, and this {what} of it is real", key.name);
             let hint = "write [real part, imaginary part]";
             reader.error_with_hint(&node.place, message, hint);

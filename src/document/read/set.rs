@@ -12,7 +12,7 @@ use crate::kind::Kind;
 use crate::metadata::MAX_STEPS;
 
 use super::ifs::{PLACE, read_placing};
-use super::parameters::written;
+use super::parameters::{is_complex, written};
 use super::solid::{CUBOID, ELLIPSOID, MESH, SHAFT, SPHERE, read_solid_set};
 use super::space::SOLIDS;
 
@@ -344,7 +344,7 @@ fn read_value(
     name: Written<String>,
     node: &Node,
 ) -> Vec<(Written<String>, WrittenNumber)> {
-    if !matches!(node.value, Value::Sequence(_)) {
+    if !is_complex(node) {
         return vec![(name, reader.number(node))];
     }
     let WrittenPoint { x, y, .. } = reader.point(node);

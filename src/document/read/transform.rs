@@ -9,10 +9,11 @@ use super::ifs::read_matrix;
 use super::space::{self, FACTORS_HINT, TURN};
 
 /// Keys that transform.
-pub(in crate::document) const TRANSFORMS: [Member; 5] = keys![
+pub(in crate::document) const TRANSFORMS: [Member; 6] = keys![
     =SCALE;
     =ROTATE;
     =TRANSLATE;
+    =SHIFT;
     =MATRIX;
     transform: Form::List(&Form::Mapping(&TRANSFORM), 1, None),
         "Transforms one after the other, where one of them is needed twice.";
@@ -35,7 +36,9 @@ const ROTATE: Member = key(
      {axis: [1, 1, 0], angle: 30}, or a list of turns in order.",
 );
 
-const TRANSLATE: Member = key("translate", Form::Place, "A shift: [x, y].");
+const TRANSLATE: Member = key("translate", Form::Place, "A translation: [x, y].");
+
+const SHIFT: Member = key("shift", Form::Place, "Another name of `translate`.");
 
 const MATRIX: Member = key(
     "matrix",
@@ -50,6 +53,7 @@ const TRANSFORM: Shape = Shape {
         =SCALE;
         =ROTATE;
         =TRANSLATE;
+        =SHIFT;
         =MATRIX;
     ]],
     alternatives: &[],
@@ -62,7 +66,9 @@ pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<T
     for (name, node) in fields.in_order() {
         match name {
             "transform" => transforms.extend(read_list(reader, node)),
-            "translate" => transforms.push(TransformDocument::Translate(reader.point(node))),
+            "translate" | "shift" => {
+                transforms.push(TransformDocument::Translate(reader.point(node)))
+            }
             _ if reader.is_in_space => transforms.extend(read_in_space(reader, name, node)),
             _ => transforms.extend(read_in_plane(reader, name, node)),
         }

@@ -195,7 +195,7 @@ fn moving(moving: &MoveDocument, points: &[usize]) -> String {
     if let Some(last) = verbs.last_mut() {
         last.push_str(&about);
     }
-    if let Some(shift) = &moving.shift {
+    if let Some(shift) = moving.translate.as_ref().or(moving.shift.as_ref()) {
         verbs.push(format!("shifted by {}", pair(shift)));
     }
     format!("{subject}: {}", verbs.join(", "))

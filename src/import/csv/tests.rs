@@ -110,7 +110,7 @@ fn an_order_that_is_not_stated_is_reported() {
     let imported = read_with(space, None);
     let yaml = imported.document.unwrap().to_yaml();
     assert!(
-        yaml.contains("space: 3") && yaml.contains("shift: [1, 2, 3]"),
+        yaml.contains("space: 3") && yaml.contains("translate: [1, 2, 3]"),
         "{yaml}"
     );
 }

@@ -3,7 +3,7 @@
 use crate::geometry::{Frame, Outline};
 use crate::graph::{Graph, Replacement};
 use crate::rule::Placement;
-use crate::style::{Cap, ColorBy, Join, Named, Style, Width};
+use crate::style::{Cap, ColorBy, ColorProperty, Join, Named, Style, Width};
 
 /// Reason why a picture cannot be made of nested instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -80,7 +80,7 @@ pub(super) fn check<F: Frame>(
     let distinguishes = match style.color_by {
         ColorBy::Index => true,
         ColorBy::Fractal => graph.has_fractals(),
-        _ => false,
+        by => by.property() == ColorProperty::Frame,
     };
     if distinguishes {
         let by = style.color_by.name();

@@ -125,7 +125,7 @@ impl<'a> Sprites<'a> {
             ColorBy::Index => pass != Pass::Along,
             ColorBy::Fractal => graph.has_fractals(),
             ColorBy::Tint => graph.tints(),
-            _ => false,
+            _ => scene.frames.is_some(),
         };
         pass != Pass::Areas && !numbers_change && !scene.fills_strokes && scene.stands_alone()
     }

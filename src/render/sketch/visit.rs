@@ -64,6 +64,10 @@ impl Visitor for Sketcher<'_> {
 
     fn run(&mut self, run: &Run<'_>) -> io::Result<()> {
         let Scene { graph, classes, .. } = self.scene;
+        if self.scene.frames.is_some() {
+            run.elements().for_each(|element| self.see(&element));
+            return Ok(());
+        }
         let share = match self.pass {
             Pass::Areas => Share::Some,
             Pass::Class(_) if self.mask.paints_all_of(run.object()) => Share::All,

@@ -11,8 +11,8 @@ use crate::chaos::{
 use crate::geometry::{DAffine3, DMat3, DVec3, Frame3};
 use crate::graph::Graph;
 use crate::render::png::TooManyPixels;
-use crate::render::{Options, Pixels, RenderError, Tone};
-use crate::style::{ColorBy, Colour, Style};
+use crate::render::{Options, Pixels, RenderError};
+use crate::style::{ColorBy, Colour, Style, Tone};
 
 use super::buffer::{CLASS_BITS, EMPTY, MAX_CLASS, SAMPLES, STEPS};
 use super::camera::{Placement, Projection};

@@ -129,11 +129,16 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     }
 
     fn moving(&mut self, document: &MoveDocument, scope: &Scope, shared: &MovedPoints) -> Move<F> {
-        let mut vector = |point: &Option<WrittenPoint>| match point {
+        let shift = document.translate.as_ref().or(document.shift.as_ref());
+        if let (Some(_), Some(shift)) = (&document.translate, &document.shift) {
+            let message = "`shift` is another name of `translate`";
+            self.error_with_hint(&shift.place, message, "write one of them");
+        }
+        let mut vector = |point: Option<&WrittenPoint>| match point {
             Some(point) => F::point_in(self, point, scope),
             None => F::splat(&Program::constant(0.0)),
         };
-        let (shift, about) = (vector(&document.shift), vector(&document.about));
+        let (shift, about) = (vector(shift), vector(document.about.as_ref()));
         let scale = F::factors(self, document.scale.as_deref().unwrap_or_default(), scope);
         let rotate = F::turns(self, document, scope);
         let points = match &document.points {

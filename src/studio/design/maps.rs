@@ -58,8 +58,8 @@ pub(super) fn handles(node: &Node, at: &[Step], names: &Names) -> Vec<MapHandle>
             "rotate",
             "times",
             "conjugate",
-            "shift",
             "translate",
+            "shift",
             "fixed",
         ];
         let written = forms.iter().filter(|key| node.get(key).is_some());
@@ -253,10 +253,9 @@ pub(super) fn edits(
         let centre = rest.inverse() * new.translation;
         edits.push(Edit::set(step("fixed"), two(centre)));
     } else if new.translation != old.translation {
-        let key = if node.get("translate").is_some() {
-            "translate"
-        } else {
-            "shift"
+        let key = match node.get("shift") {
+            Some(_) => "shift",
+            None => "translate",
         };
         edits.push(put(key, two(new.translation)));
     }

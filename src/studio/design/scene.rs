@@ -185,7 +185,7 @@ pub(super) fn moved(panel: &mut Panel, generator: &Node) {
         );
         let (about, shift) = (
             point("about").unwrap_or_default(),
-            point("shift").unwrap_or_default(),
+            point("translate").or(point("shift")).unwrap_or_default(),
         );
         let (sin, cos) = libm::sincos(angle.to_radians());
         let chosen: Option<Vec<usize>> = match one.get("points").map(|it| &it.value) {

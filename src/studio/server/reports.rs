@@ -13,9 +13,8 @@ use serde_json::{Value, json};
 
 use crate::cli::animate::Ease;
 use crate::cli::held::Held;
-use crate::render::Tone;
 use crate::render::space::Shade;
-use crate::style::{Cap, ColorBy, Join, Named, Palette};
+use crate::style::{Cap, ColorBy, Join, Named, Palette, Tone};
 
 use super::super::answer::Refusal;
 use super::super::look::Look;
