@@ -44,7 +44,7 @@ fn a_file_is_drawn_as_its_density_states() {
         &options.replace("--kernel 3", "--kernel 1"),
         "c.png",
     );
-    assert!(plain != expected && draw(&file, "--method chaos --kernel 1", "d.png") == plain);
+    assert!(plain != expected && draw(&file, "--kernel 1", "d.png") == plain);
     // Options of elements, another method and other formats draw elements.
     let elements = draw(SYSTEM, "", "e.png");
     for options in ["--steps 6", "--method deterministic"] {

@@ -100,7 +100,7 @@ fn places_are_those_in_the_picture() {
 }
 
 #[test]
-fn bytes_do_not_depend_on_threads_or_bands() {
+fn bytes_do_not_depend_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     for by in ["angle", "length", "x", "distance"] {
         let mut pictures = Vec::new();

@@ -6,6 +6,7 @@ mod morphed;
 mod plan;
 mod plot;
 mod pyramid;
+mod runs;
 mod scene;
 mod space;
 mod svg;
@@ -17,7 +18,7 @@ mod zoom;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::ValueHint;
@@ -44,6 +45,7 @@ use morphed::MorphArguments;
 use plan::{Format, Plan};
 use plot::PlotArguments;
 use pyramid::PyramidArguments;
+pub(super) use runs::Runs;
 use scene::SceneArguments;
 use svg::SvgArguments;
 use tile::TileArguments;
@@ -253,36 +255,6 @@ pub(crate) fn hold(
     Ok(summary)
 }
 
-/// Runs of the command with many arguments for one rule, which is read once.
-pub(super) struct Runs<'a> {
-    document: Arc<Document>,
-    catalogue: &'a Catalogue,
-    parser: Mutex<held::Parser<Arguments>>,
-}
-
-impl<'a> Runs<'a> {
-    pub(super) fn new(document: Arc<Document>, catalogue: &'a Catalogue) -> Self {
-        Self {
-            document,
-            catalogue,
-            parser: Mutex::new(held::Parser::new("grow")),
-        }
-    }
-
-    /// Runs the command as [`hold`] does.
-    pub(super) fn hold(&self, arguments: &[String], held: Arc<Held>) -> Result<(), Failure> {
-        let mut arguments = {
-            let mut parser = self.parser.lock().unwrap_or_else(PoisonError::into_inner);
-            parser.parse(arguments)?
-        };
-        arguments.growth.held = Some(held);
-        let plan = Plan::of(&arguments)?;
-        let document = Arc::clone(&self.document);
-        let loaded = arguments.resolve(document, self.catalogue, true)?;
-        arguments.grow(&plan, loaded).map(|_| ())
-    }
-}
-
 impl Arguments {
     /// Returns the command line that grows again what a picture holds, with the options of the line that is given;
     /// `None` unless the rule is a picture.
@@ -371,6 +343,9 @@ impl Arguments {
     }
 
     fn write(&self, plan: &Plan, mut loaded: Loaded) -> Result<(PathBuf, String, u64), Failure> {
+        if !self.draws_points() {
+            self.chaos.check(&self.picture, true)?;
+        }
         if let (Some(share), Some(steps)) = (self.between, self.steps()) {
             loaded.model = loaded.model.between(steps, share);
         }

@@ -329,9 +329,11 @@ impl Reader {
         if is_name(text) && text != UNIT {
             return Some(WrittenPoint::named(text, &node.place));
         }
-        let number = self.number(node);
         let place = node.place.clone();
-        let parts = match number.value.complex_parts() {
+        let parts = Expression::parse(text)
+            .map_err(|error| error.hint("a point is written [x, y], or as a formula, (1 + i)/2"))
+            .and_then(|formula| formula.complex_parts());
+        let parts = match parts {
             Ok(parts) => parts,
             Err(error) => {
                 let within = node.within(error.range.clone());

@@ -146,7 +146,7 @@ fn middle(points: &[DVec2], cut: usize) -> [DVec2; 2] {
 }
 
 /// Largest number of bins of all classes whose hits are spread.
-const MAX_SPREAD: usize = 1 << 26;
+pub(super) const MAX_SPREAD: usize = 1 << 26;
 
 /// Number of hits below which colours are tabulated.
 const FEW_HITS: u64 = 4096;

@@ -8,6 +8,7 @@ use crate::kind::Kind;
 use crate::zoom::ZoomError;
 
 use super::canvas::NoRoom;
+use super::density::MAX_SPREAD;
 use super::instanced::NotInstanced;
 #[cfg(doc)]
 use super::options::Options;
@@ -40,7 +41,7 @@ pub enum RenderError {
     #[error(transparent)]
     TooManyPixels(#[from] TooManyPixels),
     /// A density has too many bins for its kernel.
-    #[error("{bins} bins of hits are too many to be spread by a kernel; 67,108,864 are the most")]
+    #[error("{bins} bins of hits are too many to be spread by a kernel; {most} are the most", most = MAX_SPREAD)]
     TooManyToSpread {
         /// Number of bins of all classes.
         bins: usize,

@@ -33,17 +33,15 @@ impl FrameColours {
     pub(super) fn of(
         style: &Style,
         graph: &Graph,
-        [left, bottom, width, height]: [f64; 4],
+        window @ [left, bottom, width, height]: [f64; 4],
         lengths: [f64; 2],
     ) -> Option<Self> {
         let by = style.color_by;
         let range = match by {
             ColorBy::Angle => [0.0, 360.0],
             ColorBy::Length => lengths,
-            ColorBy::X => [left, left + width],
-            ColorBy::Y => [bottom, bottom + height],
             ColorBy::Distance => [0.0, width.max(height) / 2.0],
-            _ => return None,
+            by => by.range_across(window)?,
         };
         let is_cyclic = by == ColorBy::Angle && style.color_range.is_none();
         let last = if is_cyclic { COLOURS } else { COLOURS - 1 };

@@ -79,6 +79,16 @@ impl ColorBy {
         }
     }
 
+    /// Returns the least and the largest coordinate that colours by x or y distinguish in a window: lower left corner, width and
+    /// height.
+    pub(crate) fn range_across(self, [x, y, width, height]: [f64; 4]) -> Option<[f64; 2]> {
+        match self {
+            Self::X => Some([x, x + width]),
+            Self::Y => Some([y, y + height]),
+            _ => None,
+        }
+    }
+
     /// Returns whether the colours of elements come from the palette.
     #[must_use]
     pub fn takes_palette(self) -> bool {

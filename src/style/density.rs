@@ -56,19 +56,6 @@ impl DensityView {
 
     /// Largest exponent of tones.
     pub const MAX_GAMMA: f64 = 10.0;
-
-    /// Returns the view with the values of another where this one is silent.
-    #[must_use]
-    pub fn or(self, other: Self) -> Self {
-        Self {
-            method: self.method.or(other.method),
-            points: self.points.or(other.points),
-            tone: self.tone.or(other.tone),
-            gamma: self.gamma.or(other.gamma),
-            oversample: self.oversample.or(other.oversample),
-            kernel: self.kernel.or(other.kernel),
-        }
-    }
 }
 
 /// Mapping of a number of hits to a tone from 0 to 1.

@@ -164,8 +164,6 @@ impl Plan {
                 let message = format!("{option} applies to lines, and --method chaos draws points");
                 refuse(is_asked, message)?;
             }
-        } else {
-            chaos.check(picture, true)?;
         }
         let has_tone = !is_chaos && chaos.tone_of_elements().is_some();
         refuse_beside_tiles(arguments, is_chaos)?;

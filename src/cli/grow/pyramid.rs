@@ -162,12 +162,7 @@ pub(super) fn write(
     drawing.check_tiles(&graph, &options)?;
     let canvas = drawing.frame_of_tiles(&graph, &options)?;
     // Tiles have the colours of the whole.
-    let [left, bottom, width, height] = canvas.window();
-    let range = match options.style.color_by {
-        ColorBy::X => Some([left, left + width]),
-        ColorBy::Y => Some([bottom, bottom + height]),
-        _ => None,
-    };
+    let range = options.style.color_by.range_across(canvas.window());
     options.style.color_range = options.style.color_range.or(range);
     let pyramid = Pyramid::new(canvas, asked.side(), asked.overlap());
     let deepest = pyramid.deepest();

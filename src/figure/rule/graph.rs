@@ -3,10 +3,10 @@
 //! The graph of a limit set is cyclic, that of an approximant has a level for each step, and the tree of an approximant has a node
 //! for each element.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod net;
 
 use crate::geometry::{Bounds, DAffine2, DAffine3, DMat3, DVec2, Frame, Frame2, Frame3};
-use crate::graph::{Graph, Replacement};
+use crate::graph::Graph;
 use crate::render::{Paint, Pen};
 use crate::rule::Piece;
 use crate::style::Named;
@@ -14,29 +14,21 @@ use crate::style::Named;
 use super::super::text::Font;
 use super::block::{Block, BlockItem, Outline};
 use super::ink::{self, ElementRole};
-use super::lines::{flattened, outline};
+use super::lines::{bounds_of, outline};
 use super::page::{SMALL, WORDS, lay_out};
 use super::space;
+use net::{GraphNode, Link, Net, Subject};
 
 /// Radius of a node, in pixels.
 const RADIUS: f64 = 19.0;
 /// Radius of the box of what is drawn in a node.
 const INNER: f64 = 12.0;
-/// Distance of rows.
-const ROW: f64 = 92.0;
-/// Distance of nodes in a row, where there is room, and the least distance.
-const COLUMNS: [f64; 2] = [110.0, 44.0];
-/// Width up to which nodes of a row keep the first of these distances.
-const WIDTH: f64 = 900.0;
 /// Distance of the middles of arrows between the same nodes.
 const FAN: f64 = 13.0;
 /// Largest number of arrows between two nodes; more of them are one arrow with their number.
 const MAX_ARROWS: usize = 6;
 /// Length of the head of an arrow.
 const HEAD: f64 = 7.0;
-/// Limits of the number of nodes, of arrows and of steps.
-const MAX_NODES: usize = 400;
-const MAX_EDGES: usize = 4_000;
 
 /// Topology of an instancing graph.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,177 +104,7 @@ pub(super) fn page<F: GraphFrame>(
     )
 }
 
-/// Subject of a node.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Subject {
-    Start,
-    /// An object, with the number of steps that remain if they count.
-    Object(usize, Option<u32>),
-}
-
-/// A node in its row.
-struct GraphNode {
-    subject: Subject,
-    row: usize,
-    /// Position across, in pixels from the middle.
-    x: f64,
-    /// Whether the object is replaced here.
-    is_replaced: bool,
-    /// Whether it is drawn at random what replaces it.
-    is_drawn: bool,
-}
-
-/// Arrows between two nodes.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Link {
-    from: usize,
-    to: usize,
-    seeds: bool,
-}
-
-/// Nodes and arrows of a figure.
-struct Net {
-    nodes: Vec<GraphNode>,
-    links: BTreeMap<Link, usize>,
-    /// Whether nodes or arrows are left out.
-    is_cut: bool,
-}
-
 impl Net {
-    fn of<F: Frame>(graph: &Graph<F>, topology: Topology, steps: u32) -> Self {
-        let mut net = Self {
-            nodes: vec![GraphNode::new(Subject::Start, 0, graph)],
-            links: BTreeMap::new(),
-            is_cut: false,
-        };
-        let mut known = BTreeMap::from([(Subject::Start, 0)]);
-        let mut alike = Alike::default();
-        let mut next = 0;
-        while next < net.nodes.len() {
-            let (subject, row) = (net.nodes[next].subject, net.nodes[next].row);
-            for (object, seeds) in children(graph, subject, steps, topology) {
-                let remaining = match (topology, subject) {
-                    (Topology::Cyclic, _) => None,
-                    (_, Subject::Start) => Some(steps),
-                    (_, Subject::Object(_, remaining)) => {
-                        Some(remaining.unwrap_or(0).saturating_sub(1))
-                    }
-                };
-                let subject = Subject::Object(alike.first(object, graph), remaining);
-                let shared = known.get(&subject).filter(|_| topology != Topology::Tree);
-                let to = match shared {
-                    Some(to) => *to,
-                    None if net.nodes.len() >= MAX_NODES => {
-                        net.is_cut = true;
-                        continue;
-                    }
-                    None => {
-                        net.nodes.push(GraphNode::new(subject, row + 1, graph));
-                        known.insert(subject, net.nodes.len() - 1);
-                        net.nodes.len() - 1
-                    }
-                };
-                let link = Link {
-                    from: next,
-                    to,
-                    seeds,
-                };
-                if net.links.len() < MAX_EDGES || net.links.contains_key(&link) {
-                    *net.links.entry(link).or_default() += 1;
-                } else {
-                    net.is_cut = true;
-                }
-            }
-            next += 1;
-        }
-        match topology {
-            Topology::Tree => net.spread_tree(),
-            Topology::Levels => net.spread_rows(),
-            Topology::Cyclic => {
-                net.sink();
-                net.spread_rows();
-            }
-        }
-        net
-    }
-
-    /// Moves the objects that are not replaced below the others.
-    fn sink(&mut self) {
-        let replaced = self.nodes.iter().filter(|node| node.is_replaced);
-        let last = replaced.map(|node| node.row).max().unwrap_or(0);
-        for node in self
-            .nodes
-            .iter_mut()
-            .skip(1)
-            .filter(|node| !node.is_replaced)
-        {
-            node.row = last + 1;
-        }
-    }
-
-    /// Spreads the nodes of every row, each under the nodes that instance it.
-    fn spread_rows(&mut self) {
-        let last = self.nodes.iter().map(|node| node.row).max().unwrap_or(0);
-        for row in 0..=last {
-            let mut own: Vec<(f64, usize)> = (0..self.nodes.len())
-                .filter(|number| self.nodes[*number].row == row)
-                .map(|number| (self.mean_above(number), number))
-                .collect();
-            own.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            #[expect(clippy::cast_precision_loss, reason = "there are few nodes")]
-            let count = own.len() as f64;
-            let distance = (WIDTH / count).clamp(COLUMNS[1], COLUMNS[0]);
-            for (place, (_, number)) in (0_u32..).zip(own) {
-                self.nodes[number].x = (f64::from(place) - (count - 1.0) / 2.0) * distance;
-            }
-        }
-    }
-
-    /// Returns the mean position of the nodes in the row above that lead to a node.
-    fn mean_above(&self, number: usize) -> f64 {
-        let row = self.nodes[number].row;
-        let above = self.links.keys().filter(|link| link.to == number);
-        let above: Vec<f64> = above
-            .map(|link| &self.nodes[link.from])
-            .filter(|node| node.row < row)
-            .map(|node| node.x)
-            .collect();
-        #[expect(clippy::cast_precision_loss, reason = "there are few nodes")]
-        let count = above.len().max(1) as f64;
-        above.iter().sum::<f64>() / count
-    }
-
-    /// Puts leaves side by side, and every other node over the middle of its children.
-    fn spread_tree(&mut self) {
-        let mut children = vec![Vec::new(); self.nodes.len()];
-        for link in self.links.keys() {
-            children[link.from].push(link.to);
-        }
-        let leaves = children.iter().filter(|own| own.is_empty()).count();
-        #[expect(clippy::cast_precision_loss, reason = "there are few nodes")]
-        let distance = (WIDTH / leaves.max(1) as f64).clamp(COLUMNS[1], COLUMNS[0]);
-        let mut place = 0.0;
-        // Leaves come in the order of the walk, depth first.
-        let mut stack = vec![(0, false)];
-        while let Some((number, is_done)) = stack.pop() {
-            let own = &children[number];
-            if own.is_empty() {
-                self.nodes[number].x = place;
-                place += distance;
-            } else if is_done {
-                let ends = [own[0], own[own.len() - 1]].map(|child| self.nodes[child].x);
-                self.nodes[number].x = f64::midpoint(ends[0], ends[1]);
-            } else {
-                stack.push((number, true));
-                stack.extend(own.iter().rev().map(|child| (*child, false)));
-            }
-        }
-        let middle = (place - distance) / 2.0;
-        for node in &mut self.nodes {
-            node.x -= middle;
-        }
-    }
-
     fn draw<F: GraphFrame>(&self, graph: &Graph<F>, view: F::View, font: &Font) -> Block {
         let mut block = Block::default();
         for (link, count) in &self.links {
@@ -311,7 +133,7 @@ impl Net {
                 loop_of(from.centre(), number)
             } else {
                 // Arrows to the same row or upwards, and those with arrows back, keep to one side.
-                let aside = if from.row >= to.row || is_both {
+                let aside = if !from.is_above(to) || is_both {
                     30.0
                 } else {
                     0.0
@@ -335,13 +157,8 @@ impl Net {
                 pieces: [neck + side, neck - side, end].map(Piece::Line).into(),
                 closed: true,
             };
-            let colour = paint.stroke.map(|stroke| stroke.colour);
-            let filled = Paint {
-                fill: colour,
-                stroke: None,
-                has_holes: false,
-            };
             let label = Some("instance");
+            let filled = ink::filled(role_of(link.seeds).colour());
             block.items.push(BlockItem::Path(vec![head], filled, label));
             if count > MAX_ARROWS {
                 let text = format!("×{count}");
@@ -369,11 +186,7 @@ impl Net {
                 .items
                 .push(BlockItem::Text(name.into(), WORDS, at, super::LABEL));
             let dot = Outline::circle(centre, 4.0);
-            let paint = Paint {
-                fill: Some(ElementRole::Fertile.colour()),
-                stroke: None,
-                has_holes: false,
-            };
+            let paint = ink::filled(ElementRole::Fertile.colour());
             block.items.push(BlockItem::Path(vec![dot], paint, None));
             return;
         };
@@ -386,11 +199,7 @@ impl Net {
             .push(BlockItem::Path(vec![ring], role.element(true), label));
         if object.visible {
             let (outlines, closed) = F::seen(&graph.base_elements()[object.base_element], view);
-            let mut bounds = Bounds::EMPTY;
-            for [from, to] in outlines.iter().flat_map(flattened) {
-                bounds.add(from);
-                bounds.add(to);
-            }
+            let bounds = bounds_of(&outlines);
             let size = bounds.size().max_element();
             if size > 0.0 && size.is_finite() {
                 let map = DAffine2::from_translation(centre)
@@ -410,15 +219,6 @@ impl Net {
                 .items
                 .push(BlockItem::Text(name, SMALL, at, super::LABEL));
         }
-    }
-
-    /// Returns whether there are several objects, which have numbers.
-    fn has_numbers(&self) -> bool {
-        let objects = self.nodes.iter().filter_map(|node| match node.subject {
-            Subject::Object(number, _) => Some(number),
-            Subject::Start => None,
-        });
-        objects.collect::<BTreeSet<_>>().len() > 1
     }
 
     fn notes<F: Frame>(&self, graph: &Graph<F>) -> Vec<String> {
@@ -449,113 +249,19 @@ impl Net {
     }
 }
 
-/// Objects that draw and are replaced alike, of which the first stands for all: those that differ by the generator or the map
-/// that has made them.
-#[derive(Default)]
-struct Alike(BTreeMap<(Option<usize>, usize, bool), Vec<usize>>);
-
-impl Alike {
-    fn first<F: Frame>(&mut self, number: usize, graph: &Graph<F>) -> usize {
-        let object = &graph.objects()[number];
-        let behaviour = match object.replacement {
-            Replacement::Kept => None,
-            _ => Some(object.behaviour),
-        };
-        let group = self
-            .0
-            .entry((behaviour, object.base_element, object.visible));
-        let group = group.or_default();
-        let is_alike = |other: &&usize| {
-            let other = &graph.objects()[**other];
-            other.tint == object.tint
-                && other.paint == object.paint
-                && other.thickness == object.thickness
-        };
-        if let Some(first) = group.iter().find(is_alike) {
-            return *first;
-        }
-        group.push(number);
-        number
-    }
-}
-
-impl GraphNode {
-    fn new<F: Frame>(subject: Subject, row: usize, graph: &Graph<F>) -> Self {
-        let replacement = match subject {
-            Subject::Start => None,
-            Subject::Object(_, Some(0)) => None,
-            Subject::Object(number, _) => Some(&graph.objects()[number].replacement),
-        };
-        Self {
-            subject,
-            row,
-            x: 0.0,
-            is_replaced: matches!(
-                replacement,
-                Some(Replacement::Fixed(_) | Replacement::Evaluated(_) | Replacement::Unresolved)
-            ),
-            is_drawn: matches!(replacement, Some(Replacement::Evaluated(all)) if all.len() > 1),
-        }
-    }
-
-    fn centre(&self) -> DVec2 {
-        #[expect(clippy::cast_precision_loss, reason = "there are few rows")]
-        let row = self.row as f64;
-        DVec2::new(self.x, row * ROW)
-    }
-}
-
-/// Returns the objects of the instances of a node, and whether they start new fractals.
-fn children<F: Frame>(
-    graph: &Graph<F>,
-    subject: Subject,
-    steps: u32,
-    topology: Topology,
-) -> Vec<(usize, bool)> {
-    let number = match subject {
-        Subject::Start => {
-            let start = graph.initiator(steps).instances.iter();
-            return start.map(|instance| (instance.object, false)).collect();
-        }
-        Subject::Object(_, Some(0)) if topology != Topology::Cyclic => return Vec::new(),
-        Subject::Object(number, _) => number,
-    };
-    match &graph.objects()[number].replacement {
-        Replacement::Fixed(successor) => {
-            let placed = successor.placed_instances();
-            placed
-                .map(|(placement, instance)| (instance.object, placement.seeds()))
-                .collect()
-        }
-        Replacement::Evaluated(alternatives) => {
-            let listed = alternatives.iter().flat_map(|alternative| {
-                let parts = graph.parts(alternative).iter();
-                let seeds = parts.flat_map(|part| {
-                    let seeds = part.placement.seeds();
-                    part.elements.iter().map(move |_| seeds)
-                });
-                let seeds = seeds.chain(std::iter::repeat(false));
-                alternative.objects.iter().copied().zip(seeds)
-            });
-            listed.collect()
-        }
-        Replacement::Kept | Replacement::Unresolved => Vec::new(),
-    }
+/// Returns the role of the elements to which arrows lead.
+fn role_of(seeds: bool) -> ElementRole {
+    ElementRole::of(true, seeds)
 }
 
 /// Returns the line of arrows.
 fn paint_of(seeds: bool, is_drawn: bool) -> Paint {
-    let role = if seeds {
-        ElementRole::Seed
-    } else {
-        ElementRole::Fertile
-    };
     let pen = Pen {
         width: 1.2,
         dash: if is_drawn { 4.0 } else { 0.0 },
         ..ink::PEN
     };
-    let mut paint = role.element(true);
+    let mut paint = role_of(seeds).element(true);
     if let Some(stroke) = &mut paint.stroke {
         stroke.pen = pen;
     }
@@ -603,12 +309,7 @@ fn framed(block: Block, font: &Font) -> Block {
     let mut bounds = Bounds::EMPTY;
     for item in &block.items {
         match item {
-            BlockItem::Path(outlines, ..) => {
-                for [from, to] in outlines.iter().flat_map(flattened) {
-                    bounds.add(from);
-                    bounds.add(to);
-                }
-            }
+            BlockItem::Path(outlines, ..) => bounds.add_all(&bounds_of(outlines)),
             BlockItem::Text(text, size, at, _) => {
                 bounds.add(*at + DVec2::new(0.0, -size));
                 bounds.add(*at + DVec2::new(font.width(text, *size), 0.3 * size));

@@ -152,6 +152,15 @@ pub(super) fn instance(closed: bool, tint: Option<Colour>) -> Paint {
     }
 }
 
+/// Returns an area without a line.
+pub(super) fn filled(colour: Colour) -> Paint {
+    Paint {
+        fill: Some(colour),
+        stroke: None,
+        has_holes: false,
+    }
+}
+
 fn stroke(colour: Colour, pen: Pen) -> Paint {
     Paint {
         fill: None,

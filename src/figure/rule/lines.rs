@@ -1,6 +1,6 @@
 //! Lines of a panel: sides, elements, base elements, arrowheads and dots.
 
-use crate::geometry::{DAffine2, DVec2};
+use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::rule::{BaseElement, Piece};
 
 use super::block::{BlockItem, Outline};
@@ -122,6 +122,14 @@ pub(super) fn arrowhead([from, to]: [DVec2; 2]) -> Option<Outline> {
         pieces: vec![Piece::Line(tip), Piece::Line(back - aside)],
         closed: false,
     })
+}
+
+/// Returns the bounding box of outlines.
+pub(super) fn bounds_of<'a>(outlines: impl IntoIterator<Item = &'a Outline>) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    let ends = { outlines.into_iter() }.flat_map(flattened).flatten();
+    ends.for_each(|end| bounds.add(end));
+    bounds
 }
 
 /// Iterates over line segments along an outline; a cubic becomes eight.

@@ -13,7 +13,7 @@ use crate::render::Paint;
 use super::super::text::Font;
 use super::block::{Block, BlockItem, Outline};
 use super::ink;
-use super::lines::{flattened, outline};
+use super::lines::{bounds_of, flattened, outline};
 use super::onto_panel;
 use super::page::{SMALL, WORDS, lay_out, plural};
 use super::space;
@@ -170,7 +170,7 @@ impl<'a, M: Shown> StructureFigure<'a, M> {
         let mut drawn: Vec<_> = drawn.filter_map(|instance| self.drawn(instance)).collect();
         drawn.sort_by(|a, b| a.near.total_cmp(&b.near));
         let bounds = drawn.iter().fold(Bounds::EMPTY, |mut bounds, drawn| {
-            bounds.add_all(&bounds_of(&drawn.outline));
+            bounds.add_all(&bounds_of([&drawn.outline]));
             bounds
         });
         let mut block = Block::default();
@@ -217,7 +217,7 @@ impl<'a, M: Shown> StructureFigure<'a, M> {
             Master::Shape(shape) => M::outlines(shape).swap_remove(0),
         };
         let (outline, edges, near) = M::seen(&own, &map, self.view);
-        let bounds = bounds_of(&outline);
+        let bounds = bounds_of([&outline]);
         let corners = [bounds.min(), bounds.max()].map(DVec2::abs);
         let can_be_drawn =
             bounds.is_finite() && corners.iter().all(|it| it.max_element() < FARTHEST);
@@ -252,7 +252,7 @@ impl<'a, M: Shown> StructureFigure<'a, M> {
             };
             let name = cut(&self.structure.objects()[number].name);
             let size = DVec2::new(self.font.width(&name, SMALL), SMALL);
-            let within = bounds_of(&drawn.outline.transformed(map));
+            let within = bounds_of([&drawn.outline.transformed(map)]);
             let is_free = |label: &Bounds| {
                 let inside =
                     label.min().cmpge(DVec2::ZERO).all() && label.max().cmple(block.size).all();
@@ -324,15 +324,6 @@ fn comes_near(label: &Bounds, [from, to]: &[DVec2; 2]) -> bool {
         }
         along = (along + STEP).min(length);
     }
-}
-
-fn bounds_of(outline: &Outline) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    for [from, to] in flattened(outline) {
-        bounds.add(from);
-        bounds.add(to);
-    }
-    bounds
 }
 
 /// Returns a name, truncated to [`MAX_CHARACTERS`] characters.
