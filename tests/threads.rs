@@ -210,7 +210,7 @@ pub(crate) fn library(max_elements: u64) -> impl Iterator<Item = (String, Model,
         (name, model)
     });
     let models = models.filter(|(_, model)| !model.is_in_space());
-    models.map(move |(name, model)| {
+    models.filter_map(move |(name, model)| {
         let compile = |steps| model.compile_for(steps, 0, max_elements).ok();
         let fits = |steps| {
             let graph = compile(steps)?;
@@ -228,8 +228,9 @@ pub(crate) fn library(max_elements: u64) -> impl Iterator<Item = (String, Model,
                 Err(_) => None,
             }
         };
-        let (graph, steps) = (0..=14).rev().find_map(fits).unwrap();
-        (name, model, graph, steps)
+        // Entries that consist of whole fractals may have too many pieces at any step.
+        let (graph, steps) = (0..=14).rev().find_map(fits)?;
+        Some((name, model, graph, steps))
     })
 }
 

@@ -4,6 +4,15 @@ set -eu
 cd "$(dirname "$0")"
 kfrac() { cargo run --locked --quiet --release --manifest-path ../../Cargo.toml -- "$@" --quiet; }
 
+kfrac grow poppies --size 420 -o poppies.png
+kfrac grow rose-window --size 420 -o rose-window.png
+kfrac grow gold-lace --size 420 -o gold-lace.png
+kfrac grow hemlock-at-dusk --size 420 -o hemlock-at-dusk.png
+kfrac grow blue-ridges --size 420 -o blue-ridges.png
+kfrac grow peacock --size 420 -o peacock.png
+kfrac grow high-city --size 420 -o high-city.png
+kfrac grow pursuit-quilt --size 420 -o pursuit-quilt.png
+kfrac grow marquetry --size 420 -o marquetry.png
 kfrac grow dahlia --size 480 -o dahlia.svg
 kfrac grow meadow --size 640 -o meadow.svg
 kfrac grow penrose-stars --size 480 -o penrose-stars.svg

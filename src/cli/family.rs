@@ -1,8 +1,13 @@
 //! Values of parameters on the command line: one, or several that form a family.
 
+mod written;
+
 use crate::document::Setting;
-use crate::expression::{Expression, PARTS, Scope};
+use crate::expression::{Expression, PARTS};
 use crate::family::Axis;
+
+pub(crate) use written::value;
+pub(super) use written::{assignment, ranges};
 
 use super::Failure;
 use super::animate::Moment;
@@ -35,112 +40,6 @@ enum Values {
     Circle(f64, f64, bool),
 }
 
-/// Parses `NAME=VALUE`, `NAME=VALUE,VALUE`, `NAME=VALUE..VALUE` or `NAME=circle([RE,IM],RADIUS)`; a value is a number or
-/// `[RE,IM]`.
-pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
-    let (name, written) = text.split_once('=').ok_or("write NAME=VALUE")?;
-    let (name, written) = (name.trim().to_owned(), written.trim());
-    if written.starts_with('[') {
-        let parts = complex(&name, written)?;
-        return Ok(Assignment { name, parts });
-    }
-    if let Some(inside) = written.strip_prefix("circle(") {
-        let parts = circle(&name, inside)?;
-        return Ok(Assignment { name, parts });
-    }
-    let values = match (value(written), written.split_once("..")) {
-        // A comma may belong to a function.
-        (Ok(value), _) => Values::One(value),
-        (_, Some((first, last))) => Values::Range([value(first)?, value(last)?]),
-        (Err(error), None) => {
-            let several: Result<Vec<f64>, _> = written.split(',').map(value).collect();
-            match several {
-                Ok(several) if several.len() > 1 => Values::Several(several),
-                _ => return Err(error),
-            }
-        }
-    };
-    let part = ParameterPart {
-        name: name.clone(),
-        values,
-        written: Expression::parse(written).ok(),
-    };
-    let parts = vec![part];
-    Ok(Assignment { name, parts })
-}
-
-/// Parses complex values: `[RE,IM]`, several separated by commas, or two with `..` between them.
-fn complex(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
-    const FORMS: &str =
-        "a complex value is written [RE,IM], several are [RE,IM],[RE,IM] or [RE,IM]..[RE,IM]";
-    let mut sides: [Vec<&str>; 2] = [Vec::new(), Vec::new()];
-    let (mut rest, mut is_range) = (written, false);
-    loop {
-        let (inside, after) = rest
-            .strip_prefix('[')
-            .and_then(|rest| rest.split_once(']'))
-            .ok_or(FORMS)?;
-        // A comma may belong to a function.
-        let mut commas = inside.match_indices(',');
-        let halves = commas.find_map(|(at, _)| {
-            let halves = [&inside[..at], &inside[at + 1..]];
-            let are_read = halves.iter().all(|half| Expression::parse(half).is_ok());
-            are_read.then_some(halves)
-        });
-        for (side, half) in sides.iter_mut().zip(halves.ok_or(FORMS)?) {
-            side.push(half);
-        }
-        let after = after.trim_start();
-        if after.is_empty() {
-            break;
-        }
-        let next = match after.strip_prefix("..") {
-            Some(next) if sides[0].len() == 1 => {
-                is_range = true;
-                Some(next)
-            }
-            _ => after.strip_prefix(',').filter(|_| !is_range),
-        };
-        rest = next.ok_or(FORMS)?.trim_start();
-    }
-    let part = |(part, side): (&str, Vec<&str>)| {
-        let all: Result<Vec<f64>, String> = side.iter().map(|text| value(text)).collect();
-        let all = all?;
-        let (values, written) = match all[..] {
-            [one] => (Values::One(one), Expression::parse(side[0]).ok()),
-            [first, last] if is_range => (Values::Range([first, last]), None),
-            _ => (Values::Several(all), None),
-        };
-        Ok(ParameterPart {
-            name: format!("{name}{part}"),
-            values,
-            written,
-        })
-    };
-    PARTS.into_iter().zip(sides).map(part).collect()
-}
-
-/// Parses a circle of complex values, after `circle(`.
-fn circle(name: &str, inside: &str) -> Result<Vec<ParameterPart>, String> {
-    const FORM: &str = "a circle of complex values is written circle([RE,IM],RADIUS)";
-    let (centre, radius) = inside
-        .strip_suffix(')')
-        .and_then(|inside| inside.rsplit_once(','))
-        .ok_or(FORM)?;
-    let radius = value(radius.trim())?;
-    let centre = complex(name, centre.trim())?;
-    let parts = centre.into_iter().enumerate();
-    let part = |(number, part): (usize, ParameterPart)| match part.values {
-        Values::One(centre) => Ok(ParameterPart {
-            values: Values::Circle(centre, radius, number == 1),
-            written: None,
-            ..part
-        }),
-        _ => Err(FORM.to_owned()),
-    };
-    parts.map(part).collect()
-}
-
 /// Returns a coordinate of a point on a circle after a share of the way around it.
 fn on_circle(centre: f64, radius: f64, is_imaginary: bool, share: f64) -> f64 {
     let angle = std::f64::consts::TAU * share;
@@ -149,19 +48,6 @@ fn on_circle(centre: f64, radius: f64, is_imaginary: bool, share: f64) -> f64 {
         true => libm::sin(angle),
     };
     centre + radius * unit
-}
-
-pub(crate) fn value(text: &str) -> Result<f64, String> {
-    let program = Expression::parse(text)
-        .and_then(|expression| expression.compile(&Scope::new()))
-        .map_err(|error| match error.hint {
-            Some(hint) => format!("{} ({hint})", error.message),
-            None => error.message,
-        })?;
-    match program.as_constant() {
-        Some(value) if value.is_finite() => Ok(value),
-        _ => Err("the value is not finite".into()),
-    }
 }
 
 impl From<Setting> for Assignment {
@@ -206,27 +92,6 @@ pub(super) struct Ranges {
     /// Name of the parameter.
     pub(super) name: String,
     pub(super) axes: Vec<Axis>,
-}
-
-/// Parses `NAME=FROM..TO` or `NAME=[RE,IM]..[RE,IM]`.
-pub(super) fn ranges(text: &str) -> Result<Ranges, String> {
-    let Assignment { name, parts } = assignment(text)?;
-    let axis = |part: ParameterPart| match part.values {
-        Values::Range([from, to]) if from != to => Ok(Axis {
-            name: part.name,
-            from,
-            to,
-        }),
-        Values::Range(_) => Err(format!("the range of '{}' is empty", part.name)),
-        _ => Err("write NAME=FROM..TO, or NAME=[RE,IM]..[RE,IM] for a complex parameter".into()),
-    };
-    let axes = parts.into_iter().map(axis).collect::<Result<_, _>>()?;
-    let written = text.to_owned();
-    Ok(Ranges {
-        written,
-        name,
-        axes,
-    })
 }
 
 /// Parameter that changes in the course of a film, or one that does not.
@@ -461,6 +326,9 @@ mod tests {
         assert_eq!(together(&["s=[0,5],[1/2,max(6,1)], [1,7]"]).unwrap(), path);
         assert_eq!(together(&["s=[0,5],[1/2,6],[1,7]", "s.re=0..1"]), None);
         assert_eq!(values("s=[max(1, 2), 3]"), [2.0, 3.0]);
+        assert_eq!(values("s=1/(1 - i)"), [0.5, 0.5]);
+        assert_eq!(together(&["s=5*i..1 + 7*i"]).unwrap(), path);
+        assert_eq!(together(&["s=5*i,1/2 + 6*i,1 + 7*i"]).unwrap(), path);
         let (grid, written) = varied(&["a=1,2", "c=7", "s=[0,5]..[1,7]"], true).unwrap();
         assert_eq!(written, "a=1,2 s=[0,5],[0.5,6],[1,7]");
         let all = [
@@ -480,6 +348,9 @@ mod tests {
             "s=[1,2]..3",
             "s=[1,2]..[3,4]..[5,6]",
             "s=[1,2],",
+            "s=i/0",
+            "s=x + i",
+            "s=sqrt(i)",
         ] {
             assert!(assignment(wrong).is_err(), "{wrong}");
         }

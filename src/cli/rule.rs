@@ -46,8 +46,8 @@ pub(super) struct RuleArguments {
     pub(super) rule: PathBuf,
     /// Sets a parameter of the rule; may be given several times
     ///
-    /// The value may be an expression: --set angle=180/7. A complex parameter has a value [RE,IM], which
-    /// shells require in quotes. `kfrac info RULE` lists the parameters.
+    /// The value may be an expression: --set angle=180/7. A complex parameter has a value [RE,IM] or a formula of i, such as
+    /// '1/(2 - i)', which shells require in quotes. `kfrac info RULE` lists the parameters.
     #[arg(long, value_name = "NAME=VALUE", value_parser = family::assignment)]
     pub(super) set: Vec<Assignment>,
     /// Omits maps of a system, by their numbers from 1: --omit 2,3

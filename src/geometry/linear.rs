@@ -229,8 +229,23 @@ pub(crate) fn stretch3(matrix: &DMat3) -> f64 {
         return size;
     }
     let square = scaled.transpose() * scaled;
-    let (values, _) = eigen(&square);
-    size * values.max_element().sqrt()
+    size * largest_of_symmetric(&square).sqrt()
+}
+
+/// Returns the largest eigenvalue of a symmetric matrix of space, by the trigonometric solution of its characteristic
+/// equation (Smith 1961).
+fn largest_of_symmetric(matrix: &DMat3) -> f64 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let mean = (x.x + y.y + z.z) / 3.0;
+    let apart = *matrix - DMat3::from_diagonal(DVec3::splat(mean));
+    let [x, y, z] = [apart.x_axis, apart.y_axis, apart.z_axis];
+    let radius = ((x.dot(x) + y.dot(y) + z.dot(z)) / 6.0).sqrt();
+    if radius == 0.0 {
+        return mean;
+    }
+    let half = (apart * (1.0 / radius)).determinant() / 2.0;
+    let angle = libm::acos(half.clamp(-1.0, 1.0)) / 3.0;
+    mean + 2.0 * radius * libm::cos(angle)
 }
 
 fn is_diagonal(matrix: &DMat3) -> bool {

@@ -406,21 +406,38 @@ fn merge<M: Affine, T>(
     join: impl Fn(&mut T, T),
 ) {
     const SAME: f64 = 1e-5;
-    let x = |item: &T| copy(item).map.translation().coordinates()[0];
-    items.sort_by(|a, b| x(a).total_cmp(&x(b)));
-    let mut kept: Vec<T> = Vec::with_capacity(items.len());
-    for item in items.drain(..) {
+    // Equal maps take a point to equal places along a line. Point and line are in general position: maps that differ rarely
+    // do, even where they flatten the set or leave a point in place.
+    const POINT: [f64; 3] = [
+        0.618_033_988_749_894_9,
+        0.754_877_666_246_692_7,
+        0.819_172_513_396_164_4,
+    ];
+    const LINE: [f64; 3] = [
+        0.569_840_290_998_053_2,
+        0.671_043_606_703_789_2,
+        0.430_159_709_001_946_7,
+    ];
+    const WIDTH: f64 = 6.0 * SAME;
+    let place = |item: &T| {
+        let image = copy(item).map.apply(M::Point::of_coordinates(POINT));
+        image.dot(M::Point::of_coordinates(LINE))
+    };
+    let mut placed: Vec<(f64, T)> = items.drain(..).map(|item| (place(&item), item)).collect();
+    placed.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut kept: Vec<(f64, T)> = Vec::with_capacity(placed.len());
+    for (place, item) in placed {
         let own = copy(&item);
         let near = kept.iter_mut().rev();
-        let mut near = near.take_while(|it| x(&item) - x(it) <= SAME);
-        let is_same = |it: &&mut T| {
+        let mut near = near.take_while(|(other, _)| place - other <= WIDTH);
+        let is_same = |(_, it): &&mut (f64, T)| {
             let it = copy(it);
             it.object == own.object && it.map.is_near(&own.map, SAME)
         };
         match near.find(is_same) {
-            Some(same) => join(same, item),
-            None => kept.push(item),
+            Some((_, same)) => join(same, item),
+            None => kept.push((place, item)),
         }
     }
-    *items = kept;
+    items.extend(kept.into_iter().map(|(_, item)| item));
 }

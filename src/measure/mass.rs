@@ -13,6 +13,9 @@ use super::space::Space;
 /// Maximum number of boxes in a row of the finest grid.
 const MAX_BOXES: usize = 2048;
 
+/// Maximum number of copies that are examined for the masses of a limit set.
+const MAX_COPIES: usize = 1 << 20;
+
 /// Side of the largest boxes from which a spectrum is computed, as a fraction of the extent.
 pub(super) const COARSEST: f64 = 1.0 / 4.0;
 
@@ -91,7 +94,7 @@ impl Masses {
     #[must_use]
     pub fn of_limit<M: Space>(set: &LimitSet<M>, grid: &Grid<M>, boxes: usize) -> Option<Self> {
         let (map, mut masses) = Self::over(grid, &set.turned_bounds(grid), boxes);
-        let bits = set.covered(&map, masses.boxes)?.into_layers();
+        let bits = set.covered(&map, masses.boxes, MAX_COPIES)?.into_layers();
         let width = masses.boxes[0];
         for (row, masses) in masses.masses.chunks_exact_mut(width).enumerate() {
             for (column, mass) in masses.iter_mut().enumerate() {

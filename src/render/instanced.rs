@@ -36,7 +36,6 @@ use super::options::Options;
 use super::picture::Picture;
 use super::prepass::Prepass;
 use super::svg::begin_document;
-use crate::style::Blend;
 use drawing::Drawing;
 
 /// Maximum number of symbols, all of which are held in memory.
@@ -74,7 +73,7 @@ pub(super) fn write(
         background: style.ground(),
         pen: super::paint::pen(style),
         labels: &options.labels,
-        blend: Blend::Joined,
+        blend: style.blend,
         has_default_ink: style.has_default_ink(),
         has_layers: false,
     };

@@ -27,7 +27,7 @@ use super::super::rule::Loaded;
 use super::{Arguments, Measured, drawn};
 
 /// Limit of the number of points that are measured of a rule that is grown.
-const MAX_POINTS: usize = 1 << 20;
+const MAX_POINTS: usize = 1 << 18;
 
 /// Largest number of steps for which graphs without a fixed number of objects are compiled; fewer where the
 /// graph would be too large.

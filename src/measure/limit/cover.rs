@@ -17,6 +17,9 @@ pub(super) const GRAZED: f64 = 1.0 / 8.0;
 /// Maximum number of copies that a cover examines.
 const MAX_LOOKED_AT: usize = 1 << 23;
 
+/// Maximum number of copies that are examined for the boxes of one size, of several.
+const MAX_OF_SCALES: usize = 1 << 20;
+
 /// The boxes of a cover, and the number of copies that it may still examine.
 struct Marking {
     boxes: Voxels,
@@ -50,7 +53,7 @@ impl<M: Space> LimitSet<M> {
         let mut size = extent * (1.0 + 2e-9) / base;
         while size >= finest * extent {
             let (map, boxes) = Grid::ALONG.map(&self.bounds, size, largest);
-            let Some(cover) = self.covered(&map, boxes) else {
+            let Some(cover) = self.covered(&map, boxes, MAX_OF_SCALES) else {
                 break;
             };
             sizes.push(size);
@@ -63,7 +66,7 @@ impl<M: Space> LimitSet<M> {
             let turned = self.turned_bounds(grid);
             let count = |&size: &f64| {
                 let (map, boxes) = grid.map(&turned, size, largest);
-                Some(self.covered(&map, boxes)?.count())
+                Some(self.covered(&map, boxes, MAX_OF_SCALES)?.count())
             };
             sizes.iter().map_while(count).collect()
         })
@@ -71,17 +74,22 @@ impl<M: Space> LimitSet<M> {
 
     /// Returns the boxes that the set meets, on the grid that `map` leads to: its boxes have side 1 and
     /// corners at whole numbers from (0, 0) to `boxes`. Parts of the set outside the grid are ignored.
-    /// Returns `None` where too many copies would have to be examined: long ones that lie side by side, or
+    /// Returns `None` where more than `most` copies would have to be examined: long ones that lie side by side, or
     /// copies that overlap.
     ///
     /// Every box that is marked holds a point of the set. A box that the set enters by no more than a quarter
     /// of its side may be missed.
-    pub(in crate::measure) fn covered(&self, map: &M, boxes: Counts) -> Option<Voxels> {
+    pub(in crate::measure) fn covered(
+        &self,
+        map: &M,
+        boxes: Counts,
+        most: usize,
+    ) -> Option<Voxels> {
         let grid = LimitCopy::new(*map, 0);
         let mut stack: Vec<_> = self.start.iter().map(|copy| grid.compose(copy)).collect();
         let mut marking = Marking {
             boxes: Voxels::new(boxes),
-            left: MAX_LOOKED_AT,
+            left: most,
         };
         // A box that one copy hardly enters is mostly met by another. When such copies are examined later,
         // the boxes of most of them are marked already.
@@ -147,7 +155,7 @@ impl LimitSet {
     /// of its side may be missed.
     #[must_use]
     pub fn cover(&self, map: &DAffine2, [columns, rows]: [usize; 2]) -> Option<Bits> {
-        let covered = self.covered(map, [columns, rows, 1])?;
+        let covered = self.covered(map, [columns, rows, 1], MAX_LOOKED_AT)?;
         Some(covered.into_layers())
     }
 }

@@ -19,16 +19,16 @@ use crate::saturating::{real, whole};
 use super::cover::GRAZED;
 use super::{LimitCopy, LimitSet, merge};
 
-/// Number of copies, in the boxes of a size, that are refined, and minimum number of such boxes, in the plane and in
-/// space, where more copies come near to a box. Counts are exact as long as there are fewer.
-const FOLLOWED_COPIES: usize = 1 << 14;
-const FOLLOWED: [usize; 2] = [1 << 11, 1 << 9];
+/// Number of copies that are examined to refine and to count the boxes of a size, and minimum number of boxes that are
+/// refined. Counts are exact as long as there are fewer.
+const WORK: usize = 1 << 15;
+const FOLLOWED: usize = 1 << 7;
 
 /// Radius, in sides of a box, above which the disc of a copy is divided.
 const LARGEST: f64 = 2.0;
 
 /// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
-const MAX_COPIES: usize = 1 << 22;
+const MAX_COPIES: usize = 1 << 20;
 
 /// Maximum number of copies that are examined for a raster.
 const MAX_RASTER: usize = 1 << 26;
@@ -85,6 +85,9 @@ struct Descent<'s, M: Space> {
     weight: f64,
     random: Pcg,
     looked_at: usize,
+    /// Number of larger boxes that these are parts of, and number of copies that were examined to refine and to count them.
+    parents: usize,
+    examined: usize,
 }
 
 impl<'s, M: Space> Descent<'s, M> {
@@ -99,6 +102,8 @@ impl<'s, M: Space> Descent<'s, M> {
             weight: 1.0,
             random: Pcg::new(seed as u64, 0xcafe_f00d_d15e_a5e5),
             looked_at: 0,
+            parents: 1,
+            examined: 0,
         };
         descent.enter(boxes);
         descent.keep_entered();
@@ -106,7 +111,7 @@ impl<'s, M: Space> Descent<'s, M> {
     }
 
     /// Returns the number of boxes that the set meets; `None` where too many copies overlap.
-    fn count(&self) -> Option<Count> {
+    fn count(&mut self) -> Option<Count> {
         if self.looked_at > MAX_COPIES {
             return None;
         }
@@ -116,12 +121,14 @@ impl<'s, M: Space> Descent<'s, M> {
         for cell in self.cells.iter() {
             met += usize::from(self.set.meets(cell, &mut stack, &mut left)?);
         }
+        self.examined = self.looked_at + self.cells.copies.len() + (MAX_COPIES - left);
         (met > 0).then_some((real(met) * self.weight, self.weight > 1.0))
     }
 
     /// Continues with boxes smaller by the factor `base`.
     fn go_down(&mut self, base: usize) {
         self.choose();
+        self.parents = self.cells.len();
         self.looked_at = 0;
         let cells = std::mem::replace(&mut self.cells, Cells::new());
         for cell in cells.iter() {
@@ -148,9 +155,8 @@ impl<'s, M: Space> Descent<'s, M> {
 
     /// Keeps one box of each run of neighbours, if there are too many.
     fn choose(&mut self) {
-        let copies = self.cells.copies.len();
-        let most = (self.cells.len() * FOLLOWED_COPIES / copies.max(1))
-            .max(FOLLOWED[M::Point::DIMENSION - 2]);
+        let cost = real(self.examined) / real(self.parents);
+        let most = whole(real(WORK) / cost).max(FOLLOWED);
         if self.cells.len() <= most {
             return;
         }

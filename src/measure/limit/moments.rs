@@ -28,13 +28,13 @@ const SMALL: f64 = 1.0;
 
 /// Number of copies of one size that are examined, and minimum number of pieces that are divided. As long as
 /// there are fewer, sums are over all pieces.
-const FOLLOWED_COPIES: usize = 1 << 17;
+const FOLLOWED_COPIES: usize = 1 << 15;
 const FOLLOWED: usize = 1 << 6;
 
 /// Maximum number of copies of one size, and of all sizes, that are examined: where too many overlap, the
 /// descent ends.
-const MAX_COPIES: usize = 1 << 21;
-const MAX_OF_ALL: usize = 3 << 21;
+const MAX_COPIES: usize = 1 << 19;
+const MAX_OF_ALL: usize = 3 << 19;
 
 /// Number of distances between pieces that cost as much as examining a copy.
 const DISTANCES: usize = 8;
@@ -313,7 +313,7 @@ impl<'c, M: Space> Descent<'c, M> {
         self.looked_at += pieces.len() * all.len() / DISTANCES;
         let with_near = |piece: &Small<M>| {
             let mut mass = 0.0;
-            let mut near = Vec::new();
+            let mut near = Vec::with_capacity(all.len());
             for other in all {
                 if squared(other.centre - piece.centre) <= 1.0 {
                     mass += other.mass;

@@ -16,7 +16,7 @@ use crate::render::paint::{FINE, pen};
 use crate::render::picture::Instanced;
 use crate::render::svg::{ends_and_corners, opacity};
 use crate::render::unit::Unit;
-use crate::style::{ColorBy, ColorProperty, Colour, Style, Width};
+use crate::style::{Blend, ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, ElementSubset, Symbol, Symbols};
@@ -214,7 +214,7 @@ impl<'a> Drawing<'a> {
         }
         let base_element = &self.graph.base_elements()[number];
         let (style, is_closed) = (self.style, base_element.is_closed());
-        let own = |what: &str, colour: Option<Colour>| colour.map(|colour| painted(what, colour));
+        let own = |what: &str, colour: Option<Colour>| colour.map(|it| self.own_paint(what, it));
         let fill = match is_closed {
             false => Some(r#" fill="none""#.into()),
             true => own("fill", self.tint(appearance, style.polygons())),
@@ -298,7 +298,7 @@ impl<'a> Drawing<'a> {
     fn link(&self, from: DVec2, to: &End, appearance: Appearance, text: &mut String) {
         let appearance = appearance.over(to.appearance);
         let stroke = self.tint(appearance, self.style.lines());
-        let stroke = stroke.map(|colour| painted("stroke", colour));
+        let stroke = stroke.map(|colour| self.own_paint("stroke", colour));
         let has_own_width =
             self.graph.widest().is_some() || matches!(self.style.width, Width::Relative(_));
         let width = has_own_width.then(|| self.width(appearance, to.length));
@@ -313,7 +313,11 @@ impl<'a> Drawing<'a> {
 
     /// Returns the colour of elements that have their own colour and a tint, if colours depend on tints.
     fn tint(&self, appearance: Appearance, own: Colour) -> Option<Colour> {
-        (self.style.color_by == ColorBy::Tint && self.graph.tints()).then(|| appearance.on(own))
+        self.has_tints().then(|| appearance.on(own))
+    }
+
+    fn has_tints(&self) -> bool {
+        self.style.color_by == ColorBy::Tint && self.graph.tints()
     }
 
     /// Returns the layers of every class, in order.
@@ -344,8 +348,20 @@ impl<'a> Drawing<'a> {
         format!(r#" stroke-width="{width}""#)
     }
 
+    /// Returns the attributes of a colour instead of that of the class, with the opacity where that of the class is inherited.
+    fn own_paint(&self, what: &str, colour: Colour) -> String {
+        let painted = painted(what, colour);
+        let is_inherited = [self.style.polygons(), self.style.lines()]
+            .iter()
+            .any(|of_class| of_class.opacity() < 1.0);
+        match colour.opacity() < 1.0 || !is_inherited {
+            true => painted,
+            false => format!(r#"{painted} {what}-opacity="1""#),
+        }
+    }
+
     /// Returns the attributes of the colour of a class. Opacity applies to the group as a whole, so that
-    /// overlaps are not visible.
+    /// overlaps are not visible, except where they are blended or elements have colours of their own.
     fn paint(&self, class: u64, layer: Layer) -> String {
         let own = self.classes.colour(class, self.style);
         let lines = own.unwrap_or(self.style.lines());
@@ -356,12 +372,14 @@ impl<'a> Drawing<'a> {
             } else {
                 ("stroke", "fill")
             };
-            let opacity = if colour.opacity() < 1.0 {
-                format!(r#" opacity="{:.3}""#, colour.opacity())
-            } else {
-                String::new()
-            };
-            format!(r#" {off}="none" {on}="{colour}"{opacity}"#)
+            let is_joined = self.style.blend == Blend::Joined && !self.has_tints();
+            match colour.opacity() < 1.0 && is_joined {
+                true => format!(
+                    r#" {off}="none" {on}="{colour}" opacity="{:.3}""#,
+                    colour.opacity()
+                ),
+                false => format!(r#" {off}="none"{}"#, painted(on, colour)),
+            }
         };
         match layer {
             Layer::Lines => one(lines, false),
