@@ -285,7 +285,10 @@ fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Ta
             let comments = |text: &str| text.matches(" #").count();
             let gone = find(node, at).unwrap().place.range();
             let line = text[gone.end..].lines().next().unwrap_or_default();
-            let own = comments(&text[gone.clone()]) + comments(line);
+            // A comment beside the key of a block goes with it.
+            let before = text[..gone.start].trim_end_matches([' ', '\n', '-']);
+            let beside = before.lines().next_back().unwrap_or_default();
+            let own = comments(beside) + comments(&text[gone.clone()]) + comments(line);
             assert!(
                 comments(&new) + own >= comments(text),
                 "{asked:?}\n{text}\nbecame\n{new}"
