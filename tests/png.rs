@@ -147,7 +147,7 @@ fn agree(name: &str, rule: &Arc<Rule>, steps: u32, size: u32) {
 fn both_formats_of_the_whole_library_are_the_same_picture() {
     for name in &common::plane_rules() {
         let rule = resolved(&document(name), &[]);
-        // Its lines lie closer than pixels in a small picture.
+        // The lines of the quilt lie closer than pixels in a small picture.
         let size = if name == "pursuit-quilt" { 1024 } else { 256 };
         agree(name, &rule, rule.steps().unwrap_or(4).min(8), size);
     }
