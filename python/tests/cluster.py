@@ -88,8 +88,8 @@ def fatal_once(folder: Path, name: str) -> Callable[[], None]:
                 continue
             if number == 2:
                 (folder / f"{name}-killed").write_text(str(os.getpid()))
-                # Ray aborts if a worker dies while the result of its task before arrives.
-                time.sleep(1)
+                # Ray may abort if a worker dies while the result of its task before arrives.
+                time.sleep(2)
                 os.kill(os.getpid(), signal.SIGKILL)
             return
 
