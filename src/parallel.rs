@@ -67,6 +67,25 @@ pub(crate) fn map<I: Sync, T: Send>(
     results.into_iter().flatten().collect()
 }
 
+/// Returns the results of two functions. With more than one thread, the first runs on one of its own.
+pub(crate) fn both<A: Send, B>(
+    threads: usize,
+    aside: impl FnOnce() -> A + Send,
+    own: impl FnOnce() -> B,
+) -> (A, B) {
+    if threads == 1 {
+        return (aside(), own());
+    }
+    thread::scope(|scope| {
+        let aside = scope.spawn(aside);
+        let own = own();
+        match aside.join() {
+            Ok(aside) => (aside, own),
+            Err(panic) => panic::resume_unwind(panic),
+        }
+    })
+}
+
 /// A pool of threads that execute submitted jobs. The thread that submits them helps while it waits.
 pub(crate) struct Team<'w> {
     queue: Mutex<Queue<'w>>,

@@ -184,6 +184,16 @@ fn digits_in_a_complex_base_are_one_line() {
 }
 
 #[test]
+fn real_numbers_are_complex() {
+    let short = maps(
+        "kind: ifs\nmaps:\n  - {times: 0.5, translate: 1}\n  - {scale: 1/4, fixed: -2}\n  - {times: 1/4, shift: 3}\n",
+    );
+    let listed = "kind: ifs\nmaps:\n  - {times: [0.5, 0], translate: [1, 0]}\n  - {scale: 1/4, fixed: [-2, 0]}\n  \
+                  - {times: [1/4, 0], shift: [3, 0]}\n";
+    assert_eq!(short.unwrap(), maps(listed).unwrap());
+}
+
+#[test]
 fn points_of_rules_are_complex_numbers() {
     let rule = common::resolved(
         &common::document_of(

@@ -2,6 +2,7 @@
 
 mod drawn;
 mod input;
+mod kind;
 mod report;
 mod seeds;
 mod series;

@@ -353,15 +353,15 @@ impl Reader {
         })
     }
 
-    /// Reads a point, or the name of a complex parameter.
-    pub(super) fn optional_complex(&mut self, node: Option<&Node>) -> Option<WrittenPoint> {
-        let node = node?;
-        match &node.value {
-            Value::Text(name) if is_name(name) && name != UNIT => {
-                Some(WrittenPoint::named(name, &node.place))
-            }
-            _ => Some(self.point(node)),
+    /// Reads a point, in the plane also as a real number: x stands for [x, 0].
+    pub(super) fn complex_number(&mut self, node: &Node) -> WrittenPoint {
+        if self.is_in_space || !matches!(node.value, Value::Number(_)) {
+            return self.point(node);
         }
+        let mut point = WrittenPoint::unknown(&node.place);
+        point.x = self.number(node);
+        point.y.value = Expression::number(0.0);
+        point
     }
 
     /// Reads a list of two numbers, or a number, which counts twice.

@@ -90,9 +90,9 @@ impl BoxCounting {
     /// The default base is the smallest integer up to 8 that is a power of the set's own period, for which
     /// counts do not oscillate with the size, or else 2. Boxes that are too many to be counted are estimated
     /// from a sample of them, down to 10⁻⁹ of the extent, and the sizes that determine the dimension are
-    /// weighted by their likelihood. Where a sample does not reach 1/16384 of the extent (1/512 in space; the base is not an
+    /// weighted by their likelihood. Where a sample does not reach 1/1024 of the extent (1/512 in space; the base is not an
     /// integer, or too many copies overlap), the sizes are those up to half the extent for which the smallest
-    /// cover has at least 9 boxes, down to where it has about 130,000.
+    /// cover has at least 9 boxes, down to where it has about 130,000, if these are smaller than those of the sample.
     ///
     /// There is no estimate where the sizes span less than one generation of [the smallest
     /// copies](LimitSet::smallest_scale).
@@ -104,7 +104,8 @@ impl BoxCounting {
         threads: NonZero<usize>,
     ) -> Self {
         const MAX_BOXES: u64 = 1 << 17;
-        let fine = libm::exp2(-f64::from(M::FILLED_LEVELS));
+        const FAR: u32 = 10;
+        let fine = libm::exp2(-f64::from(M::FILLED_LEVELS.min(FAR)));
         let most = real(set.space());
         let extent = set.bounds().size().max_element();
         if extent <= 0.0 {
@@ -117,11 +118,15 @@ impl BoxCounting {
         };
         let base = base.unwrap_or_else(|| whole_power(set.period()));
         let scales = whole_base(base).map(|base| set.sampled_scales(base, grids, threads));
-        let comes_far =
-            |scales: &Vec<Scale>| scales.last().is_some_and(|it| it.size < fine * extent);
-        let counting = match scales.filter(comes_far) {
-            Some(scales) => Self::by(&scales, &window, |readings| averaged(readings, most)),
-            None => Self::of(&set.scales(base, MAX_BOXES, grids, threads), &window),
+        let finest = |scales: &[Scale]| scales.last().map_or(f64::INFINITY, |it| it.size);
+        let sampled = scales.unwrap_or_default();
+        let covered = match finest(&sampled) < fine * extent {
+            true => Vec::new(),
+            false => set.scales(base, MAX_BOXES, grids, threads),
+        };
+        let counting = match finest(&sampled) < finest(&covered) {
+            true => Self::by(&sampled, &window, |readings| averaged(readings, most)),
+            false => Self::of(&covered, &window),
         };
         Self {
             estimate: counting.estimate.and_then(|it| set.believed(it)),

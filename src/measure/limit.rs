@@ -122,6 +122,9 @@ impl<M: Affine> LimitCopy<M> {
 /// Scale below which a copy counts as a point.
 const NEGLIGIBLE: f64 = 1e-17;
 
+/// Tolerance of bounding boxes, as a part of the size, where they are exact but for rounding.
+const EXACT: f64 = 1e-13;
+
 /// Maximum number of sweeps or levels of an iteration.
 const MAX_SWEEPS: usize = 10_000;
 
@@ -192,7 +195,7 @@ impl<M: Space> LimitSet<M> {
         };
         set.find_points();
         set.find_radii()?;
-        set.bounds = Self::extent(&set.objects, &set.start);
+        set.bounds = Self::extent(&set.objects, &set.start, EXACT);
         // A single point has no extent except by rounding.
         const ROUNDING: f64 = 1e-12;
         let scale = set.start.iter().map(|copy| copy.scale).fold(0.0, f64::max);
@@ -287,15 +290,16 @@ impl<M: Space> LimitSet<M> {
         }
     }
 
-    /// Returns the bounding box of the set, turned as a grid requires.
+    /// Returns the bounding box of the set, turned as a grid requires, to about 9 digits.
     pub(super) fn turned_bounds(&self, grid: &Grid<M>) -> Bounds<M::Point> {
+        const TOLERANCE: f64 = 1e-9;
         let turn = M::new(grid.linear(), M::Point::ZERO);
         let turned = |copy: &LimitCopy<M>| LimitCopy {
             map: turn * copy.map,
             ..*copy
         };
         let start: Vec<_> = self.start.iter().map(turned).collect();
-        let bounds = Self::extent(&self.objects, &start);
+        let bounds = Self::extent(&self.objects, &start, TOLERANCE);
         match self.is_layer {
             true => Bounds::new(flattened(bounds.min()), flattened(bounds.max())),
             false => bounds,
@@ -326,7 +330,10 @@ impl<M: Space> LimitSet<M> {
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
-        let middle = |object| Self::extent(&self.objects, &[LimitCopy::whole(object)]).centre();
+        let middle = |object| {
+            const TOLERANCE: f64 = 1e-3;
+            Self::extent(&self.objects, &[LimitCopy::whole(object)], TOLERANCE).centre()
+        };
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();
         let middles = (0..self.objects.len())
             .map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
@@ -378,12 +385,16 @@ impl<M: Space> LimitSet<M> {
         (largest < 1.0).then(|| vec![radius * (1.0 + ROUNDING); points.len()])
     }
 
-    /// Returns the bounding box of copies, to about 12 digits.
-    fn extent(objects: &[ObjectLimit<M>], copies: &[LimitCopy<M>]) -> Bounds<M::Point> {
+    /// Returns the bounding box of copies, to a part of their size.
+    fn extent(
+        objects: &[ObjectLimit<M>],
+        copies: &[LimitCopy<M>],
+        tolerance: f64,
+    ) -> Bounds<M::Point> {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
         for (axis, both) in M::Point::AXES.chunks_exact(2).enumerate() {
-            high[axis] = reach(objects, copies, both[0]);
-            low[axis] = -reach(objects, copies, both[1]);
+            high[axis] = reach(objects, copies, both[0], tolerance);
+            low[axis] = -reach(objects, copies, both[1], tolerance);
         }
         Bounds::new(
             M::Point::of_coordinates(low),
@@ -403,7 +414,7 @@ fn flattened<P: Point>(point: P) -> P {
 fn merge<M: Affine, T>(
     items: &mut Vec<T>,
     copy: impl Fn(&T) -> &LimitCopy<M>,
-    join: impl Fn(&mut T, T),
+    join: impl Fn(&mut T, &T),
 ) {
     const SAME: f64 = 1e-5;
     // Equal maps take a point to equal places along a line. Point and line are in general position: maps that differ rarely
@@ -423,21 +434,27 @@ fn merge<M: Affine, T>(
         let image = copy(item).map.apply(M::Point::of_coordinates(POINT));
         image.dot(M::Point::of_coordinates(LINE))
     };
-    let mut placed: Vec<(f64, T)> = items.drain(..).map(|item| (place(&item), item)).collect();
-    placed.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let mut kept: Vec<(f64, T)> = Vec::with_capacity(placed.len());
-    for (place, item) in placed {
-        let own = copy(&item);
-        let near = kept.iter_mut().rev();
+    let mut places: Vec<(f64, usize)> = items.iter().map(place).zip(0..).collect();
+    places.sort_unstable_by(|(a, first), (b, second)| a.total_cmp(b).then(first.cmp(second)));
+    let mut kept: Vec<(f64, usize)> = Vec::with_capacity(places.len());
+    let mut is_joined = vec![false; items.len()];
+    for (place, number) in places {
+        let own = copy(&items[number]);
+        let near = kept.iter().rev();
         let mut near = near.take_while(|(other, _)| place - other <= WIDTH);
-        let is_same = |(_, it): &&mut (f64, T)| {
-            let it = copy(it);
+        let is_same = |(_, other): &&(f64, usize)| {
+            let it = copy(&items[*other]);
             it.object == own.object && it.map.is_near(&own.map, SAME)
         };
-        match near.find(is_same) {
-            Some((_, same)) => join(same, item),
-            None => kept.push((place, item)),
+        let Some(&(_, same)) = near.find(is_same) else {
+            kept.push((place, number));
+            continue;
+        };
+        is_joined[number] = true;
+        if let Ok([same, own]) = items.get_disjoint_mut([same, number]) {
+            join(same, own);
         }
     }
-    items.extend(kept.into_iter().map(|(_, item)| item));
+    let mut is_joined = is_joined.into_iter();
+    items.retain(|_| !is_joined.next().unwrap_or_default());
 }

@@ -19,11 +19,13 @@ use crate::measure::{
     BoxCounting, Cascade, Generalised, Grid, LimitSet, Masses, Points, Space, grown,
 };
 use crate::model::Model;
+use crate::parallel::both;
 
 use super::super::Failure;
 use super::super::input;
 use super::super::pixels::MAX_BYTES;
 use super::super::rule::Loaded;
+use super::kind::InputKind;
 use super::{Arguments, Measured, drawn};
 
 /// Limit of the number of points that are measured of a rule that is grown.
@@ -124,43 +126,6 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
             };
             let loaded = rules().load_from(&source, catalogue, arguments.json)?;
             of_rule(arguments, loaded)
-        }
-    }
-}
-
-/// Kind of an input file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum InputKind {
-    Rule,
-    Picture,
-    Table,
-    Ply,
-}
-
-impl InputKind {
-    /// Recognises a file by its first bytes, or else by its name: the first line of a table has a comma and
-    /// is no YAML.
-    fn of(path: &Path, head: &[u8]) -> Self {
-        let extension = path
-            .extension()
-            .map(|it| it.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            _ if Raster::is_picture(head) => Self::Picture,
-            _ if head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n") => Self::Ply,
-            Some("ply") => Self::Ply,
-            Some("png" | "jpg" | "jpeg" | "pbm" | "pgm" | "ppm" | "pnm") => Self::Picture,
-            Some("csv" | "txt") => Self::Table,
-            Some("yaml" | "yml" | "json") => Self::Rule,
-            _ => {
-                let lines = head.split(|&byte| byte == b'\n');
-                let first = lines
-                    .map(<[u8]>::trim_ascii)
-                    .find(|line| !line.is_empty() && !line.starts_with(b"#"));
-                let is_row = first.is_some_and(|line| {
-                    line.contains(&b',') && !line.iter().any(|byte| b":{[".contains(byte))
-                });
-                if is_row { Self::Table } else { Self::Rule }
-            }
         }
     }
 }
@@ -274,30 +239,24 @@ where
         measured.report_measure(arguments, weighted, graph);
         return measured;
     }
-    let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
-    measured.counting = BoxCounting::of_limit(set, arguments.base, &grids, threads);
-    if measured.counting.boxes.is_empty() {
-        if measured.counting.estimate.is_none() {
-            let reason = "nothing is measured: too many copies overlap";
-            measured.warnings.push(reason.into());
+    let lacunarity = || {
+        let mut masses = M::FINENESS.iter();
+        let masses = masses.find_map(|&boxes| Masses::of_limit(set, &Grid::ALONG, boxes));
+        masses.map(|it| it.lacunarity()).unwrap_or_default()
+    };
+    let count = || {
+        measured.count(arguments, set);
+        if measured.counting.boxes.is_empty() {
+            return measured;
         }
+        measured.report_measure(arguments, weighted, graph);
+        measured
+    };
+    let (lacunarity, mut measured) = both(arguments.threads().get(), lacunarity, count);
+    if measured.counting.boxes.is_empty() {
         return measured;
     }
-    let scale = set.smallest_scale();
-    let sizes = measured.counting.boxes.iter().map(|row| row.size);
-    if measured.counting.estimate.is_none()
-        && sizes.clone().fold(f64::INFINITY, f64::min) > scale * sizes.fold(0.0, f64::max)
-    {
-        let reason = format!(
-            "no dimension is measured: the sizes span less than one generation of the smallest copies, whose scale is \
-             {scale:.3e}"
-        );
-        measured.warnings.push(reason);
-    }
-    measured.report_measure(arguments, weighted, graph);
-    let mut masses = M::FINENESS.iter();
-    let masses = masses.find_map(|&boxes| Masses::of_limit(set, &Grid::ALONG, boxes));
-    measured.lacunarity = masses.map(|it| it.lacunarity()).unwrap_or_default();
+    measured.lacunarity = lacunarity;
     measured.enlarged(graph.place().ratio())
 }
 
@@ -425,6 +384,31 @@ impl Measured {
         };
         self.spectrum = spectrum.into_iter().map(formatted).collect();
         Generalised::fall(&mut self.spectrum);
+    }
+
+    /// Counts the boxes of a limit set.
+    fn count<M: Space>(&mut self, arguments: &Arguments, set: &LimitSet<M>) {
+        let (grids, threads) = (Grid::spread(arguments.grids), arguments.threads());
+        self.counting = BoxCounting::of_limit(set, arguments.base, &grids, threads);
+        if self.counting.estimate.is_some() {
+            return;
+        }
+        let sizes = self.counting.boxes.iter().map(|row| row.size);
+        let [finest, coarsest] = [
+            sizes.clone().fold(f64::INFINITY, f64::min),
+            sizes.fold(0.0, f64::max),
+        ];
+        let scale = set.smallest_scale();
+        if self.counting.boxes.is_empty() {
+            let reason = "nothing is measured: too many copies overlap";
+            self.warnings.push(reason.into());
+        } else if finest > scale * coarsest {
+            let reason = format!(
+                "no dimension is measured: the sizes span less than one generation of the smallest copies, whose scale is \
+                 {scale:.3e}"
+            );
+            self.warnings.push(reason);
+        }
     }
 
     /// Sets the spectrum of the measure on the limit set of a rule: the measure given by the weights of a

@@ -82,6 +82,9 @@ pub(super) const PLACE: Shape = Shape {
 const MAP_HINT: &str =
     "{scale: 1/2, rotate: 45, translate: [1, 0]} or {matrix: [[a, b], [c, d]], translate: [e, f]}";
 
+/// A point of the plane as a complex number, or a point of space.
+const NUMBER: Form = Form::Either(&[Form::Number, Form::Place]);
+
 /// Keys that define a map.
 const PLACING: [Member; 8] = keys![
     matrix: Form::List(&Form::Place, 2, Some(3)),
@@ -96,12 +99,12 @@ const PLACING: [Member; 8] = keys![
     ]),
         "An angle in degrees, counter-clockwise, or one of the x axis and one of the y axis; in space a \
          turn about an axis, {y: 30} or {axis: [1, 1, 0], angle: 30}, or a list of turns in order.";
-    times: Form::Place,
-        "A complex factor s, as [real part, imaginary part], a complex parameter or a formula, 1/(2 - i): z goes to s z.";
+    times: NUMBER,
+        "A complex factor s, as [real part, imaginary part], a number, a complex parameter or a formula, 1/(2 - i): z goes to s z.";
     conjugate: Form::Flag(false), "With `times`: z goes to s conj z.";
-    translate: Form::Place, "What is added last: [x, y], a complex parameter or a formula.";
-    shift: Form::Place, "Another name of `translate`.";
-    fixed: Form::Place, "In place of `translate`: the point that stays where it is.";
+    translate: NUMBER, "What is added last: [x, y], x for [x, 0], a complex parameter or a formula.";
+    shift: NUMBER, "Another name of `translate`.";
+    fixed: NUMBER, "In place of `translate`: the point that stays where it is.";
 ];
 
 const PLACEMENTS: [KeySet; 3] = [
@@ -255,8 +258,8 @@ pub(super) fn read_placing(reader: &mut Reader, fields: &Fields<'_>) -> MapDocum
     let map = MapDocument {
         name: None,
         linear,
-        shift: reader.optional_complex(shift),
-        fixed: reader.optional_complex(fields.take("fixed")),
+        shift: shift.map(|node| reader.complex_number(node)),
+        fixed: fields.take("fixed").map(|node| reader.complex_number(node)),
         weight: None,
         tint: None,
         place: fields.place.clone(),
@@ -279,7 +282,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
         return None;
     }
     let rotate = fields.optional(reader, "rotate");
-    let times = reader.optional_complex(fields.take("times"));
+    let times = fields.take("times").map(|node| reader.complex_number(node));
     let conjugate = fields.read(reader, "conjugate")?;
     let alternatives = [matrix.is_some(), scale.is_some(), times.is_some()];
     let keys = alternatives.iter().position(|there| *there);

@@ -36,9 +36,17 @@ const ROTATE: Member = key(
      {axis: [1, 1, 0], angle: 30}, or a list of turns in order.",
 );
 
-const TRANSLATE: Member = key("translate", Form::Place, "A translation: [x, y].");
+const TRANSLATE: Member = key(
+    "translate",
+    Form::Either(&[Form::Number, Form::Place]),
+    "A translation: [x, y], or x for [x, 0].",
+);
 
-const SHIFT: Member = key("shift", Form::Place, "Another name of `translate`.");
+const SHIFT: Member = key(
+    "shift",
+    Form::Either(&[Form::Number, Form::Place]),
+    "Another name of `translate`.",
+);
 
 const MATRIX: Member = key(
     "matrix",
@@ -67,7 +75,7 @@ pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<T
         match name {
             "transform" => transforms.extend(read_list(reader, node)),
             "translate" | "shift" => {
-                transforms.push(TransformDocument::Translate(reader.point(node)))
+                transforms.push(TransformDocument::Translate(reader.complex_number(node)))
             }
             _ if reader.is_in_space => transforms.extend(read_in_space(reader, name, node)),
             _ => transforms.extend(read_in_plane(reader, name, node)),

@@ -107,8 +107,8 @@ struct Figure<'a, F: ShownFrame + TurtleFrame> {
 struct Sketch {
     lines: Vec<([DVec2; 2], ElementRole, char)>,
     shapes: Vec<(Outline, ElementRole)>,
-    /// Places and directions of modules that are replaced and draw nothing.
-    modules: Vec<([DVec2; 2], char)>,
+    /// Places and directions of modules that are replaced and draw nothing, with the symbols that are there.
+    modules: Vec<([DVec2; 2], String)>,
 }
 
 impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
@@ -196,13 +196,8 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
             let fertile = !symbol.productions.is_empty();
             let role = ElementRole::of(fertile, false);
             let drawn = std::mem::take(&mut turtle.drawing.elements);
-            // Several in one place look like one.
-            let is_same = |(known, character): &([DVec2; 2], char)| {
-                let mut ends = known.iter().zip(at);
-                *character == symbol.character && ends.all(|(a, b)| a.distance(b) <= SAME)
-            };
-            if drawn.is_empty() && fertile && !sketch.modules.iter().any(is_same) {
-                sketch.modules.push((at, symbol.character));
+            if drawn.is_empty() && fertile {
+                sketch.add_module(at, symbol.character);
             }
             for placed in drawn {
                 let image = |point| seen(placed.frame.map().apply(point));
@@ -241,9 +236,13 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
         let sizes = sketches
             .iter()
             .map(|sketch| sketch.bounds().size().max_element());
-        let size = sizes.fold(1e-300, f64::max);
-        let unit = (STEP / self.words.length()).max(STEP / size);
-        let unit = unit.min(MOST / size);
+        let size = sizes.fold(0.0, f64::max);
+        let step = STEP / self.words.length();
+        let unit = if size > 0.0 {
+            step.max(STEP / size).min(MOST / size)
+        } else {
+            step
+        };
         let attempt = |(zoom, marks): (f64, f64), clear: bool| -> Option<Vec<Block>> {
             let blocks = sketches
                 .iter()
@@ -257,6 +256,20 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
 }
 
 impl Sketch {
+    /// Adds a module that draws nothing: to others in its place and direction, if there are any.
+    fn add_module(&mut self, at: [DVec2; 2], symbol: char) {
+        let mut modules = self.modules.iter_mut();
+        let same = modules.find(|(known, _)| {
+            let mut ends = known.iter().zip(at);
+            ends.all(|(a, b)| a.distance(b) <= SAME)
+        });
+        match same {
+            Some((_, symbols)) if symbols.contains(symbol) => {}
+            Some((_, symbols)) => symbols.push(symbol),
+            None => self.modules.push((at, symbol.into())),
+        }
+    }
+
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         bounds.add(DVec2::ZERO);
@@ -286,11 +299,11 @@ impl Sketch {
             items.push(BlockItem::Path(vec![outline], paint, None));
         }
         let (mut marks, mut obstacles) = (Vec::new(), Vec::new());
-        let mark = |anchor, character: char| Mark {
+        let mark = |anchor, name: String| Mark {
             anchor,
             number: String::new(),
             fertile: false,
-            name: character.into(),
+            name,
             colour: ElementRole::Fertile.colour(),
         };
         for role in [ElementRole::Infertile, ElementRole::Fertile] {
@@ -302,7 +315,7 @@ impl Sketch {
                 obstacles.push(Obstacle::element(from, to));
                 if role == ElementRole::Fertile {
                     lines.extend(arrowhead([from, to]));
-                    marks.push(mark(Anchor::Element(from, to), *character));
+                    marks.push(mark(Anchor::Element(from, to), character.to_string()));
                 }
             }
             if !lines.is_empty() {
@@ -310,7 +323,7 @@ impl Sketch {
             }
         }
         let mut tips = Vec::new();
-        for ([at, ahead], character) in &self.modules {
+        for ([at, ahead], symbols) in &self.modules {
             let [from, to] = [*at, *ahead].map(place);
             let tip = from + (to - from).normalize_or_zero() * ARROW;
             items.push(BlockItem::Path(
@@ -319,7 +332,7 @@ impl Sketch {
                 None,
             ));
             obstacles.push(Obstacle::element(from, tip));
-            marks.push(mark(Anchor::Element(from, tip), *character));
+            marks.push(mark(Anchor::Element(from, tip), symbols.clone()));
             tips.push(tip);
         }
         let ring = vec![Outline::circle(start, 4.0)];

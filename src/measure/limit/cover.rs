@@ -164,8 +164,13 @@ impl LimitSet {
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "casts from floats saturate"
+    clippy::cast_precision_loss,
+    reason = "casts from floats saturate, and boxes are few"
 )]
 fn boxed<P: Point>(point: P) -> [i64; 3] {
-    point.coordinates().map(|at| at.floor() as i64)
+    point.coordinates().map(|at| {
+        // Rounding down is a call where the processor is not known to have an instruction for it.
+        let towards_zero = at as i64;
+        towards_zero.saturating_sub(i64::from(at < towards_zero as f64))
+    })
 }

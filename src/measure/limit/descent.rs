@@ -21,14 +21,14 @@ use super::{LimitCopy, LimitSet, merge};
 
 /// Number of copies that are examined to refine and to count the boxes of a size, and minimum number of boxes that are
 /// refined. Counts are exact as long as there are fewer.
-const WORK: usize = 1 << 15;
-const FOLLOWED: usize = 1 << 7;
+const WORK: usize = 1 << 16;
+const FOLLOWED: usize = 1 << 5;
 
 /// Radius, in sides of a box, above which the disc of a copy is divided.
 const LARGEST: f64 = 2.0;
 
 /// Maximum number of copies of one size that are examined: where too many overlap, the descent ends.
-const MAX_COPIES: usize = 1 << 20;
+const MAX_COPIES: usize = 1 << 18;
 
 /// Maximum number of copies that are examined for a raster.
 const MAX_RASTER: usize = 1 << 26;

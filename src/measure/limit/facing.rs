@@ -30,64 +30,72 @@ impl<P: Point> Facing<P> {
     }
 }
 
-/// Returns the extent of copies in a direction of length 1.
+/// Returns the extent of copies in a direction of length 1, to a part of their size.
 ///
 /// The copies whose discs may reach farthest are divided repeatedly. Of copies with equal vectors, the one that is
-/// moved farthest is kept; of more than 256 others, those whose discs reach farthest.
+/// moved farthest is kept; of more than 64 others, those whose discs reach farthest.
 pub(super) fn reach<M: Affine>(
     objects: &[ObjectLimit<M>],
     copies: &[LimitCopy<M>],
     direction: M::Point,
+    tolerance: f64,
 ) -> f64 {
-    const MAX_COPIES: usize = 256;
-    const TOLERANCE: f64 = 1e-13;
+    const MAX_COPIES: usize = 64;
     let whole = Facing {
         vector: direction,
         moved: 0.0,
         object: 0,
     };
     let mut copies: Vec<_> = copies.iter().map(|copy| whole.compose(copy)).collect();
-    let reach = |copy: &Facing<M::Point>| copy.reach(objects);
-    let sizes = copies.iter().map(|copy| reach(copy).1 - reach(copy).0);
-    let tolerance = TOLERANCE * sizes.fold(0.0, f64::max);
+    let sizes = copies.iter().map(|copy| copy.reach(objects));
+    let tolerance = tolerance * sizes.map(|(at, most)| most - at).fold(0.0, f64::max);
     let mut certain = f64::NEG_INFINITY;
+    let mut reaching = Vec::new();
     for _ in 0..MAX_SWEEPS {
-        certain = copies
-            .iter()
-            .map(|copy| reach(copy).0)
-            .fold(certain, f64::max);
-        copies.retain(|copy| reach(copy).1 > certain + tolerance);
-        if copies.is_empty() {
+        reaching.clear();
+        for copy in copies.drain(..) {
+            let (at, most) = copy.reach(objects);
+            certain = certain.max(at);
+            reaching.push((most, copy));
+        }
+        reaching.retain(|(most, _)| *most > certain + tolerance);
+        if reaching.is_empty() {
             break;
         }
-        keep_farthest(&mut copies);
-        if copies.len() > MAX_COPIES {
-            copies.sort_by(|a, b| reach(b).1.total_cmp(&reach(a).1));
-            copies.truncate(MAX_COPIES);
+        keep_farthest(&mut reaching);
+        if reaching.len() > MAX_COPIES {
+            reaching.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+            reaching.truncate(MAX_COPIES);
         }
-        let inner = copies.iter().flat_map(|copy| {
+        let inner = reaching.iter().flat_map(|(_, copy)| {
             let children = objects[copy.object].children.iter();
             children.map(|inner| copy.compose(inner))
         });
-        copies = inner.collect();
+        copies.extend(inner);
     }
     certain
 }
 
-/// Keeps, of copies of one object with equal vectors, the one that is moved farthest.
+/// Keeps, of copies of one object with equal vectors, the one that is moved farthest. Copies come with upper bounds of
+/// their products.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the numbers are no larger than 1e13"
 )]
-fn keep_farthest<P: Point>(copies: &mut Vec<Facing<P>>) {
+fn keep_farthest<P: Point>(copies: &mut Vec<(f64, Facing<P>)>) {
     /// Length, as a part of the longest vector, below which differences are rounding.
     const SAME: f64 = 1e-13;
-    let longest = copies.iter().map(|copy| copy.vector.length());
+    let longest = copies.iter().map(|(_, copy)| copy.vector.length());
     let unit = SAME * longest.fold(0.0, f64::max);
-    let key = |copy: &Facing<P>| {
-        let vector = copy.vector.coordinates();
-        (copy.object, vector.map(|part| (part / unit).round() as i64))
-    };
-    copies.sort_by(|a, b| (key(a).cmp(&key(b))).then(b.moved.total_cmp(&a.moved)));
-    copies.dedup_by_key(|copy| key(copy));
+    let keyed = copies.drain(..).map(|it| {
+        let vector = it.1.vector.coordinates();
+        let key = (it.1.object, vector.map(|part| (part / unit).round() as i64));
+        (key, it)
+    });
+    let mut keyed: Vec<_> = keyed.collect();
+    keyed.sort_by(|(key, (_, copy)), (other, (_, than))| {
+        (key.cmp(other)).then(than.moved.total_cmp(&copy.moved))
+    });
+    keyed.dedup_by_key(|(key, _)| *key);
+    copies.extend(keyed.into_iter().map(|(_, it)| it));
 }

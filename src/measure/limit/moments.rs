@@ -26,10 +26,11 @@ use super::{Cascade, LimitCopy, merge};
 /// sizes.
 const SMALL: f64 = 1.0;
 
-/// Number of copies of one size that are examined, and minimum number of pieces that are divided. As long as
-/// there are fewer, sums are over all pieces.
-const FOLLOWED_COPIES: usize = 1 << 15;
-const FOLLOWED: usize = 1 << 6;
+/// Number of copies of one size that are examined; more for orders below 0, which depend on rare pieces.
+const FOLLOWED_COPIES: [usize; 2] = [1 << 14, 1 << 15];
+
+/// Minimum number of pieces that are divided. As long as there are fewer, sums are over all pieces.
+const FOLLOWED: usize = 1 << 4;
 
 /// Maximum number of copies of one size, and of all sizes, that are examined: where too many overlap, the
 /// descent ends.
@@ -231,8 +232,9 @@ impl<'c, M: Space> Descent<'c, M> {
     /// largest share of the sum of any order, at present or as if it were isolated, as its parts will be in
     /// smaller balls. Pieces whose share is so large that no other can represent them are always kept.
     fn choose(&mut self) {
-        let most = self.divided * FOLLOWED_COPIES / self.looked_at.max(1);
-        let most = most.max(FOLLOWED);
+        let needs_rare = self.orders.iter().any(|order| *order < 0.0);
+        let work = FOLLOWED_COPIES[usize::from(needs_rare)];
+        let most = (self.divided * work / self.looked_at.max(1)).max(FOLLOWED);
         if self.pieces.len() <= most {
             return;
         }

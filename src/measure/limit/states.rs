@@ -17,7 +17,7 @@ use crate::measure::cover::Counts;
 use crate::measure::space::Space;
 use crate::saturating::{real, whole};
 
-use super::{LimitCopy, LimitSet};
+use super::{EXACT, LimitCopy, LimitSet, NEGLIGIBLE};
 
 /// Maximum number of states, of copies that are examined, and of linear parts of maps.
 const MAX_STATES: usize = 1 << 13;
@@ -47,6 +47,9 @@ impl<M: Space> LimitSet<M> {
     /// Counts the boxes with sides of the extent divided by base, base² … that the set meets, on the grid along the
     /// axes from the corner of its bounding box on; `None` where the states are too many.
     pub(super) fn counts_by_states(&self, base: usize, sizes: usize) -> Option<Vec<u64>> {
+        if !self.has_few_shapes(base) {
+            return None;
+        }
         let extent = self.bounds.size().max_element();
         let unit = LimitCopy::new(M::IDENTITY, 0);
         // The plane of a slice lies in the middle of its layer.
@@ -92,6 +95,31 @@ impl<M: Space> LimitSet<M> {
             );
         }
         Some(counts)
+    }
+
+    /// Returns `false` if copies have more than [`MAX_SHAPES`] linear parts that differ by more than a power of the base:
+    /// their states are too many.
+    fn has_few_shapes(&self, base: usize) -> bool {
+        let mut known = FastMap::default();
+        let mut open = self.start.clone();
+        while let Some(copy) = open.pop() {
+            if copy.scale <= NEGLIGIBLE {
+                continue;
+            }
+            // The largest linear part that is no larger than the unit.
+            let mut copy = copy.moved(-copy.map.translation());
+            let levels = (libm::log(copy.scale) / libm::log(real(base)) - SAME).ceil();
+            copy.grow(libm::pow(real(base), -levels));
+            if known.insert(key(&copy.map, copy.object), ()).is_some() {
+                continue;
+            }
+            if known.len() > MAX_SHAPES {
+                return false;
+            }
+            let children = self.objects[copy.object].children.iter();
+            open.extend(children.map(|inner| copy.compose(inner)));
+        }
+        true
     }
 }
 
@@ -164,7 +192,7 @@ impl<M: Space> States<'_, M> {
             std::collections::hash_map::Entry::Occupied(known) => *known.get(),
             std::collections::hash_map::Entry::Vacant(_) if shapes == MAX_SHAPES => return None,
             std::collections::hash_map::Entry::Vacant(new) => {
-                *new.insert(LimitSet::extent(objects, &[linear]))
+                *new.insert(LimitSet::extent(objects, &[linear], EXACT))
             }
         };
         Some(Bounds::new(shape.min() + at, shape.max() + at))
