@@ -322,9 +322,7 @@ impl Reader {
             return None;
         };
         if self.is_in_space {
-            let message = format!("'{text}' is no list of coordinates, and this lies in space");
-            self.error_with_hint(&node.place, message, "write [x, y, z]");
-            return Some(WrittenPoint::unknown(&node.place));
+            return Some(self.no_coordinates(node, text));
         }
         if is_name(text) && text != UNIT {
             return Some(WrittenPoint::named(text, &node.place));
@@ -355,13 +353,23 @@ impl Reader {
 
     /// Reads a point, in the plane also as a real number: x stands for [x, 0].
     pub(super) fn complex_number(&mut self, node: &Node) -> WrittenPoint {
-        if self.is_in_space || !matches!(node.value, Value::Number(_)) {
+        if !matches!(node.value, Value::Number(_)) {
             return self.point(node);
+        }
+        if self.is_in_space {
+            return self.no_coordinates(node, node.place.text());
         }
         let mut point = WrittenPoint::unknown(&node.place);
         point.x = self.number(node);
         point.y.value = Expression::number(0.0);
         point
+    }
+
+    /// Reports what stands in place of a point in space.
+    fn no_coordinates(&mut self, node: &Node, text: &str) -> WrittenPoint {
+        let message = format!("'{text}' is no list of coordinates, and this lies in space");
+        self.error_with_hint(&node.place, message, "write [x, y, z]");
+        WrittenPoint::unknown(&node.place)
     }
 
     /// Reads a list of two numbers, or a number, which counts twice.
