@@ -68,6 +68,7 @@ pub(crate) fn map<I: Sync, T: Send>(
 }
 
 /// Returns the results of two functions. With more than one thread, the first runs on one of its own.
+#[cfg(feature = "cli")]
 pub(crate) fn both<A: Send, B>(
     threads: usize,
     aside: impl FnOnce() -> A + Send,
