@@ -15,7 +15,7 @@
 //! let svg: String = tree.svg()?;
 //! let png: Vec<u8> = tree.png(600)?;
 //! assert_eq!(tree.elements()?.count(), 766);
-//! assert!(tree.dimension()?.value > 1.99);
+//! assert!((tree.dimension()?.value - 2.0).abs() < 0.05);
 //!
 //! let mine = Fractal::parse("
 //! initiator: segment
