@@ -10,6 +10,7 @@ mod drift;
 pub use appearance::{Appearance, Thickness};
 pub use drift::Drift;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::geometry::{DAffine2, Homothety};
@@ -32,19 +33,30 @@ pub struct Instancing<M: AffineMap = DAffine2> {
     pub(crate) growing: Option<Growing>,
 }
 
-/// Canonical object: a union of instances.
+/// Canonical object: a union of instances, or one of several unions that are drawn at random.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectDefinition<M: AffineMap = DAffine2> {
     /// Name, with the level if there is one: `A(3)`.
     pub name: String,
     /// Map that is applied to the whole object.
     pub map: M,
-    /// Instances of which the object is the union.
+    /// Instances of which the object is the union; those of all alternatives, one after the other, if there are any.
     pub instances: Vec<ObjectInstance<M>>,
+    /// Alternatives of which one is drawn at random for every instance of the object.
+    pub alternatives: Vec<ObjectAlternative>,
     /// Maps whose product is `map`, as written, for the slots of the object.
     pub(crate) transforms: Arc<[M::Written]>,
     /// Slots of the programs of the object and of its instances: its level, if it has one.
     pub(crate) slots: Vec<f64>,
+}
+
+/// Part of an object that is drawn at random among several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectAlternative {
+    /// Weight, of at least 0, relative to those of the others.
+    pub weight: f64,
+    /// Instances of the object that it consists of, by number.
+    pub instances: Range<usize>,
 }
 
 /// Instance of an object or of a shape.

@@ -15,6 +15,7 @@ mod metadata;
 mod numbers;
 mod outline;
 mod parameters;
+mod random;
 mod rule;
 mod set;
 mod space;
@@ -122,7 +123,7 @@ fn resolve(
         }
         KindDocument::LSystem(document) => {
             resolved(&document.metadata, settings, |to, metadata| {
-                to.lsystem(document, metadata)
+                to.lsystem_in_plane(document, metadata)
             })
         }
     }

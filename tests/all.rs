@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
 
 mod accuracy;
+mod alternatives;
 mod approximants;
 mod bad_input;
 mod bands;

@@ -5,6 +5,7 @@ mod laws;
 mod looks;
 mod rules;
 mod space;
+mod stamps;
 mod turtle;
 
 use std::sync::Arc;

@@ -160,9 +160,13 @@ impl UnionBuilder {
 
     transforms!();
 
-    fn value(self) -> Value {
+    fn entries(self) -> Entries {
         let union = Entries::default().set("union", sequence(self.instances));
-        self.transforms.add_to(union).value()
+        self.transforms.add_to(union)
+    }
+
+    fn value(self) -> Value {
+        self.entries().value()
     }
 }
 
@@ -206,6 +210,23 @@ impl StructureBuilder {
     pub fn object(self, name: impl Into<String>, union: impl Into<UnionBuilder>) -> Self {
         Self {
             objects: self.objects.add(name, union.into().value()),
+            ..self
+        }
+    }
+
+    /// Adds an object that is one of several unions, drawn at random by their weights for every instance.
+    pub fn object_at_random<W: Into<NumberText>, U: Into<UnionBuilder>>(
+        self,
+        name: impl Into<String>,
+        alternatives: impl IntoIterator<Item = (W, U)>,
+    ) -> Self {
+        let alternatives = alternatives.into_iter().map(|(weight, union)| {
+            let union: UnionBuilder = union.into();
+            union.entries().set("weight", weight.into().0).value()
+        });
+        let object = Entries::default().set("at_random", sequence(alternatives));
+        Self {
+            objects: self.objects.add(name, object.value()),
             ..self
         }
     }

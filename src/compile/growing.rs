@@ -272,8 +272,14 @@ impl<F: Frame, G: Fn(usize, &F, bool) -> F + Send + Sync> Source<F> for LastGrow
         self.of.parts(generator)
     }
 
-    fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent> {
+    fn extents(
+        &self,
+        generator: usize,
+        power: f64,
+        moments: &[Interval; 4],
+        middle: F::Point,
+    ) -> Vec<Extent> {
         // Elements on their way lie between the replaced element and their places.
-        self.of.extents(generator, power, moments)
+        self.of.extents(generator, power, moments, middle)
     }
 }

@@ -22,10 +22,11 @@ impl<F: Bounded> Graph<F> {
     /// Approximant 0 is the scene, in which an instance of an object is drawn as the initial set, if
     /// there is one, under the map that the object applies to itself; each step replaces instances of
     /// objects by the instances of which the objects consist. Shapes are infertile. Without shapes and
-    /// initial set, an object is drawn as the bounding box of its limit set.
+    /// initial set, an object is drawn as the bounding box of its limit set; alternatives, of which one is drawn at random,
+    /// count together there.
     #[must_use]
     pub fn of_structure<M: AffineMap<Frame = F>>(structure: &Instancing<M>) -> Self {
-        let mut graph = Compiler::new(structure).run();
+        let (mut graph, canonical) = Compiler::new(structure).run();
         if !structure.draws_anything() {
             graph.draw_boxes::<M>();
         }
@@ -33,6 +34,7 @@ impl<F: Bounded> Graph<F> {
         if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
             graph.set_extent(&bounds);
         }
+        graph.draw_alternatives(structure, &canonical);
         graph
     }
 
@@ -100,7 +102,7 @@ impl<F: Bounded> Graph<F> {
             scene: scene.collect(),
             ..structure.clone()
         };
-        let mut graph = Compiler::new(&alone).run();
+        let (mut graph, _) = Compiler::new(&alone).run();
         if !alone.draws_anything() {
             graph
                 .objects
@@ -192,14 +194,17 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         initiator
     }
 
-    fn run(mut self) -> Graph<M::Frame> {
+    /// Returns the graph, with the canonical object of each of its objects. An object with alternatives consists of all of
+    /// them.
+    fn run(mut self) -> (Graph<M::Frame>, Vec<Option<usize>>) {
         let initiator = self.reach();
         let tints = self.objects.iter().any(|object| object.tint.is_some());
-        Graph {
+        let graph = Graph {
             tints,
             affine: true,
             ..Graph::of(self.objects, self.base_elements, vec![initiator])
-        }
+        };
+        (graph, self.of)
     }
 
     fn chain(&mut self, instances: &[instancing::ObjectInstance<M>]) -> Chain<M::Frame> {

@@ -138,7 +138,7 @@ fn derived<F: TurtleFrame>(
             return Err(CompileError::TooFar);
         }
     }
-    let base_elements = strings.base_elements(F::surfaces(system), polygons);
+    let base_elements = strings.base_elements(F::stamps(system), polygons);
     let outlines = F::outlines(&base_elements);
     let initiator = Chain::loose(instances);
     let mut bounds = Bounds::EMPTY;
@@ -274,7 +274,7 @@ struct NotCompiled;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Shape {
     Line,
-    Surface(usize),
+    Stamp(usize),
     Tube(TubePart),
     Polygon(usize),
 }
@@ -312,7 +312,7 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
             }
             (Drawn::Line(_), None) => Shape::Line,
             (Drawn::Polygon(number), _) => Shape::Polygon(number),
-            (Drawn::Surface(number), _) => Shape::Surface(number),
+            (Drawn::Stamp(number), _) => Shape::Stamp(number),
         };
         instances.push(Instance {
             joined: placed.joined,
@@ -345,20 +345,20 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
         number
     }
 
-    /// Returns the base elements, and refers the objects to them: the line, surfaces, tubes and polygons.
+    /// Returns the base elements, and refers the objects to them: the line, stamps, tubes and polygons.
     fn base_elements(
         &mut self,
-        surfaces: &[F::BaseElement],
+        stamps: &[F::BaseElement],
         polygons: Vec<F::BaseElement>,
     ) -> Vec<F::BaseElement> {
         let mut all = vec![F::line()];
-        all.extend_from_slice(surfaces);
+        all.extend_from_slice(stamps);
         let first_polygon = all.len();
         all.extend(polygons);
         let mut tubes = BTreeMap::new();
         for (object, shape) in self.objects.iter_mut().zip(&self.shapes) {
             object.base_element = match (*shape, self.tube) {
-                (Shape::Surface(number), _) => 1 + number,
+                (Shape::Stamp(number), _) => 1 + number,
                 (Shape::Polygon(number), _) => first_polygon + number,
                 (Shape::Tube(part), Some(tube)) => *tubes.entry(part).or_insert_with(|| {
                     all.push(F::tube_part(tube, part));

@@ -1,5 +1,6 @@
 //! Compilation of the models of all kinds to graphs.
 
+mod alternatives;
 mod distinguished;
 pub(crate) mod growing;
 mod ifs;

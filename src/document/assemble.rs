@@ -2,7 +2,7 @@
 
 mod fractals;
 mod parameters;
-mod surfaces;
+mod stamps;
 
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ fn assemble_within(
     }
     let kind = assembly.kind.unwrap_or(Kind::Rule);
     if kind == Kind::LSystem {
-        surfaces::add(&mut entries);
+        stamps::add(&mut entries);
     }
     assembly.inline_all(&mut entries, KindDocument::table(kind).shape);
     assembly.hoist_parameters(&mut entries);

@@ -46,12 +46,25 @@ pub enum LevelDocument {
 /// A union of instances as written.
 #[derive(Clone, Debug)]
 pub struct UnionDocument {
-    /// The instances.
+    /// The instances; empty if there are alternatives.
     pub instances: Vec<InstanceDocument>,
+    /// Unions of which one is drawn at random for every instance.
+    pub alternatives: Vec<AlternativeDocument>,
     /// Transforms of the whole union, in the order of application.
     pub transforms: Vec<TransformDocument>,
     /// Source span of the union.
     pub place: Place,
+}
+
+/// An alternative of an object as written.
+#[derive(Clone, Debug)]
+pub struct AlternativeDocument {
+    /// The instances, none if it draws nothing.
+    pub instances: Vec<InstanceDocument>,
+    /// Transforms of all of them, in the order of application.
+    pub transforms: Vec<TransformDocument>,
+    /// Its weight, 1 if left out.
+    pub weight: Option<WrittenNumber>,
 }
 
 /// An instance as written.

@@ -5,6 +5,7 @@
 
 use crate::diagnostic::Place;
 
+use super::ifs::ShapeDocument;
 use super::read::BaseElementDocument;
 use super::{MetadataDocument, Written, WrittenNumber, WrittenPoint};
 
@@ -25,8 +26,10 @@ pub struct LSystemDocument {
     pub up: Option<Box<WrittenPoint>>,
     /// In space, tropism.
     pub tropism: Option<Box<TropismDocument>>,
-    /// In space, surfaces by name.
-    pub surfaces: Vec<(Written<String>, BaseElementDocument)>,
+    /// Stamps by name.
+    pub stamps: Vec<(Written<String>, StampDocument)>,
+    /// Variables that are drawn for every module that is replaced, with their distributions.
+    pub random: Vec<(Written<String>, WrittenNumber)>,
     /// Step length of the turtle.
     pub length: Option<WrittenNumber>,
     /// Factor by which `!` multiplies the width.
@@ -39,6 +42,15 @@ pub struct LSystemDocument {
     pub symbols: Vec<SymbolDocument>,
     /// Symbols that contexts ignore.
     pub ignored: Vec<char>,
+}
+
+/// A stamp as written.
+#[derive(Clone, Debug)]
+pub enum StampDocument {
+    /// A base element.
+    BaseElement(Box<BaseElementDocument>),
+    /// A set, in the coordinates of the unit frame.
+    Set(Box<ShapeDocument>),
 }
 
 /// A tropism as written.
@@ -137,6 +149,8 @@ pub enum ActionDocument {
     Colour(WrittenNumber),
     /// Adds to the number of the colour.
     ShiftColour(WrittenNumber),
+    /// Places a stamp, whose length is a number of steps (1 if `None`).
+    Stamp(Written<String>, Option<WrittenNumber>),
     /// Begins a polygon.
     Open,
     /// Ends the polygon.

@@ -43,12 +43,12 @@ pub use ifs::{
     ScatterDocument, ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
 };
 pub use instancing::{
-    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    TransformDocument, UnionDocument,
+    AlternativeDocument, InstanceDocument, InstancingDocument, LevelDocument, MasterDocument,
+    ObjectDocument, TransformDocument, UnionDocument,
 };
 pub use lsystem::{
-    ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, SymbolDocument,
-    TropismDocument, WordDocument,
+    ActionDocument, LSystemDocument, ModuleDocument, ProductionDocument, StampDocument,
+    SymbolDocument, TropismDocument, WordDocument,
 };
 pub use metadata::{MetadataDocument, ParameterDocument};
 pub use read::{

@@ -47,9 +47,10 @@ impl<F: Frame> Graph<F> {
             let mut edges = Vec::new();
             for alternative in alternatives.iter() {
                 let generator = alternative.generator;
-                let extents = extents
-                    .entry(generator)
-                    .or_insert_with(|| self.source().extents(generator, power, &self.moments()));
+                let extents = extents.entry(generator).or_insert_with(|| {
+                    let source = self.source();
+                    source.extents(generator, power, &self.moments(), self.middle)
+                });
                 let drawn = alternative.objects.iter().zip(extents);
                 edges.extend(drawn.map(|(&object, extent)| Edge {
                     object,

@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::{Frame, Point as _};
 use crate::rule::{ElementContext, Extent, Part, Rule, RuleFrame};
 
-use super::{Alternative, CompileError, Successor};
+use super::{Alternative, Chain, CompileError, Successor};
 
 /// Source of instances that are computed for each element.
 pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
@@ -26,8 +26,20 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
     fn parts(&self, generator: usize) -> &[Part];
 
     /// Returns bounds of each element of a generator by position, or upper bounds of their power means for a
-    /// finite power (see `Generator::means`).
-    fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent>;
+    /// finite power (see `Generator::means`). Distances are those from a point of the unit frame, its middle in graphs of
+    /// rules.
+    fn extents(
+        &self,
+        generator: usize,
+        power: f64,
+        moments: &[Interval; 4],
+        middle: F::Point,
+    ) -> Vec<Extent>;
+
+    /// Returns the instances of a generator with its weight, if both are the same for all elements.
+    fn drawn(&self, _generator: usize) -> Option<(&Chain<F>, f64)> {
+        None
+    }
 
     /// Returns the rule, if a rule is the source.
     fn rule(&self) -> Option<&Rule<F>>
@@ -76,7 +88,13 @@ impl<F: RuleFrame> Source<F> for Rule<F> {
         self.generators()[generator].parts()
     }
 
-    fn extents(&self, generator: usize, power: f64, moments: &[Interval; 4]) -> Vec<Extent> {
+    fn extents(
+        &self,
+        generator: usize,
+        power: f64,
+        moments: &[Interval; 4],
+        _: F::Point,
+    ) -> Vec<Extent> {
         self.generators()[generator].extents(power, moments)
     }
 

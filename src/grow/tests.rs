@@ -272,7 +272,7 @@ impl Source<Frame3> for Coin {
         &[]
     }
 
-    fn extents(&self, _: usize, _: f64, _: &[Interval; 4]) -> Vec<Extent> {
+    fn extents(&self, _: usize, _: f64, _: &[Interval; 4], _: DVec3) -> Vec<Extent> {
         let extent = Extent {
             away: 3f64.sqrt() / 3.0,
             length: 1.0 / 3.0,

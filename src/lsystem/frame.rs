@@ -42,8 +42,8 @@ pub trait TurtleFrame: RuleFrame {
     /// Returns the start heading.
     fn start(system: &Self::System, compass: Compass) -> Self::Heading;
 
-    /// Returns the surfaces that the turtle places by number.
-    fn surfaces(system: &Self::System) -> &[Self::BaseElement];
+    /// Returns the base elements that the turtle places by number.
+    fn stamps(system: &Self::System) -> &[Self::BaseElement];
 
     /// Returns whether the drawing of a word depends on more of the turtle's state than its frame: on the second heading,
     /// on the mirrored flag, or on directions in space.
@@ -137,8 +137,8 @@ impl TurtleFrame for Frame2 {
         compass.of_degrees(system.start)
     }
 
-    fn surfaces(_: &LSystem) -> &[BaseElement] {
-        &[]
+    fn stamps(system: &LSystem) -> &[BaseElement] {
+        &system.stamps
     }
 
     fn depends_on_the_way(system: &LSystem) -> bool {
@@ -316,8 +316,8 @@ impl TurtleFrame for Frame3 {
         }
     }
 
-    fn surfaces(system: &LSystemInSpace) -> &[Body] {
-        &system.surfaces
+    fn stamps(system: &LSystemInSpace) -> &[Body] {
+        &system.stamps
     }
 
     fn depends_on_the_way(system: &LSystemInSpace) -> bool {

@@ -10,7 +10,7 @@ use super::{Drawn, Placed, RewriteError, TubeLine, Turtle, TurtleFrame};
 ///
 /// A point that the turtle passes in the successor of a module begins at its foot on the turtle's way along that module,
 /// and moves in a straight line. The foot divides this way as the foot of the point on the way along the whole successor
-/// divides that one. Polygons and surfaces grow out of their first points. Where a module and its successor draw the same
+/// divides that one. Polygons and stamps grow out of their first points. Where a module and its successor draw the same
 /// number of elements, these pass into each other.
 pub(crate) struct GrowingTurtle<'s, F: TurtleFrame> {
     share: f64,
@@ -95,7 +95,7 @@ impl<'s, F: TurtleFrame> GrowingTurtle<'s, F> {
                 old.frame.ends()
             }
             (None, Drawn::Line(_)) => ends.map(|end| way.foot(end)),
-            (None, Drawn::Polygon(_) | Drawn::Surface(_)) => [way.foot(ends[0]); 2],
+            (None, Drawn::Polygon(_) | Drawn::Stamp(_)) => [way.foot(ends[0]); 2],
         };
         let [from, to] = [0, 1].map(|end| self.place([start[end], ends[end]]));
         placed.frame = placed.frame.spanning([from, to]);

@@ -55,8 +55,10 @@ pub use turtle::{Drawing, Drawn, Placed};
 pub use word::Word;
 
 use crate::diagnostic::Place;
+use crate::draws::Variable;
 use crate::expression::Program;
 use crate::metadata::Metadata;
+use crate::rule::BaseElement;
 use crate::tween::Growing;
 
 /// An L-system.
@@ -68,6 +70,8 @@ pub struct LSystem {
     pub(crate) symbols: Vec<Symbol>,
     pub(crate) axiom: Vec<Module>,
     pub(crate) productions: Vec<Production>,
+    /// Base elements that the turtle places in the plane.
+    pub(crate) stamps: Vec<BaseElement>,
     /// Whether the system stands for its limit set, not for its words.
     pub(crate) in_limit: bool,
     /// Step that is drawn while it grows, if there is one.
@@ -134,9 +138,8 @@ pub enum Action {
     Close,
     /// Adds the current position to the polygon as a vertex.
     Vertex,
-    /// In space, places a surface of the system, by index, along the heading; its length is a number of steps. The
-    /// turtle stays.
-    Surface(usize, Program),
+    /// Places a stamp of the system, by index, along the heading; its length is a number of steps. The turtle stays.
+    Stamp(usize, Program),
     /// Cuts off the rest of the branch: everything up to the closing bracket that ends it.
     Cut,
 }
@@ -173,7 +176,7 @@ impl PartialEq for Origin {
 /// A production: the replacement of a module, and its conditions.
 ///
 /// The slots of its programs are the arguments of the left context's modules in the order in which they are
-/// written, then those of the predecessor, then those of the right context.
+/// written, then those of the predecessor, then those of the right context, and in its successor its variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Production {
     pub(crate) origin: Origin,
@@ -187,8 +190,10 @@ pub struct Production {
     pub condition: Option<Program>,
     /// Modules that replace the predecessor.
     pub successor: Vec<Template>,
-    /// Weight in the draw among fitting productions; without one the production is deterministic.
+    /// Weight in the draw among fitting productions; without one there is no draw.
     pub weight: Option<Program>,
+    /// Variables that are drawn for every module that is replaced; empty if the successor uses none.
+    pub variables: Vec<Variable>,
 }
 
 /// A part of a right context.
@@ -239,12 +244,12 @@ impl LSystem {
         &self.productions
     }
 
-    /// Returns whether no production has a weight.
+    /// Returns whether nothing is drawn at random: no production has a weight or variables.
     #[must_use]
     pub fn is_deterministic(&self) -> bool {
-        !{ &self.productions }
+        { &self.productions }
             .iter()
-            .any(|production| production.weight.is_some())
+            .all(|it| it.weight.is_none() && it.variables.is_empty())
     }
 
     /// Returns whether no production has a context.
@@ -308,14 +313,11 @@ impl Production {
 }
 
 impl Symbol {
-    /// Returns the largest number of lines and polygons that the symbol draws.
+    /// Returns the largest number of lines, polygons and stamps that the symbol draws.
     #[must_use]
     pub fn draws(&self) -> u64 {
         let draws = |action: &Action| {
-            let draws = matches!(
-                action,
-                Action::Draw(_) | Action::Close | Action::Surface(..)
-            );
+            let draws = matches!(action, Action::Draw(_) | Action::Close | Action::Stamp(..));
             u64::from(draws)
         };
         self.meaning.iter().map(draws).sum()

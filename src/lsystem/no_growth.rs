@@ -6,8 +6,8 @@ use super::Walked;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoGrowth {
-    /// Productions are drawn at random.
-    #[error("productions are drawn at random, so it has no one limit set")]
+    /// Productions or arguments are drawn at random.
+    #[error("productions or numbers are drawn at random, so it has no one limit set")]
     Draws,
     /// Productions have contexts.
     #[error("productions have contexts, so that no map determines the pictures of its modules")]
@@ -17,7 +17,7 @@ pub enum NoGrowth {
     Arguments,
     /// The turtle has actions that do not follow from those of its parts.
     #[error(
-        "its turtle fills polygons, cuts off branches, or exchanges headings, which maps of its modules do not \
+        "its turtle fills polygons, places stamps, cuts off branches, or exchanges headings, which maps of its modules do not \
          determine"
     )]
     Actions,

@@ -324,6 +324,12 @@ impl<'s> Rewriter<'s> {
         let chosen = system.chosen(symbol, path, &mut fits)?;
         // The slots must hold the arguments that the chosen production sees.
         fits(chosen);
+        if let Some(path) = path {
+            for variable in &system.productions[chosen].variables {
+                let drawn = variable.draw(path, slots);
+                slots.push(drawn);
+            }
+        }
         Some(chosen)
     }
 

@@ -17,7 +17,7 @@ pub struct LSystemInSpace {
     /// Start rotation, whose columns are H, L and U; `None` for the heading of the words in the plane z = 0.
     pub(crate) start: Option<DMat3>,
     pub(crate) tropism: Option<Tropism>,
-    pub(crate) surfaces: Vec<Body>,
+    pub(crate) stamps: Vec<Body>,
 }
 
 /// Tropism: a force that bends the turtle's way towards a direction.

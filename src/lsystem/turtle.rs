@@ -1,4 +1,4 @@
-//! The turtle: interprets the modules of words as lines, polygons and surfaces in the plane or in space.
+//! The turtle: interprets the modules of words as lines, polygons and stamps in the plane or in space.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ impl<F: TurtleFrame> Placed<F> {
     pub fn polygon(&self) -> Option<usize> {
         match self.of {
             Drawn::Polygon(number) => Some(number),
-            Drawn::Line(_) | Drawn::Surface(_) => None,
+            Drawn::Line(_) | Drawn::Stamp(_) => None,
         }
     }
 }
@@ -43,8 +43,8 @@ pub enum Drawn {
     Line(TubeLine),
     /// A polygon, by index in [`Drawing::polygons`].
     Polygon(usize),
-    /// A surface of the system, by index.
-    Surface(usize),
+    /// A stamp of the system, by index.
+    Stamp(usize),
 }
 
 /// All elements that a turtle draws.
@@ -291,12 +291,12 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
             }
             Action::Close => self.close(symbol, arguments),
             Action::Vertex => self.vertex(),
-            Action::Surface(number, size) => {
+            Action::Stamp(number, size) => {
                 let size = size.eval(arguments) * self.state.step;
                 if size != 0.0 {
                     let state = self.state;
                     let frame = self.frame(&state, self.ahead(&state, size));
-                    self.put(frame, Drawn::Surface(*number), symbol, &state);
+                    self.put(frame, Drawn::Stamp(*number), symbol, &state);
                 }
             }
         }

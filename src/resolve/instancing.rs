@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Place, listed};
 use crate::document::{
-    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    ShapeDocument, TransformDocument, UnionDocument,
+    AlternativeDocument, InstanceDocument, InstancingDocument, LevelDocument, MasterDocument,
+    ObjectDocument, ShapeDocument, TransformDocument, UnionDocument,
 };
 use crate::expression::{Program, Scope};
-use crate::instancing::{Instancing, Master, ObjectDefinition, ObjectInstance};
+use crate::instancing::{Instancing, Master, ObjectAlternative, ObjectDefinition, ObjectInstance};
 use crate::metadata::Metadata;
 use crate::style::ColorBy;
 
@@ -79,7 +79,14 @@ impl Definitions {
 struct Union<M: StructureMap> {
     name: String,
     instances: Vec<Prepared<M>>,
+    alternatives: Vec<PreparedAlternative>,
     transforms: Arc<[M::Written]>,
+}
+
+/// Alternative of an object that is drawn at random, with a number of its instances.
+struct PreparedAlternative {
+    weight: Option<Program>,
+    count: usize,
 }
 
 struct Prepared<M: StructureMap> {
@@ -124,7 +131,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         }
         let whole = M::product(&scene.transforms, &[]);
         let whole_scene = Arc::clone(&scene.transforms);
-        let mut scene = self.instances(&scene, None);
+        let (mut scene, _) = self.content(&scene, None);
         for instance in &mut scene {
             instance.map = whole * instance.map;
             instance.transforms = [&instance.transforms[..], &whole_scene].concat().into();
@@ -133,15 +140,18 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
             let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
             let number = self.kind.reached[objects.len()].0;
+            let slots: Vec<f64> = level.into_iter().collect();
+            let (instances, alternatives) = self.content(&union, level);
             objects.push(ObjectDefinition {
                 name: match level {
                     Some(level) => format!("{}({level})", union.name),
                     None => union.name.clone(),
                 },
-                map: M::product(&union.transforms, level.as_slice()),
-                instances: self.instances(&union, level),
+                map: M::product(&union.transforms, &slots),
+                instances,
+                alternatives,
                 transforms: Arc::clone(&union.transforms),
-                slots: level.into_iter().collect(),
+                slots,
             });
             self.kind.unions[number] = union;
             if self.kind.size > MAX_INSTANCES {
@@ -240,15 +250,45 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             self.used.insert(variable.to_owned());
             scope.variable(variable, 0);
         }
-        Union {
+        let mut union = Union {
             name,
             instances: document
                 .instances
                 .iter()
                 .map(|instance| self.prepared(instance, &scope))
                 .collect(),
+            alternatives: Vec::new(),
             transforms: self.transforms(&document.transforms, &scope),
+        };
+        for alternative in &document.alternatives {
+            let whole = self.transforms(&alternative.transforms, &scope);
+            for instance in &alternative.instances {
+                let mut prepared = self.prepared(instance, &scope);
+                prepared.transforms = [&prepared.transforms[..], &whole].concat().into();
+                union.instances.push(prepared);
+            }
+            union.alternatives.push(PreparedAlternative {
+                weight: self.weight(alternative, &scope),
+                count: alternative.instances.len(),
+            });
         }
+        let weights = union.alternatives.iter().map(|it| &it.weight);
+        let is_never =
+            |weight: &Option<Program>| weight.as_ref().and_then(Program::as_constant) == Some(0.0);
+        if !union.alternatives.is_empty() && { weights }.all(is_never) {
+            let message = "no alternative has a weight above 0";
+            self.error(&document.place.first_line(), message);
+        }
+        union
+    }
+
+    fn weight(&mut self, document: &AlternativeDocument, scope: &Scope) -> Option<Program> {
+        let number = document.weight.as_ref()?;
+        let weight = self.program(number, scope);
+        if weight.as_constant().is_some_and(|value| value < 0.0) {
+            self.error(&number.place, "a weight cannot be negative");
+        }
+        Some(weight)
     }
 
     fn prepared(&mut self, document: &InstanceDocument, scope: &Scope) -> Prepared<M> {
@@ -328,12 +368,44 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         self.kind.unions = unions;
     }
 
-    /// Returns the instances of a union at a level. New objects among them are marked as reached.
-    fn instances(&mut self, union: &Union<M>, level: Option<f64>) -> Vec<ObjectInstance<M>> {
+    /// Returns the instances of a union at a level, and the alternatives among them. New objects are marked as reached.
+    fn content(
+        &mut self,
+        union: &Union<M>,
+        level: Option<f64>,
+    ) -> (Vec<ObjectInstance<M>>, Vec<ObjectAlternative>) {
+        let mut instances = Vec::new();
+        if union.alternatives.is_empty() {
+            self.add_instances(&union.instances, union, level, &mut instances);
+        }
+        let mut rest = &union.instances[..];
+        let alternatives = { union.alternatives.iter() }.map(|alternative| {
+            let (own, others) = rest.split_at(alternative.count);
+            rest = others;
+            let first = instances.len();
+            self.add_instances(own, union, level, &mut instances);
+            let weight = alternative.weight.as_ref();
+            let weight = weight.map_or(1.0, |weight| weight.eval(level.as_slice()));
+            ObjectAlternative {
+                weight: weight.max(0.0),
+                instances: first..instances.len(),
+            }
+        });
+        let alternatives = alternatives.collect();
+        (instances, alternatives)
+    }
+
+    /// Adds some instances of a union at a level.
+    fn add_instances(
+        &mut self,
+        all: &[Prepared<M>],
+        union: &Union<M>,
+        level: Option<f64>,
+        instances: &mut Vec<ObjectInstance<M>>,
+    ) {
         let slots: Vec<f64> = level.into_iter().collect();
         let whole = M::product(&union.transforms, &slots);
-        let mut instances = Vec::new();
-        for prepared in &union.instances {
+        for prepared in all {
             let map = M::product(&prepared.transforms, &slots);
             if !(whole * map).is_finite() {
                 let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
@@ -368,7 +440,6 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 });
             }
         }
-        instances
     }
 
     /// Returns the index of an object at a level, and marks the object as reached.
@@ -428,6 +499,7 @@ impl<M: StructureMap> Union<M> {
         Self {
             name: String::new(),
             instances: Vec::new(),
+            alternatives: Vec::new(),
             transforms: Arc::default(),
         }
     }

@@ -3,12 +3,14 @@
 mod alphabet;
 mod check;
 mod space;
+mod stamps;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::document::{
-    LSystemDocument, ModuleDocument, ProductionDocument, WordDocument, WrittenNumber,
+    LSystemDocument, ModuleDocument, ProductionDocument, WordDocument, Written, WrittenNumber,
 };
 use crate::expression::{Program, Scope, is_reserved};
 use crate::lsystem::{Action, Context, LSystem, Module, Origin, Production, Symbol, Template};
@@ -20,15 +22,18 @@ use super::Resolver;
 /// Maximum nesting depth of branches in a right context, which are matched by recursion.
 const MAX_BRANCHES: i32 = 64;
 
+/// Largest number of variables that are drawn for a module.
+const MAX_VARIABLES: usize = 100;
+
 /// State that is specific to L-systems.
 #[derive(Default)]
 pub(super) struct OfLSystem {
     symbols: Vec<Symbol>,
     numbers: BTreeMap<(char, usize), usize>,
     is_in_space: bool,
-    /// Names of the surfaces.
-    surfaces: Vec<String>,
-    /// Symbols that place surfaces, by surface and number of arguments besides its name.
+    /// Names of the stamps, with the numbers of their base elements.
+    stamps: Vec<(String, Range<usize>)>,
+    /// Symbols that place stamps, by stamp and number of arguments besides its name.
     placing: BTreeMap<(usize, usize), usize>,
     /// The file's own interpretations of symbols.
     own: BTreeMap<(char, usize), Vec<Action>>,
@@ -41,12 +46,8 @@ pub(super) struct OfLSystem {
 }
 
 impl Resolver<OfLSystem> {
-    /// Resolves the system. Reports mistakes and returns `None`.
-    pub(super) fn lsystem(
-        &mut self,
-        document: &LSystemDocument,
-        metadata: Metadata,
-    ) -> Option<LSystem> {
+    /// Resolves words and productions. Reports mistakes and returns `None`.
+    fn lsystem(&mut self, document: &LSystemDocument, metadata: Metadata) -> Option<LSystem> {
         self.kind.constants = Arc::new(self.constants.clone());
         self.kind.angle = self.number_or(document.angle.as_ref(), 90.0);
         self.kind.thinning = self.number_or(document.thinning.as_ref(), 0.7);
@@ -65,10 +66,11 @@ impl Resolver<OfLSystem> {
         for symbol in &document.symbols {
             self.define(symbol);
         }
+        self.check_variables(&document.random);
         let axiom = document.axiom.as_ref().map(|word| self.axiom(word));
         let productions: Vec<_> = { &document.productions }
             .iter()
-            .filter_map(|production| self.production(production))
+            .filter_map(|production| self.production(production, &document.random))
             .collect();
         if productions.len() < document.productions.len() || self.diagnostics.has_errors() {
             return None;
@@ -93,6 +95,7 @@ impl Resolver<OfLSystem> {
             symbols: std::mem::take(&mut self.kind.symbols),
             axiom: axiom?,
             productions,
+            stamps: Vec::new(),
             in_limit: false,
             growing: None,
         };
@@ -102,6 +105,16 @@ impl Resolver<OfLSystem> {
         self.check_weights(document, &system);
         self.warn_of_unused(document, &system);
         Some(system)
+    }
+
+    /// Reports mistakes in variables, whether a production uses them or not.
+    fn check_variables(&mut self, random: &[(Written<String>, WrittenNumber)]) {
+        if let Some((name, _)) = random.get(MAX_VARIABLES) {
+            let message = format!("an L-system draws {MAX_VARIABLES} variables at most");
+            self.error(&name.place, message);
+        }
+        let mut scope = Scope::inside(&self.kind.constants);
+        self.variables(random, &mut scope, 0, false);
     }
 
     fn number_or(&mut self, number: Option<&WrittenNumber>, default: f64) -> f64 {
@@ -141,7 +154,12 @@ impl Resolver<OfLSystem> {
         templates
     }
 
-    fn production(&mut self, document: &ProductionDocument) -> Option<Production> {
+    /// Resolves a production whose successor may use the variables of `random`.
+    fn production(
+        &mut self,
+        document: &ProductionDocument,
+        random: &[(Written<String>, WrittenNumber)],
+    ) -> Option<Production> {
         let mistakes = self.mistakes;
         let mut scope = Scope::inside(&self.kind.constants);
         let replaced = std::slice::from_ref(&document.predecessor);
@@ -193,6 +211,14 @@ impl Resolver<OfLSystem> {
             }
             weight
         });
+        let arguments = { document.successor.modules.iter() }.flat_map(|it| self.arguments(it));
+        let mut names = arguments.flat_map(|number| number.value.names());
+        let draws =
+            names.any(|(name, _)| random.iter().any(|(variable, _)| variable.value == name));
+        let variables = match draws {
+            true => self.variables(random, &mut scope, slots, false),
+            false => Vec::new(),
+        };
         let successor = self.word(&document.successor, &scope);
         let symbols = &self.kind.symbols;
         (self.mistakes == mistakes).then(|| Production {
@@ -209,6 +235,7 @@ impl Resolver<OfLSystem> {
             condition,
             successor,
             weight,
+            variables,
         })
     }
 

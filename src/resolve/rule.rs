@@ -8,7 +8,7 @@ mod corners;
 mod elements;
 mod frame;
 mod generator;
-mod random;
+mod moves;
 mod selection;
 
 use std::collections::HashMap;
@@ -24,6 +24,7 @@ use crate::style::{ColorBy, Width};
 use generator::loops_shrink;
 
 use super::Resolver;
+use super::random::BY_EDGE;
 pub(super) use frame::ResolvedFrame;
 
 /// State that is specific to rules.
@@ -84,8 +85,8 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         }
         let moment = Arc::new(moment);
         let random = { document.generators.iter() }.flat_map(|(_, generator)| &generator.random);
-        self.kind.draws_by_edge = { random }
-            .any(|(_, drawn)| matches!(drawn.value.as_call(), Some((random::BY_EDGE, _))));
+        self.kind.draws_by_edge =
+            { random }.any(|(_, drawn)| matches!(drawn.value.as_call(), Some((BY_EDGE, _))));
         let (written_points, initiator) = self.initiator(document);
         let generators: Vec<_> = document
             .generators

@@ -26,11 +26,16 @@ pub(super) fn tween<M: Tweened>(
     }
 }
 
-/// Returns the object between two.
+/// Returns the object between two, or one of them if they have different alternatives.
 fn object<M: Tweened>(tween: Tween, both: [&ObjectDefinition<M>; 2]) -> ObjectDefinition<M> {
+    let [a, b] = both.map(|it| &it.alternatives);
+    if a != b {
+        return tween.pick(both).clone();
+    }
     let map = M::between(tween, both.map(|it| &it.map));
     ObjectDefinition {
         name: tween.pick(both).name.clone(),
+        alternatives: a.clone(),
         instances: instances(tween, both.map(|it| it.instances.as_slice())),
         transforms: [map.written()].into(),
         slots: tween.pick(both).slots.clone(),

@@ -89,7 +89,10 @@ fn every_structure_grows_as_forecast() {
         let graph = Model::Instancing(Arc::clone(&structure))
             .compile(steps)
             .unwrap();
-        let mut forecast = graph.forecast().unwrap();
+        let Some(mut forecast) = graph.forecast() else {
+            assert!(graph.draws(), "{name}");
+            continue;
+        };
         (0..steps).for_each(|_| assert!(forecast.advance()));
         // Images under a symmetry are fractals of their own.
         let fractals = grown(&graph, &Growth::steps(steps)).into_iter();

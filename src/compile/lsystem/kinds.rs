@@ -135,6 +135,10 @@ impl KindFinder<'_> {
         let mut alternatives = Vec::new();
         for production in numbers {
             let written = &system.productions()[production];
+            // A module is another kind with every draw.
+            if !written.variables.is_empty() {
+                return Err(NotCompiled);
+            }
             let mut word = Vec::with_capacity(written.successor.len());
             for template in &written.successor {
                 let values = template

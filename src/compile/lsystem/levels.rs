@@ -45,7 +45,7 @@ enum Master {
     Subtree(usize, u32),
     /// Line, and whether its module is replaced in the next step.
     Step(bool),
-    /// Polygon, surface or part of a tube, by base element.
+    /// Polygon, stamp or part of a tube, by base element.
     Body(usize),
 }
 
@@ -55,7 +55,7 @@ struct Leveller<'e, F: TurtleFrame> {
     tube: Option<Tube>,
     base_elements: Vec<F::BaseElement>,
     outlines: BTreeMap<Vec<[u64; 3]>, usize>,
-    surfaces: BTreeMap<usize, usize>,
+    stamps: BTreeMap<usize, usize>,
     tubes: BTreeMap<TubePart, usize>,
     /// Numbers of the objects that are replaced, and of all others.
     numbers: [BTreeMap<ObjectKey, usize>; 2],
@@ -99,7 +99,7 @@ pub(super) fn levels<F: SummedFrame>(
         tube,
         base_elements: vec![F::line()],
         outlines: BTreeMap::new(),
-        surfaces: BTreeMap::new(),
+        stamps: BTreeMap::new(),
         tubes: BTreeMap::new(),
         numbers: [const { BTreeMap::new() }; 2],
         keys: [const { Vec::new() }; 2],
@@ -247,7 +247,7 @@ impl<F: TurtleFrame> Leveller<'_, F> {
             Of::Subtree(kind, drawn) => (drawn.size, Master::Subtree(*kind, left)),
             Of::Step { fertile } => (one, Master::Step(*fertile)),
             Of::Polygon(vertices) => (one, Master::Body(self.outline(vertices))),
-            Of::Surface(number) => (one, Master::Body(self.surface(*number))),
+            Of::Stamp(number) => (one, Master::Body(self.stamp(*number))),
         };
         let effects = self.effects;
         let frame: F = part.pose.frame(effects.compass, steps, unit);
@@ -319,13 +319,13 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         number
     }
 
-    /// Returns the base element of a surface of the system, which is added if it is new.
-    fn surface(&mut self, number: usize) -> usize {
+    /// Returns the base element of a stamp of the system, which is added if it is new.
+    fn stamp(&mut self, number: usize) -> usize {
         let next = self.base_elements.len();
-        let known = *self.surfaces.entry(number).or_insert(next);
+        let known = *self.stamps.entry(number).or_insert(next);
         if known == next {
-            let surfaces = F::surfaces(&self.effects.system);
-            self.base_elements.push(surfaces[number].clone());
+            let stamps = F::stamps(&self.effects.system);
+            self.base_elements.push(stamps[number].clone());
         }
         known
     }

@@ -36,17 +36,17 @@ pub(super) enum Of<F: TurtleFrame = Frame2> {
     },
     /// Polygon, by its vertices in steps.
     Polygon(Vec<F::Point>),
-    /// Surface of the system, by number.
-    Surface(usize),
+    /// Stamp of the system, by number.
+    Stamp(usize),
     /// Subtree of a kind.
     Subtree(usize, ModuleDrawing<F>),
 }
 
 impl<F: TurtleFrame> DrawnPart<F> {
-    /// Returns a bound on the distance of its points from its start, apart from those of surfaces.
+    /// Returns a bound on the distance of its points from its start, apart from those of stamps.
     fn reach(&self) -> Far<F::Point> {
         let steps = match &self.of {
-            Of::Step { .. } | Of::Surface(_) => Far::of_length(1.0),
+            Of::Step { .. } | Of::Stamp(_) => Far::of_length(1.0),
             Of::Polygon(vertices) => {
                 let farthest = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
                 // A polygon without extent is drawn as a line.
@@ -235,6 +235,9 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
 
     /// Adds a part from a state; `first` holds the attributes of its first line.
     fn part(&mut self, of: Of<F>, state: TurtleState<F>, first: StrokeAttributes, position: u32) {
+        // Only lines are joined, also those of subtrees.
+        let is_joinable = matches!(of, Of::Step { .. } | Of::Subtree(..));
+        self.down &= is_joinable;
         let attributes = state.attributes.then(first);
         let alike = self.parts.is_empty() || self.last == attributes;
         if self.parts.is_empty() {
@@ -249,7 +252,7 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
             joint: state.joint,
             joined: self.down && alike && !self.parts.is_empty(),
         });
-        self.down = true;
+        self.down = is_joinable;
         self.last = attributes;
     }
 
@@ -354,18 +357,12 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
                 self.close(&open, position);
             }
             Action::Vertex => self.vertex()?,
-            Action::Surface(number, size) => {
+            Action::Stamp(number, size) => {
                 let mut state = self.state;
                 state.pose.scale *= size.eval(arguments);
                 if state.pose.scale != 0.0 {
                     self.is_sure = true;
-                    self.part(
-                        Of::Surface(*number),
-                        state,
-                        StrokeAttributes::SAME,
-                        position,
-                    );
-                    self.down = false;
+                    self.part(Of::Stamp(*number), state, StrokeAttributes::SAME, position);
                 }
             }
             Action::Cut => self.cut = Some(self.saved.len()),
@@ -398,7 +395,6 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
             StrokeAttributes::SAME,
             position,
         );
-        self.down = false;
     }
 
     /// Returns the effect of the modules that have been read.

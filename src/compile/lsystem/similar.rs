@@ -229,7 +229,7 @@ impl Edges {
                 let effect = self.effects.of(kind, left)?;
                 pose = pose.then(compass, &effect.state.pose);
             }
-            Of::Polygon(_) | Of::Surface(_) => return Err(NotCompiled),
+            Of::Polygon(_) | Of::Stamp(_) => return Err(NotCompiled),
         }
         Ok(pose.place)
     }

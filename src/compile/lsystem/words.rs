@@ -63,7 +63,7 @@ impl<F: TurtleFrame> Words<F> {
             };
             let steps = match &part.of {
                 Of::Subtree(_, drawn) => drawn.size,
-                Of::Step { .. } | Of::Polygon(_) | Of::Surface(_) => Far::of_length(1.0),
+                Of::Step { .. } | Of::Polygon(_) | Of::Stamp(_) => Far::of_length(1.0),
             };
             let frame = part.pose.frame(effects.compass, steps, written.unit);
             production.body.instances.push(Instance {
@@ -93,7 +93,7 @@ impl<F: TurtleFrame> Source<F> for Words<F> {
         &[]
     }
 
-    fn extents(&self, word: usize, _: f64, _: &[Interval; 4]) -> Vec<Extent> {
+    fn extents(&self, word: usize, _: f64, _: &[Interval; 4], _: F::Point) -> Vec<Extent> {
         self.extents(word).to_vec()
     }
 }

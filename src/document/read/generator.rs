@@ -238,7 +238,11 @@ fn read_part(reader: &mut Reader, node: &Node) -> Option<PartDocument> {
     })
 }
 
-fn read_random(reader: &mut Reader, node: Option<&Node>) -> Vec<(Written<String>, WrittenNumber)> {
+/// Reads variables with their distributions.
+pub(super) fn read_random(
+    reader: &mut Reader,
+    node: Option<&Node>,
+) -> Vec<(Written<String>, WrittenNumber)> {
     let Some(node) = node else { return Vec::new() };
     let hint = "random: {tilt: \"uniform(-20, 20)\"}";
     let entries = reader.names(node, "a mapping of variables", hint);

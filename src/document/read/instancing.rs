@@ -4,12 +4,12 @@ use crate::catalogue::Shelf;
 use crate::diagnostic::Place;
 use crate::document::MetadataDocument;
 use crate::document::instancing::{
-    InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
-    UnionDocument,
+    AlternativeDocument, InstanceDocument, InstancingDocument, LevelDocument, MasterDocument,
+    ObjectDocument, UnionDocument,
 };
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::{Fields, Reader};
-use crate::document::shape::{Form, Member, Shape, keys};
+use crate::document::shape::{Form, Member, Shape, alternative, keys};
 use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
@@ -51,24 +51,42 @@ const INSTANCING_ALONE: [Member; 7] = keys![
 
 const UNION_OF: Form = Form::Either(&[INSTANCES, Form::Mapping(&UNION)]);
 
-const INSTANCES: Form = Form::List(
-    // A name, possibly with a level, which is never a plain number.
-    &Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]),
-    1,
-    None,
-);
+const INSTANCES: Form = Form::List(&ONE_INSTANCE, 1, None);
+
+const SOME_INSTANCES: Form = Form::List(&ONE_INSTANCE, 0, None);
+
+// A name, possibly with a level, which is never a plain number.
+const ONE_INSTANCE: Form = Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]);
 
 const UNION: Shape = Shape {
     what: "an object",
     keys: &[
         &keys![
-            needed union: INSTANCES, "The instances: names of objects, or mappings."
-                => "an object needs a `union` of instances";
+            union: INSTANCES, "The instances: names of objects, or mappings.";
+            at_random: Form::List(&Form::Either(&[SOME_INSTANCES, Form::Mapping(&ALTERNATIVE)]), 1, None),
+                "Unions of which one is drawn for every instance of the object, by its `weight`; `[]` for nothing.";
+        ],
+        &TRANSFORMS,
+    ],
+    alternatives: &[
+        alternative(&["union"], &["at_random"]),
+        alternative(&["at_random"], &["union"]),
+    ],
+    hint: "{union: [up, left, right], scale: 1/2, translate: [0, 1/2]}",
+};
+
+const ALTERNATIVE: Shape = Shape {
+    what: "an alternative",
+    keys: &[
+        &keys![
+            needed union: SOME_INSTANCES, "The instances: names of objects, or mappings; `[]` for nothing."
+                => "an alternative needs a `union` of instances";
+            weight: Form::Positive, "How often it is drawn, relative to the others; 1 if left out.";
         ],
         &TRANSFORMS,
     ],
     alternatives: &[],
-    hint: "{union: [up, left, right], scale: 1/2, translate: [0, 1/2]}",
+    hint: "at_random: [{union: [left, right], weight: 3}, [tip]]",
 };
 
 const INSTANCE: Shape = Shape {
@@ -124,7 +142,7 @@ impl OfKind for InstancingDocument {
             metadata,
             is_in_space,
             objects,
-            scene: scene.and_then(|node| read_union(reader, node)),
+            scene: scene.and_then(|node| read_scene(reader, node)),
             initial: read_initial(reader, fields),
         };
         (reader.is_in_space, reader.may_lie_in_space) = (false, false);
@@ -176,22 +194,81 @@ fn split(text: &str) -> (&str, Option<(usize, &str)>) {
     }
 }
 
+fn read_scene(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
+    let scene = read_union(reader, node)?;
+    if let Some(at_random) = node.get("at_random") {
+        let message = "the scene is not drawn at random";
+        let hint = "scene: [A] places an object A, which may be";
+        reader.error_with_hint(&at_random.place.first_line(), message, hint);
+    }
+    Some(scene)
+}
+
 fn read_union(reader: &mut Reader, node: &Node) -> Option<UnionDocument> {
+    let place = node.place.clone();
     if let Value::Sequence(_) = &node.value {
         return Some(UnionDocument {
             instances: read_instances(reader, node),
+            alternatives: Vec::new(),
             transforms: Vec::new(),
-            place: node.place.clone(),
+            place,
         });
     }
     let fields = reader.fields(node, &UNION)?;
     let instances = fields.take("union");
-    let instances = instances.map_or_else(Vec::new, |node| read_instances(reader, node));
+    let alternatives = fields.take("at_random");
+    match (instances, alternatives) {
+        (None, None) => {
+            let message = "an object needs a `union` of instances";
+            reader.error_with_hint(&place.first_line(), message, UNION.hint);
+        }
+        (Some(_), Some(_)) => {
+            let message = "`union` does not go with `at_random`";
+            let place = fields.place_of("union");
+            let hint = "a union of several objects, one of which is drawn at random";
+            reader.error_with_hint(place, message, hint);
+        }
+        _ => {}
+    }
     Some(UnionDocument {
-        instances,
+        instances: instances.map_or_else(Vec::new, |node| read_instances(reader, node)),
+        alternatives: alternatives.map_or_else(Vec::new, |node| read_alternatives(reader, node)),
         transforms: read_transforms(reader, &fields),
-        place: node.place.clone(),
+        place,
     })
+}
+
+fn read_alternatives(reader: &mut Reader, node: &Node) -> Vec<AlternativeDocument> {
+    let list = reader.filled(
+        node,
+        "a list of alternatives",
+        "alternative",
+        ALTERNATIVE.hint,
+    );
+    let alternatives = list.iter().filter_map(|node| {
+        if let Value::Sequence(_) = &node.value {
+            return Some(AlternativeDocument {
+                instances: read_some_instances(reader, node),
+                transforms: Vec::new(),
+                weight: None,
+            });
+        }
+        let fields = reader.fields(node, &ALTERNATIVE)?;
+        let instances = fields.take("union");
+        Some(AlternativeDocument {
+            instances: instances.map_or_else(Vec::new, |node| read_some_instances(reader, node)),
+            transforms: read_transforms(reader, &fields),
+            weight: fields.optional(reader, "weight"),
+        })
+    });
+    alternatives.collect()
+}
+
+fn read_some_instances(reader: &mut Reader, node: &Node) -> Vec<InstanceDocument> {
+    let list = reader.list(node, "a list of instances", INSTANCE.hint);
+    list.iter()
+        .map(|node| read_instance(reader, node))
+        .collect()
 }
 
 fn read_instances(reader: &mut Reader, node: &Node) -> Vec<InstanceDocument> {

@@ -3,7 +3,7 @@
 use crate::catalogue::Shelf;
 use crate::document::MetadataDocument;
 use crate::document::lsystem::{
-    LSystemDocument, ProductionDocument, TropismDocument, WordDocument,
+    LSystemDocument, ProductionDocument, StampDocument, TropismDocument, WordDocument,
 };
 use crate::document::mapping::FromNode as _;
 use crate::document::node::{Key, Node, Value};
@@ -13,9 +13,11 @@ use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
-use super::base_element::{BASE_ELEMENT_OF, BaseElementDocument};
+use super::base_element::{BASE_ELEMENT, BASE_ELEMENT_OF, BaseElementDocument};
+use super::generator::read_random;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
+use super::set::{FORMS, SET, read_set};
 use super::space::{SPACE, read_space};
 use super::turtle::{MEANING, read_symbol};
 use super::word::{Text, WordReader};
@@ -30,7 +32,7 @@ const LSYSTEM: Shape = Shape {
 };
 
 /// Keys that only an L-system has.
-const LSYSTEM_ALONE: [Member; 15] = keys![
+const LSYSTEM_ALONE: [Member; 16] = keys![
     needed kind: Form::Words(&[Kind::LSystem.name()]), "The kind of file.";
     extends: Form::File(Shelf::LSYSTEMS),
         "Another L-system to start from, by name or by file. The keys written here replace its keys; \
@@ -56,9 +58,13 @@ const LSYSTEM_ALONE: [Member; 15] = keys![
     tropism: Form::Mapping(&TROPISM),
         "In space, what bends branches: after each line, the turtle turns by e·|H × T| radians about H × T, for its \
          heading H and the vector T of `towards` (ABOP, section 2.3.3).";
-    surfaces: Form::Names(&BASE_ELEMENT_OF, 0),
-        "In space, surfaces that `~(NAME)` places along the heading, each of a step's length: base elements of the library, \
-         or written here. A name that is not listed is one of the library; `~(leaf, 2)` is two steps long.";
+    stamps: Form::Names(&Form::Either(&[BASE_ELEMENT_OF, Form::Mapping(&SET)]), 0),
+        "What `~(NAME)` places along the heading, a step long: base elements of the library, or written here, or sets in \
+         their coordinates, such as another fractal. A name that is not listed is a base element of the library; \
+         `~(leaf, 2)` is two steps long.";
+    random: Form::Names(&Form::Expression, 0),
+        "Variables that are drawn for every module that is replaced, for the arguments of its successor: \
+         `uniform(a, b)`, `normal(mean, deviation)` or `choice(a, b, ...)`.";
     length: Form::Positive, "The length of a step; 1 if left out.";
     thinning: Form::Positive, "What `!` multiplies widths by; 0.7 if left out.";
     symbols: Form::Names(&MEANING, 0),
@@ -121,7 +127,7 @@ impl OfKind for LSystemDocument {
     fn read(reader: &mut Reader, fields: &Fields<'_>, metadata: MetadataDocument) -> Self {
         let is_in_space = read_space(reader, fields);
         reader.is_in_space = is_in_space;
-        for key in ["up", "tropism", "surfaces"] {
+        for key in ["up", "tropism"] {
             if !is_in_space && fields.take(key).is_some() {
                 let message = format!("`{key}` is known in space only");
                 let hint = "write `space: 3` at the top";
@@ -147,7 +153,8 @@ impl OfKind for LSystemDocument {
                 susceptibility: reader.number(fields.take("e")?),
             }))
         });
-        let surfaces = read_surfaces(reader, fields);
+        let stamps = read_stamps(reader, fields);
+        let random = read_random(reader, fields.take("random"));
         let [angle, length, thinning] =
             ["angle", "length", "thinning"].map(|key| fields.optional(reader, key));
         let mut words = WordReader::new(reader);
@@ -174,7 +181,8 @@ impl OfKind for LSystemDocument {
             start_vector,
             up,
             tropism,
-            surfaces,
+            stamps,
+            random,
             length,
             thinning,
             axiom,
@@ -185,26 +193,30 @@ impl OfKind for LSystemDocument {
     }
 }
 
-fn read_surfaces(
-    reader: &mut Reader,
-    fields: &Fields<'_>,
-) -> Vec<(Written<String>, BaseElementDocument)> {
-    let Some(node) = fields.take("surfaces") else {
+fn read_stamps(reader: &mut Reader, fields: &Fields<'_>) -> Vec<(Written<String>, StampDocument)> {
+    let Some(node) = fields.take("stamps") else {
         return Vec::new();
     };
-    let hint =
-        "surfaces: {leaf: leaf, petal: {points: [[0, 0], [1/2, 1/4], [1, 0]], closed: true}}";
-    let entries = reader.entries(node, "a mapping of names to base elements", hint);
-    let mut surfaces = Vec::new();
+    let hint = "stamps: {leaf: leaf, petal: {points: [[0, 0], [1/2, 1/4], [1, 0]], closed: true}}";
+    let entries = reader.entries(node, "a mapping of names to base elements and sets", hint);
+    let mut stamps = Vec::new();
     for (key, node) in entries.unwrap_or_default() {
         let name = Written {
             value: key.name.clone(),
             place: key.place.clone(),
         };
-        let surface = Box::<BaseElementDocument>::from_node(reader, node);
-        surfaces.extend(surface.map(|surface| (name, *surface)));
+        // `solid` is known to base elements, too.
+        let is_base_element = BASE_ELEMENT.members().any(|it| node.get(it.name).is_some());
+        let is_set = !is_base_element && FORMS.iter().any(|it| node.get(it.name).is_some());
+        let stamp = if is_set {
+            let fields = reader.fields(node, &SET);
+            fields.map(|fields| StampDocument::Set(Box::new(read_set(reader, &fields))))
+        } else {
+            Box::<BaseElementDocument>::from_node(reader, node).map(StampDocument::BaseElement)
+        };
+        stamps.extend(stamp.map(|stamp| (name, stamp)));
     }
-    surfaces
+    stamps
 }
 
 fn read_productions(words: &mut WordReader<'_>, node: &Node) -> Vec<ProductionDocument> {

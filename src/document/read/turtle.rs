@@ -39,6 +39,8 @@ const ACTION: Shape = Shape {
         set_width: Form::Positive, "Sets the width, as a multiple of the file's.";
         colour: Form::Number, "Sets the colour: its number in the palette, from 0.";
         shift_colour: Form::Number, "Adds to the number of the colour.";
+        stamp: Form::Text,
+            "Places a stamp along the heading, a step long; with `scale` beside it, that many steps.";
     ]],
     alternatives: &[],
     hint: "draw, move, {draw: 1/2}, {turn: 36}, {scale: 1/2}, push, pop or another action",
@@ -90,6 +92,15 @@ fn read_action(words: &mut WordReader<'_>, node: &Node, actions: &mut Vec<Action
         };
         for (name, node) in fields.in_order() {
             if !check_space(reader, name, node) {
+                continue;
+            }
+            if name == "stamp" {
+                let scale = fields.optional(reader, "scale");
+                actions.extend(reader.name(node).map(|it| ActionDocument::Stamp(it, scale)));
+                continue;
+            }
+            // Beside a stamp, the scale is that of the stamp.
+            if name == "scale" && fields.take("stamp").is_some() {
                 continue;
             }
             let number = reader.number(node);

@@ -113,7 +113,11 @@ struct Sketch {
 
 impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
     fn production(&self, production: &Production, written: &ProductionDocument) -> Block {
-        let slots = self.slots(production);
+        let mut slots = self.slots(production);
+        for variable in &production.variables {
+            let typical = variable.typical(&slots);
+            slots.push(typical);
+        }
         let left = self.arity(&production.left);
         let own = self.words.symbols()[production.predecessor].arity;
         let replaced = vec![(production.predecessor, slots[left..left + own].to_vec())];
@@ -211,9 +215,9 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
                         let corners = corners.into_iter().map(image);
                         sketch.shapes.extend(closed(corners).map(|it| (it, role)));
                     }
-                    Drawn::Surface(number) => {
-                        let surface = &F::surfaces(self.system)[number];
-                        let outlines = F::outlined(surface, &placed.frame, self.view);
+                    Drawn::Stamp(number) => {
+                        let stamp = &F::stamps(self.system)[number];
+                        let outlines = F::outlined(stamp, &placed.frame, self.view);
                         sketch
                             .shapes
                             .extend(outlines.into_iter().map(|it| (it, role)));

@@ -52,10 +52,22 @@ pub(super) fn page<M: Shown>(structure: &Instancing<M>, view: M::View, title: &s
         view,
         boxes: boxes(structure, &shown),
     };
-    let objects = shown.iter().map(|&number| {
+    let panel = |name: String, instances| {
+        let name = Block::text(&font, vec![name], WORDS, true);
+        Block::column(vec![name, plan.panel(instances, OBJECT)], 2.0, true)
+    };
+    let objects = shown.iter().flat_map(|&number| {
         let object = &structure.objects()[number];
-        let name = Block::text(&font, vec![cut(&object.name)], WORDS, true);
-        Block::column(vec![name, plan.panel(&object.instances, OBJECT)], 2.0, true)
+        if object.alternatives.is_empty() {
+            return vec![panel(cut(&object.name), &object.instances)];
+        }
+        let total: f64 = object.alternatives.iter().map(|it| it.weight).sum();
+        let alternatives = object.alternatives.iter().map(|it| {
+            let share = 100.0 * it.weight / total;
+            let name = format!("{}: {share:.0} %", cut(&object.name));
+            panel(name, &object.instances[it.instances.clone()])
+        });
+        alternatives.collect()
     });
     let objects = Block::flow(objects.collect(), DVec2::new(22.0, 16.0), WIDTH);
     let mut columns = vec![("scene", plan.panel(structure.scene(), SCENE))];

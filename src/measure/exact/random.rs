@@ -42,6 +42,9 @@ pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, 
                 }
             }
             Replacement::Evaluated(alternatives) => {
+                if push_drawn(&mut ratios, graph, (object.behaviour, alternatives))? {
+                    continue;
+                }
                 let Some(rule) = graph.source().rule() else {
                     return Err("productions are drawn whose effects are not alike".into());
                 };
@@ -92,6 +95,36 @@ fn push<F: RuleFrame>(
             weight,
         });
     }
+}
+
+/// Adds the ratios of alternatives whose instances are fixed; returns `false` if they are not.
+fn push_drawn<F: RuleFrame>(
+    ratios: &mut Vec<Ratio>,
+    graph: &Graph<F>,
+    (from, alternatives): (usize, &[Alternative]),
+) -> Result<bool, String> {
+    let source = graph.source();
+    let drawn = alternatives.iter().map(|it| source.drawn(it.generator));
+    let Some(drawn) = drawn.collect::<Option<Vec<_>>>() else {
+        return Ok(false);
+    };
+    let total: f64 = drawn.iter().map(|(_, weight)| weight).sum();
+    for (alternative, (chain, weight)) in alternatives.iter().zip(drawn) {
+        for (instance, &object) in chain.instances.iter().zip(&alternative.objects) {
+            let is_fertile = !graph.objects()[object].is_kept();
+            if is_fertile && !instance.frame.is_similarity(instance.length) {
+                return Err("maps are drawn that are no similarities".into());
+            }
+            push(
+                ratios,
+                graph,
+                [from, object],
+                instance.length,
+                weight / total,
+            );
+        }
+    }
+    Ok(true)
 }
 
 /// Returns generators with their probabilities.

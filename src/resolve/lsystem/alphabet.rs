@@ -1,5 +1,6 @@
 //! The turtle's interpretation of symbols.
 
+use crate::diagnostic::Place;
 use crate::document::{ActionDocument, ModuleDocument, SymbolDocument, WrittenNumber};
 use crate::expression::{Program, Scope};
 use crate::lsystem::{Action, Symbol};
@@ -10,13 +11,13 @@ use super::{OfLSystem, of_argument};
 /// Symbols of turns in space (Prusinkiewicz and Lindenmayer 1990), which the plane turtle refuses.
 const SPACE: [char; 4] = ['&', '^', '\\', '/'];
 
-/// Symbol that places a surface.
+/// Symbol that places a stamp.
 const PLACES: char = '~';
 
 impl Resolver<OfLSystem> {
     /// Returns the index of a module's symbol, which is added to the alphabet if it is new.
     pub(super) fn symbol(&mut self, module: &ModuleDocument) -> usize {
-        if let Some(name) = self.surface_of(module) {
+        if let Some(name) = self.stamp_of(module) {
             return self.placing(module, name);
         }
         let (character, arity) = (module.character, module.arguments.len());
@@ -52,46 +53,64 @@ impl Resolver<OfLSystem> {
         self.kind.symbols.len() - 1
     }
 
-    /// Returns the name of the surface that a module places: its first argument.
-    fn surface_of<'m>(&self, module: &'m ModuleDocument) -> Option<&'m WrittenNumber> {
+    /// Returns the name of the stamp that a module places: its first argument.
+    fn stamp_of<'m>(&self, module: &'m ModuleDocument) -> Option<&'m WrittenNumber> {
         let is_own = || { self.kind.own.keys() }.any(|(character, _)| *character == PLACES);
-        let is_placing = self.kind.is_in_space && module.character == PLACES && !is_own();
+        let is_placing = module.character == PLACES && !is_own();
         module.arguments.first().filter(|_| is_placing)
     }
 
     /// Returns the arguments of a module that are numbers.
     pub(super) fn arguments<'m>(&self, module: &'m ModuleDocument) -> &'m [WrittenNumber] {
-        let names = usize::from(self.surface_of(module).is_some());
+        let names = usize::from(self.stamp_of(module).is_some());
         &module.arguments[names..]
     }
 
-    /// Returns the index of the symbol that places a surface, which is added to the alphabet if it is new. An argument
+    /// Returns the number of a stamp. Reports a name that is not known and returns `None`.
+    fn stamp(&mut self, name: &str, place: &Place) -> Option<usize> {
+        let known = { self.kind.stamps.iter() }.position(|(known, _)| known == name);
+        if known.is_none() && !self.incomplete {
+            let message = format!("there is no stamp '{name}'");
+            let names: Vec<_> = { self.kind.stamps.iter() }
+                .map(|(name, _)| name.clone())
+                .collect();
+            let names = names.iter().map(String::as_str);
+            let hint = self.suggestion(name, names).unwrap_or_else(|| {
+                "list it under `stamps`, or name a base element of the library: ~(leaf)".into()
+            });
+            self.error_with_hint(place, message, hint);
+        }
+        known
+    }
+
+    /// Returns the actions that place a stamp: one for each of its base elements.
+    fn places(&self, stamp: Option<usize>, size: &Program) -> Vec<Action> {
+        let stamp = stamp.and_then(|stamp| self.kind.stamps.get(stamp));
+        let base_elements = stamp.map_or(0..0, |(_, base_elements)| base_elements.clone());
+        base_elements
+            .map(|number| Action::Stamp(number, size.clone()))
+            .collect()
+    }
+
+    /// Returns the index of the symbol that places a stamp, which is added to the alphabet if it is new. An argument
     /// after the name is the length in steps.
     fn placing(&mut self, module: &ModuleDocument, name: &WrittenNumber) -> usize {
-        let written = name.place.text();
-        let known = self.kind.surfaces.iter().position(|known| known == written);
+        let known = self.stamp(name.place.text(), &name.place);
         let arity = module.arguments.len() - 1;
-        if known.is_none() && !self.incomplete {
-            let message = format!("there is no surface '{written}'");
-            let names = self.kind.surfaces.iter().map(String::as_str);
-            let hint = self.suggestion(written, names).unwrap_or_else(|| {
-                "list it under `surfaces`, or name a base element of the library: ~(leaf)".into()
-            });
-            self.error_with_hint(&name.place, message, hint);
-        } else if arity > 1 {
-            let message = "a surface has a name, and perhaps a length in steps";
+        if known.is_some() && arity > 1 {
+            let message = "a stamp has a name, and perhaps a length in steps";
             self.error_with_hint(&module.place, message, "~(leaf) or ~(leaf, 2)");
         }
-        let surface = known.unwrap_or(0);
-        if let Some(&number) = self.kind.placing.get(&(surface, arity)) {
+        let stamp = known.unwrap_or(0);
+        if let Some(&number) = self.kind.placing.get(&(stamp, arity)) {
             return number;
         }
         let size = match arity {
             0 => Program::constant(1.0),
             _ => of_argument("x"),
         };
-        let number = self.add_symbol(PLACES, arity, vec![Action::Surface(surface, size)]);
-        self.kind.placing.insert((surface, arity), number);
+        let number = self.add_symbol(PLACES, arity, self.places(known, &size));
+        self.kind.placing.insert((stamp, arity), number);
         number
     }
 
@@ -137,7 +156,7 @@ impl Resolver<OfLSystem> {
         let mut scope = Scope::inside(&self.kind.constants);
         self.names(module, &mut scope, &mut 0);
         let actions: Vec<_> = { document.actions.iter() }
-            .map(|action| self.action(action, &scope))
+            .flat_map(|action| self.actions(action, &scope))
             .collect();
         let saves = |action: &Action| match action {
             Action::Push | Action::Open => 1,
@@ -164,12 +183,17 @@ impl Resolver<OfLSystem> {
         }
     }
 
-    fn action(&mut self, document: &ActionDocument, scope: &Scope) -> Action {
+    fn actions(&mut self, document: &ActionDocument, scope: &Scope) -> Vec<Action> {
         let mut steps = |number: &Option<WrittenNumber>| match number {
             Some(number) => self.program(number, scope),
             None => Program::constant(1.0),
         };
-        match document {
+        vec![match document {
+            ActionDocument::Stamp(name, scale) => {
+                let size = steps(scale);
+                let stamp = self.stamp(&name.value, &name.place);
+                return self.places(stamp, &size);
+            }
             ActionDocument::Draw(number) => Action::Draw(steps(number)),
             ActionDocument::Move(number) => Action::Move(steps(number)),
             ActionDocument::Glide(number) => Action::Glide(steps(number)),
@@ -191,7 +215,7 @@ impl Resolver<OfLSystem> {
             ActionDocument::Open => Action::Open,
             ActionDocument::Close => Action::Close,
             ActionDocument::Vertex => Action::Vertex,
-        }
+        }]
     }
 
     fn width(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {

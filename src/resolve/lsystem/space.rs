@@ -1,4 +1,4 @@
-//! Frames, tropism and surfaces of L-systems in space.
+//! Frames and tropism of L-systems in space.
 
 use crate::document::{LSystemDocument, TropismDocument, WrittenPoint};
 use crate::expression::degrees;
@@ -6,7 +6,6 @@ use crate::geometry::{Attitude, DMat3, DVec3, Direction, Frame3};
 use crate::lsystem::{LSystemInSpace, Tropism};
 use crate::metadata::Metadata;
 use crate::resolve::Resolver;
-use crate::rule::Body;
 use crate::style::ColorBy;
 
 use super::OfLSystem;
@@ -19,16 +18,12 @@ impl Resolver<OfLSystem> {
         metadata: Metadata,
     ) -> Option<LSystemInSpace> {
         self.kind.is_in_space = true;
-        let names = document.surfaces.iter().map(|(name, _)| name.value.clone());
-        self.kind.surfaces = names.collect();
-        let surfaces: Vec<Option<Body>> = { document.surfaces.iter() }
-            .map(|(_, surface)| self.body(surface, None))
-            .collect();
+        let stamps = self.stamps(document, Self::stamp_in_space);
         let start = self.start(document);
         let tropism = document.tropism.as_ref().map(|it| self.tropism(it));
         let mut words = self.lsystem(document, metadata)?;
-        let surfaces: Vec<Body> = surfaces.into_iter().collect::<Option<_>>()?;
-        let pieces = surfaces.iter().flat_map(|body| body.surfaces());
+        let stamps = stamps?;
+        let pieces = stamps.iter().flat_map(|body| body.surfaces());
         if { pieces }.any(|piece| piece.color.is_some()) && !document.metadata.sets_colours {
             words.metadata.style.color_by = ColorBy::Tint;
         }
@@ -39,7 +34,7 @@ impl Resolver<OfLSystem> {
                 None => None,
                 Some(tropism) => Some(tropism?),
             },
-            surfaces,
+            stamps,
         })
     }
 

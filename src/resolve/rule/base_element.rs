@@ -42,9 +42,9 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
     }
 }
 
-impl Resolver<OfRule<Frame2>> {
+impl<K> Resolver<K> {
     /// Resolves a base element of the plane.
-    pub(super) fn plane_base_element(
+    pub(in crate::resolve) fn plane_base_element(
         &mut self,
         document: &BaseElementDocument,
     ) -> Option<BaseElement> {
@@ -84,9 +84,7 @@ impl Resolver<OfRule<Frame2>> {
         }
         Some(Frame2::between(from, to, Direction::Normal))
     }
-}
 
-impl<K> Resolver<K> {
     /// Reports a base element whose `from` and `to` are one point.
     pub(super) fn report_no_base(&mut self, document: &BaseElementDocument) {
         let place = { document.from.as_ref().or(document.to.as_ref()) }.map(|point| &point.place);

@@ -1,6 +1,7 @@
 //! Resolution of base elements in space.
 
-use crate::document::{BaseElementDocument, SurfaceDocument};
+use crate::diagnostic::Place;
+use crate::document::{BaseElementDocument, ShapeDocument, SurfaceDocument};
 use crate::expression::degrees;
 use crate::geometry::{
     Attitude, Bounds, DAffine3, DMat3, DVec3, Direction, Frame3, PolygonError, Round, Side, Solid,
@@ -80,14 +81,7 @@ impl<K> Resolver<K> {
         }
         let back = frame?.map().inverse();
         pieces.join();
-        if pieces.surfaces.len() > MAX_SURFACES {
-            let message = format!(
-                "a base element has no more than {MAX_SURFACES} surfaces, and this one has {}",
-                pieces.surfaces.len()
-            );
-            self.error(&document.place, message);
-            return None;
-        }
+        self.check_surfaces(pieces.surfaces.len(), &document.place)?;
         let surfaces = pieces.surfaces.iter().map(|it| transformed(it, &back));
         let face = pieces.faces.first().map_or(&[][..], Vec::as_slice);
         let face = face.iter().map(|corner| back.transform_point3(*corner));
@@ -99,6 +93,27 @@ impl<K> Resolver<K> {
             self.error_with_hint(&document.place, "this base element has no extent", hint);
         }
         body
+    }
+
+    /// Resolves a set in the coordinates of the unit frame. Reports mistakes and returns `None`.
+    pub(in crate::resolve) fn body_of_set(&mut self, document: &ShapeDocument) -> Option<Body> {
+        let solids = self.solids(document)?;
+        self.check_surfaces(solids.len(), &document.place)?;
+        let is_closed = solids.iter().all(|solid| solid.faces().len() > 1);
+        let surfaces = solids.iter().cloned().map(Surface::from);
+        Body::new(surfaces.collect(), Vec::new(), is_closed)
+    }
+
+    /// Reports a base element of too many surfaces and returns `None`.
+    fn check_surfaces(&mut self, count: usize, place: &Place) -> Option<()> {
+        if count <= MAX_SURFACES {
+            return Some(());
+        }
+        let message = format!(
+            "a base element has no more than {MAX_SURFACES} surfaces, and this one has {count}"
+        );
+        self.error(place, message);
+        None
     }
 
     /// Returns the width of lines, in the base element's own coordinates: its own, or that of a `tube`.

@@ -11,7 +11,8 @@ use crate::geometry::Point as _;
 use super::{OfRule, ResolvedFrame};
 use crate::resolve::Resolver;
 use crate::rule::{
-    Generator, ListedAttitude, ListedElement, Move, Origin, Part, Placement, Selection, constant,
+    ElementContext, Generator, ListedAttitude, ListedElement, Move, Origin, Part, Placement,
+    Selection, constant,
 };
 
 impl<F: ResolvedFrame> Resolver<OfRule<F>> {
@@ -22,7 +23,9 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         moment: &Arc<Scope>,
     ) -> Generator<F> {
         let mut scope = Scope::inside(moment);
-        let variables = self.variables(document, &mut scope);
+        let slots = ElementContext::NAMES.len();
+        let has_edges = F::DIRECTIONS > 4;
+        let variables = self.variables(&document.random, &mut scope, slots, has_edges);
         let mut written = Vec::new();
         let mut parts = Vec::new();
         let mut ends = Vec::new();

@@ -644,6 +644,9 @@ function style() {
     if (input.checked) {
       text("points", "Points", "10M");
       select("tone", "Tone", choices.tone, "log");
+      range("gamma", "Gamma", 0.2, 8, 1);
+      text("oversample", "Bins a pixel", "1");
+      text("kernel", "Kernel", "1");
     }
   }
   box.replaceChildren(...rows);

@@ -10,7 +10,7 @@ use super::{assert_reported, assert_same, system};
 
 /// Words of letters, turns, scalings, reflections and stroke attributes, with balanced brackets.
 fn word(drawn: bool) -> impl Strategy<Value = String> {
-    let letters = "ABFGf+-+-|RSsWC"
+    let letters = "ABFGf+-+-|RSsWCL"
         .chars()
         .map(String::from)
         .collect::<Vec<_>>();
@@ -18,6 +18,7 @@ fn word(drawn: bool) -> impl Strategy<Value = String> {
         6 => prop::sample::select(letters),
         1 => Just("F(2/3)".to_owned()),
         1 => Just("P(1)".to_owned()),
+        1 => Just("~(leaf, 1/2)".to_owned()),
     ];
     let inner = prop::collection::vec(module, 0..6).prop_map(|all| all.concat());
     let bracketed = prop_oneof![
@@ -39,7 +40,7 @@ fn text(drawn: bool) -> impl Strategy<Value = String> {
     (angles, words).prop_map(move |(angle, words)| {
         let mut text = format!(
             "angle: {angle}\nheading: 10\naxiom: '{}'\nsymbols:\n  G: draw\n  R: reflect\n  \
-             S: {{scale: 2/3}}\n  s: {{scale: 3/2}}\n  W: {{width: 0.8}}\n  C: {{shift_colour: 1}}\n\
+             S: {{scale: 2/3}}\n  s: {{scale: 3/2}}\n  W: {{width: 0.8}}\n  C: {{shift_colour: 1}}\n  L: {{stamp: flake, scale: 0.4}}\nstamps: {{flake: {{fractal: koch, steps: 1}}}}\n\
              productions:\n",
             if drawn { "[A][B]".into() } else { format!("A[B]{}", words[0]) }
         );
