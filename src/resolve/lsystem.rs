@@ -66,11 +66,11 @@ impl Resolver<OfLSystem> {
         for symbol in &document.symbols {
             self.define(symbol);
         }
-        self.check_variables(&document.random);
+        let random = self.checked_variables(&document.random);
         let axiom = document.axiom.as_ref().map(|word| self.axiom(word));
         let productions: Vec<_> = { &document.productions }
             .iter()
-            .filter_map(|production| self.production(production, &document.random))
+            .filter_map(|production| self.production(production, random))
             .collect();
         if productions.len() < document.productions.len() || self.diagnostics.has_errors() {
             return None;
@@ -107,14 +107,19 @@ impl Resolver<OfLSystem> {
         Some(system)
     }
 
-    /// Reports mistakes in variables, whether a production uses them or not.
-    fn check_variables(&mut self, random: &[(Written<String>, WrittenNumber)]) {
+    /// Reports mistakes in variables, whether a production uses them or not, and returns as many as there may be.
+    fn checked_variables<'d>(
+        &mut self,
+        random: &'d [(Written<String>, WrittenNumber)],
+    ) -> &'d [(Written<String>, WrittenNumber)] {
         if let Some((name, _)) = random.get(MAX_VARIABLES) {
             let message = format!("an L-system draws {MAX_VARIABLES} variables at most");
             self.error(&name.place, message);
         }
+        let random = &random[..random.len().min(MAX_VARIABLES)];
         let mut scope = Scope::inside(&self.kind.constants);
         self.variables(random, &mut scope, 0, false);
+        random
     }
 
     fn number_or(&mut self, number: Option<&WrittenNumber>, default: f64) -> f64 {
