@@ -137,11 +137,11 @@ fn one_alternative_is_drawn_for_every_instance() {
 /// Alternatives are drawn as often as their weights state, within four standard errors.
 #[test]
 fn weights_are_probabilities() {
-    const COUNT: u32 = 2000;
+    const COUNT: u32 = 8000;
     let text = format!(
         "kind: instancing\nparams: {{w: 3/2}}\nobjects:\n  A: {{at_random: [{{weight: 2*w, union: [line]}}, [area], {{weight: 0, union: []}}]}}\n  \
          line: [{{segment: [[0, 0], [1, 0]]}}]\n  area: [{{disk: {{radius: 1}}}}]\n\
-         scene: [{{object: A, repeat: {{count: {COUNT}, translate: [1, 0]}}}}]\n"
+         scene: [{{for: {{k: 1..{COUNT}}}, object: A, translate: [k, 0]}}]\n"
     );
     let graph = Graph::of_structure(&structure(&text));
     let elements = Elements::of(&graph, &Growth::steps(2)).map(|element| element.unwrap().1);

@@ -24,6 +24,9 @@ pub(super) const EACH: &str = "each";
 /// Key of the number and the transform of repeated instances.
 pub(super) const REPEAT: &str = "repeat";
 
+/// Key of an alternative of an object, which is no instance.
+const UNION: &str = "union";
+
 /// Key of their number.
 const COUNT: &str = "count";
 
@@ -109,7 +112,10 @@ impl Expansion<'_> {
     fn entry(&mut self, entry: &Node, all: &mut Vec<Node>) {
         if let Some(repetition) = entry.get(FOR) {
             self.repeat(entry, repetition, all);
-        } else if let Some(repetition) = entry.get(REPEAT).filter(|_| self.has_instances) {
+        } else if let Some(repetition) = entry
+            .get(REPEAT)
+            .filter(|_| self.has_instances && entry.get(UNION).is_none())
+        {
             self.repeat_instance(entry, repetition, all);
         } else {
             all.push(self.node(entry));

@@ -1,6 +1,7 @@
 //! The expected dimension of rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams
 //! 1986), or spectral radius 1 of the matrix of these expectations.
 
+use crate::digraph::all_loops_shrink;
 use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
 use crate::extent::NoLimit;
@@ -55,10 +56,13 @@ pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, 
             }
         }
     }
-    if ratios.iter().any(|ratio| ratio.ratio >= 1.0) {
+    let size = graph.behaviours().count();
+    let edges: Vec<_> = { ratios.iter() }
+        .map(|it| (it.from, it.to, it.ratio))
+        .collect();
+    if !all_loops_shrink(size, &edges, size) {
         return Err(NoLimit::DoesNotShrink.to_string());
     }
-    let size = graph.behaviours().count();
     let radius = |dimension: f64| {
         let mut matrix = vec![0.0; size * size];
         for ratio in &ratios {
