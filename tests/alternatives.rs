@@ -234,3 +234,16 @@ fn other_kinds_and_limits_are_refused() {
         assert!(is_done, "{line}: {said}");
     }
 }
+
+/// Weights that depend on the level have a positive sum at every level.
+#[test]
+fn one_weight_is_positive() {
+    let text = "kind: instancing\nobjects:\n  A(n): {at_random: [{weight: 'max(0, n - 1)', union: \
+                [{object: A(n - 1), scale: 1/2}]}, {weight: 0*n, union: [line]}]}\n  \
+                line: [{segment: [[0, 0], [1, 0]]}]\nscene: [A(3)]\n";
+    let mistakes = document_of(text).resolve(&[]).unwrap_err().render(false);
+    assert!(
+        mistakes.contains("the sum of the weights is 0 at level 1"),
+        "{mistakes}"
+    );
+}

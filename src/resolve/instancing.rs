@@ -80,6 +80,8 @@ struct Union<M: StructureMap> {
     name: String,
     instances: Vec<Prepared<M>>,
     alternatives: Vec<PreparedAlternative>,
+    /// Source span, if there are alternatives.
+    place: Option<Place>,
     transforms: Arc<[M::Written]>,
 }
 
@@ -258,6 +260,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 .map(|instance| self.prepared(instance, &scope))
                 .collect(),
             alternatives: Vec::new(),
+            place: (!document.alternatives.is_empty()).then(|| document.place.first_line()),
             transforms: self.transforms(&document.transforms, &scope),
         };
         for alternative in &document.alternatives {
@@ -271,13 +274,6 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 weight: self.weight(alternative, &scope),
                 count: alternative.instances.len(),
             });
-        }
-        let weights = union.alternatives.iter().map(|it| &it.weight);
-        let is_never =
-            |weight: &Option<Program>| weight.as_ref().and_then(Program::as_constant) == Some(0.0);
-        if !union.alternatives.is_empty() && { weights }.all(is_never) {
-            let message = "no alternative has a weight above 0";
-            self.error(&document.place.first_line(), message);
         }
         union
     }
@@ -391,7 +387,16 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 instances: first..instances.len(),
             }
         });
-        let alternatives = alternatives.collect();
+        let alternatives: Vec<ObjectAlternative> = alternatives.collect();
+        let total: f64 = alternatives.iter().map(|it| it.weight).sum();
+        if let Some(place) = &union.place
+            && !(total > 0.0 && total.is_finite())
+        {
+            let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
+            let message = format!("the sum of the weights is {total}{at}");
+            let hint = "at least one of several alternatives has a weight above 0";
+            self.error_with_hint(place, message, hint);
+        }
         (instances, alternatives)
     }
 
@@ -500,6 +505,7 @@ impl<M: StructureMap> Union<M> {
             name: String::new(),
             instances: Vec::new(),
             alternatives: Vec::new(),
+            place: None,
             transforms: Arc::default(),
         }
     }
