@@ -18,7 +18,7 @@ fn word(drawn: bool) -> impl Strategy<Value = String> {
         6 => prop::sample::select(letters),
         1 => Just("F(2/3)".to_owned()),
         1 => Just("P(1)".to_owned()),
-        1 => Just("~(leaf, 1/2)".to_owned()),
+        1 => Just("~(triangle, 1/2)".to_owned()),
     ];
     let inner = prop::collection::vec(module, 0..6).prop_map(|all| all.concat());
     let bracketed = prop_oneof![
