@@ -7,9 +7,8 @@ use kfrac::graph::Graph;
 use kfrac::grow::{Elements, Growth};
 use kfrac::instancing::{Instancing, Master, ObjectInstance};
 use kfrac::measure::exact::dimensions_of_graph;
-use kfrac::model::Model;
 
-use crate::common::{document, document_of, run};
+use crate::common::{document, document_of, run, structure};
 
 const STEM: &str = "kind: instancing
 objects:
@@ -26,17 +25,6 @@ objects:
   wood: [{segment: [[0, 0], [0, 1]]}]
 scene: [A, {object: A, rotate: 180}, {object: A, rotate: 90}]
 ";
-
-fn structure(text: &str) -> Instancing {
-    let (model, warnings) = document_of(text)
-        .resolve(&[])
-        .unwrap_or_else(|errors| panic!("{}{text}", errors.render(false)));
-    assert!(warnings.is_empty(), "{}", warnings.render(false));
-    let Model::Instancing(structure) = model else {
-        panic!("{text} is no structure");
-    };
-    (*structure).clone()
-}
 
 /// Element as drawn: its map, and whether it is an object that is not replaced yet.
 type Drawn = (DAffine2, bool);
@@ -207,6 +195,14 @@ fn the_dimension_is_the_expected_one() {
     // Maps that are no similarities, and what dies out, have no such dimension.
     let affine = Graph::of_structure(&structure(STEM));
     assert!(dimensions_of_graph(&affine).dimensions.is_none());
+    let text = "kind: instancing\nobjects:\n  A: {at_random: [[B], [B, B]]}\n  \
+                B: [{object: A, scale: [1/2, 1/4]}]\nscene: [A]\n";
+    let fixed = Graph::of_structure(&structure(text));
+    assert!(dimensions_of_graph(&fixed).dimensions.is_none());
+    let alike = Graph::of_structure(&structure(&text.replace("[1/2, 1/4]", "1/2")));
+    let found = dimensions_of_graph(&alike).dimensions.unwrap();
+    let value = found.similarity.unwrap().value;
+    assert!((value - 1.5f64.log2()).abs() < 1e-12, "{value}");
     let (model, _) = document("fractal-percolation")
         .resolve(&[("p", 1.0 / 9.0).into()])
         .unwrap();

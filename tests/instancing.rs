@@ -1,6 +1,6 @@
 //! Structures of objects that instance each other, against a naive expansion and against systems.
 
-use crate::common::{document, document_of, grown};
+use crate::common::{document, document_of, grown, structure};
 use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
@@ -9,17 +9,6 @@ use kfrac::instancing::{Instancing, Master, ObjectInstance};
 use kfrac::measure::similarity_dimension;
 use kfrac::model::Model;
 use proptest::prelude::*;
-
-fn structure(text: &str) -> Instancing {
-    let (model, warnings) = document_of(text)
-        .resolve(&[])
-        .unwrap_or_else(|errors| panic!("{}{text}", errors.render(false)));
-    assert!(warnings.is_empty(), "{}", warnings.render(false));
-    let Model::Instancing(structure) = model else {
-        panic!("{text} is no structure");
-    };
-    (*structure).clone()
-}
 
 /// Returns the instances of objects, with `None`, and of shapes after some steps, in order, by plain
 /// recursion.

@@ -7,7 +7,7 @@ use crate::draws::{Path, pick_by_weight};
 use crate::expression::Interval;
 use crate::geometry::{Frame, Point as _};
 use crate::graph::{
-    Alternative, Buffers, Chain, CompileError, Graph, Replacement, Source, Successor,
+    Alternative, Buffers, Chain, CompileError, Graph, Instance, Replacement, Source, Successor,
 };
 use crate::ifs::AffineMap;
 use crate::instancing::Instancing;
@@ -81,17 +81,14 @@ impl<F: Frame> Source<F> for DrawnUnions<F> {
         let union = |alternative: &Alternative| &self.0[alternative.generator];
         let weights = alternatives.iter().map(|it| union(it).weight);
         let drawn = &alternatives[pick_by_weight(path, weights)];
-        successor.seeds.clear();
-        let Chain {
-            instances,
-            meets_frame,
-            ..
-        } = &mut successor.body;
-        instances.clone_from(&union(drawn).chain.instances);
-        for (instance, object) in instances.iter_mut().zip(&drawn.objects) {
-            instance.object = *object;
-        }
-        *meets_frame = [false; 2];
+        successor.clear();
+        // Objects have other numbers while a step grows.
+        let instances = union(drawn).chain.instances.iter().zip(&drawn.objects);
+        let instances = instances.map(|(instance, &object)| Instance {
+            object,
+            ..instance.clone()
+        });
+        successor.body.instances.extend(instances);
         Ok(())
     }
 

@@ -205,6 +205,13 @@ impl<F: Frame> Object<F> {
 }
 
 impl<F: Frame> Successor<F> {
+    /// Empties the successor, and keeps its memory.
+    pub(crate) fn clear(&mut self) {
+        self.seeds.clear();
+        self.body.instances.clear();
+        self.body.meets_frame = [false; 2];
+    }
+
     /// Iterates over all instances with their placements: the body, then the seeds.
     pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         let body = self.body.instances.iter();

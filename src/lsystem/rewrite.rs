@@ -274,7 +274,7 @@ pub(super) struct Replaced {
 /// Selection of the productions that replace modules, with a count of its work.
 pub(super) struct Rewriter<'s> {
     system: &'s LSystem,
-    /// Arguments that the production chosen last sees.
+    /// Arguments that the production chosen last sees, and its variables.
     pub(super) slots: Vec<f64>,
     /// The number of modules and productions examined so far.
     pub(super) work: u64,

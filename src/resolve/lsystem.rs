@@ -209,13 +209,8 @@ impl Resolver<OfLSystem> {
         }
         let condition = document.condition.as_ref();
         let condition = condition.map(|number| self.condition(number, &scope));
-        let weight = document.weight.as_ref().map(|number| {
-            let weight = self.program(number, &scope);
-            if weight.as_constant().is_some_and(|value| value < 0.0) {
-                self.error(&number.place, "a weight cannot be negative");
-            }
-            weight
-        });
+        let weight = document.weight.as_ref();
+        let weight = weight.map(|number| self.weight(number, &scope));
         let arguments = { document.successor.modules.iter() }.flat_map(|it| self.arguments(it));
         let mut names = arguments.flat_map(|number| number.value.names());
         let draws =

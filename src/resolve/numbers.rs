@@ -14,6 +14,15 @@ impl<K> Resolver<K> {
         self.part(number, &number.value, Type::Number, scope)
     }
 
+    /// Compiles a weight in a scope. Reports a mistake, and a constant below 0.
+    pub(super) fn weight(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {
+        let weight = self.program(number, scope);
+        if weight.as_constant().is_some_and(|value| value < 0.0) {
+            self.error(&number.place, "a weight cannot be negative");
+        }
+        weight
+    }
+
     /// Compiles a condition in a scope. Reports a mistake and returns an unknown program.
     pub(super) fn condition(&mut self, number: &WrittenNumber, scope: &Scope) -> Program {
         self.part(number, &number.value, Type::Condition, scope)

@@ -154,6 +154,20 @@ initial: {segment: [[0, 0], [0, 1]]}
 }
 
 #[test]
+fn structures_are_drawn_at_random() {
+    let text = "kind: instancing\nparams: {w: 2}\nobjects:\n  A: {at_random: [{weight: w + 1, rotate: 10, \
+                union: [{object: A, scale: 1/2}, {disk: {radius: 1}}]}, {weight: 1, union: []}]}\nscene: [A]\n";
+    let branch = UnionBuilder::new()
+        .with(InstanceBuilder::of("A").scale("1/2"))
+        .with(SetBuilder::disk((0, 0), 1))
+        .rotate(10);
+    let built = StructureBuilder::new(InstanceBuilder::of("A"))
+        .parameter(Parameter::new("w", 2.0))
+        .object_at_random("A", [("w + 1", branch), ("1", UnionBuilder::new())]);
+    assert_is_structure(text, &built);
+}
+
+#[test]
 fn mistakes_of_systems_and_structures_are_those_of_their_files() {
     let diverges = SystemBuilder::new()
         .map(MapBuilder::scale(2))

@@ -13,6 +13,8 @@ use kfrac::diagnostic::Source;
 use kfrac::document::{Document, Setting};
 use kfrac::graph::Graph;
 use kfrac::grow::{Element, FractalInfo, Growth, Visitor, walk};
+use kfrac::instancing::Instancing;
+use kfrac::model::Model;
 use kfrac::rule::Rule;
 use proptest::test_runner::Config as ProptestConfig;
 
@@ -63,6 +65,18 @@ pub(crate) fn document_of(text: &str) -> Document {
     let source = Source::new("test.yaml", text);
     Document::read(&source, &Catalogue::embedded())
         .unwrap_or_else(|errors| panic!("{}{text}", errors.render(false)))
+}
+
+/// Returns the structure of a text, which must resolve without warnings.
+pub(crate) fn structure(text: &str) -> Instancing {
+    let (model, warnings) = document_of(text)
+        .resolve(&[])
+        .unwrap_or_else(|errors| panic!("{}{text}", errors.render(false)));
+    assert!(warnings.is_empty(), "{}", warnings.render(false));
+    let Model::Instancing(structure) = model else {
+        panic!("{text} is no structure");
+    };
+    (*structure).clone()
 }
 
 /// Returns the validated rule, which must resolve without warnings.

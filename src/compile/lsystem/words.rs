@@ -42,9 +42,7 @@ impl<F: TurtleFrame> Words<F> {
     /// Overwrites a production with the word that the draws of a path select among `words`, interpreted
     /// with the draws of the path.
     fn evaluate(&self, words: &[Alternative], path: Path, production: &mut Successor<F>) {
-        production.seeds.clear();
-        production.body.instances.clear();
-        production.body.meets_frame = [false; 2];
+        production.clear();
         let effects = &self.effects;
         let Written { kind, left, .. } = self.written[words[0].generator];
         let of = &effects.kinds.all[kind];

@@ -55,7 +55,7 @@ const INSTANCES: Form = Form::List(&ONE_INSTANCE, 1, None);
 
 const SOME_INSTANCES: Form = Form::List(&ONE_INSTANCE, 0, None);
 
-// A name, possibly with a level, which is never a plain number.
+/// A mapping, or a name, possibly with a level, which is never a plain number.
 const ONE_INSTANCE: Form = Form::Either(&[Form::Expression, Form::Mapping(&INSTANCE)]);
 
 const UNION: Shape = Shape {

@@ -6,7 +6,7 @@ use crate::draws::Distribution;
 use crate::expression::{Dependence, Program};
 use crate::extent::NoLimit;
 use crate::geometry::Point as _;
-use crate::graph::{Alternative, Graph, Replacement};
+use crate::graph::{Alternative, Graph, Instance, Replacement};
 use crate::rule::{ElementContext, Generator, Placement, Rule, RuleFrame, Selection};
 
 use crate::measure::perron::crossing;
@@ -39,7 +39,7 @@ pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, 
                         return Err(NoLimit::Resets.to_string());
                     }
                     let place = [object.behaviour, instance.object];
-                    push(&mut ratios, graph, place, instance.length, 1.0);
+                    push_instance(&mut ratios, graph, place, instance, 1.0)?;
                 }
             }
             Replacement::Evaluated(alternatives) => {
@@ -101,6 +101,22 @@ fn push<F: RuleFrame>(
     }
 }
 
+/// Adds the ratio of an instance, whose map is a similarity if its object is fertile.
+fn push_instance<F: RuleFrame>(
+    ratios: &mut Vec<Ratio>,
+    graph: &Graph<F>,
+    place: [usize; 2],
+    instance: &Instance<F>,
+    weight: f64,
+) -> Result<(), String> {
+    let is_fertile = !graph.objects()[place[1]].is_kept();
+    if is_fertile && graph.is_affine() && !instance.frame.is_similarity(instance.length) {
+        return Err("not all maps are similarities".into());
+    }
+    push(ratios, graph, place, instance.length, weight);
+    Ok(())
+}
+
 /// Adds the ratios of alternatives whose instances are fixed; returns `false` if they are not.
 fn push_drawn<F: RuleFrame>(
     ratios: &mut Vec<Ratio>,
@@ -115,17 +131,7 @@ fn push_drawn<F: RuleFrame>(
     let total: f64 = drawn.iter().map(|(_, weight)| weight).sum();
     for (alternative, (chain, weight)) in alternatives.iter().zip(drawn) {
         for (instance, &object) in chain.instances.iter().zip(&alternative.objects) {
-            let is_fertile = !graph.objects()[object].is_kept();
-            if is_fertile && !instance.frame.is_similarity(instance.length) {
-                return Err("maps are drawn that are no similarities".into());
-            }
-            push(
-                ratios,
-                graph,
-                [from, object],
-                instance.length,
-                weight / total,
-            );
+            push_instance(ratios, graph, [from, object], instance, weight / total)?;
         }
     }
     Ok(true)

@@ -5,7 +5,7 @@ use crate::ifs::Shape;
 use crate::lsystem::LSystem;
 use crate::metadata::Metadata;
 use crate::resolve::Resolver;
-use crate::rule::{BaseElement, Body};
+use crate::rule::{BaseElement, Body, Surface};
 
 use super::OfLSystem;
 
@@ -68,7 +68,13 @@ impl Resolver<OfLSystem> {
     pub(super) fn stamp_in_space(&mut self, stamp: &StampDocument) -> Option<Vec<Body>> {
         let body = match stamp {
             StampDocument::BaseElement(document) => self.body(document, None),
-            StampDocument::Set(document) => self.body_of_set(document),
+            StampDocument::Set(document) => {
+                let solids = self.solids(document)?;
+                self.check_surfaces(solids.len(), &document.place)?;
+                let is_closed = solids.iter().all(|solid| solid.faces().len() > 1);
+                let surfaces = solids.iter().cloned().map(Surface::from);
+                Body::new(surfaces.collect(), Vec::new(), is_closed)
+            }
         };
         body.map(|body| vec![body])
     }

@@ -1,7 +1,7 @@
 //! Resolution of base elements in space.
 
 use crate::diagnostic::Place;
-use crate::document::{BaseElementDocument, ShapeDocument, SurfaceDocument};
+use crate::document::{BaseElementDocument, SurfaceDocument};
 use crate::expression::degrees;
 use crate::geometry::{
     Attitude, Bounds, DAffine3, DMat3, DVec3, Direction, Frame3, PolygonError, Round, Side, Solid,
@@ -95,17 +95,8 @@ impl<K> Resolver<K> {
         body
     }
 
-    /// Resolves a set in the coordinates of the unit frame. Reports mistakes and returns `None`.
-    pub(in crate::resolve) fn body_of_set(&mut self, document: &ShapeDocument) -> Option<Body> {
-        let solids = self.solids(document)?;
-        self.check_surfaces(solids.len(), &document.place)?;
-        let is_closed = solids.iter().all(|solid| solid.faces().len() > 1);
-        let surfaces = solids.iter().cloned().map(Surface::from);
-        Body::new(surfaces.collect(), Vec::new(), is_closed)
-    }
-
     /// Reports a base element of too many surfaces and returns `None`.
-    fn check_surfaces(&mut self, count: usize, place: &Place) -> Option<()> {
+    pub(in crate::resolve) fn check_surfaces(&mut self, count: usize, place: &Place) -> Option<()> {
         if count <= MAX_SURFACES {
             return Some(());
         }
