@@ -114,6 +114,8 @@ fn exact_dimensions_alone_are_those_beside_measurements() {
             "affinity",
             "hausdorff",
             "boundary",
+            "contact",
+            "box",
             "drawn",
             "notes",
         ] {

@@ -147,6 +147,31 @@ fn boundaries_have_their_published_dimensions() {
     assert_eq!(rule("carpet").dimensions.unwrap().boundary, None);
 }
 
+/// Copies of curves have points, or dust, in common.
+#[test]
+fn contacts_of_copies_have_dimensions() {
+    let curve = |production: &str| {
+        format!("kind: lsystem\nangle: 72\naxiom: F\nproductions: {{F: {production}}}\n")
+    };
+    // Known values, of four digits.
+    for (production, dimension) in [("F+F-F--F+F+F", 1.0421), ("F-F++F+F-F-F", 1.1415)] {
+        let found = text(&curve(production)).dimensions.unwrap();
+        let contact = found.contact.unwrap().value.unwrap();
+        assert!((contact - dimension).abs() < 1e-4, "{production} {contact}");
+        assert_eq!(found.boundary, None);
+    }
+    // The pieces of a carpet have sides in common; those of the Koch curve, single points.
+    for (name, dimension) in [("carpet", 1.0), ("koch", 0.0)] {
+        let contact = rule(name).dimensions.unwrap().contact.unwrap();
+        assert!(
+            near(contact.value.unwrap(), dimension),
+            "{name} {contact:?}"
+        );
+    }
+    let apart = text("kind: ifs\nmaps: [{scale: 1/3}, {scale: 1/3, translate: [2/3, 0]}]\n");
+    assert_eq!(apart.dimensions.unwrap().contact, None);
+}
+
 #[test]
 fn closed_forms_are_those_of_the_books() {
     let known = [

@@ -360,8 +360,23 @@ fn affine_maps_are_bounded_by_the_affinity_dimension() {
         near(affinity.upper_bound, known) && near(affinity.estimate, known),
         "{affinity:?}"
     );
+    // Both columns have two boxes: the dimensions of the carpet agree.
+    let carpet = [found.hausdorff.value, found.box_dimension.unwrap().value];
+    assert!(
+        carpet.into_iter().all(|it| near(it.unwrap(), known)),
+        "{carpet:?}"
+    );
+    // Boxes that overlap are bounded.
+    let mut moved = boxes;
+    moved[3].translation.x = 0.25;
+    let found = of(&moved);
+    let affinity = found.affinity.unwrap();
     assert_eq!(found.hausdorff.upper_bound, Some(affinity.upper_bound));
-    assert_eq!(found.similarity, None);
+    assert_eq!(
+        [found.hausdorff.value, found.similarity.map(|it| it.value)],
+        [None; 2]
+    );
+    assert_eq!(found.box_dimension, None);
     // Maps that shrink areas but stretch in one direction.
     let sheared = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(2.0, 0.25)));
     let turned = DAffine2::from_mat2(DMat2::from_diagonal(DVec2::new(0.25, 2.0)));

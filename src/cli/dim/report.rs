@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::measure::exact::{Dimensions, GraphDimensions, Hausdorff};
+use crate::measure::exact::{Dimensions, GraphDimensions, Hausdorff, OtherDimension};
 use crate::measure::{BoxCounting, Estimate, Trend};
 
 use super::Measured;
@@ -19,6 +19,9 @@ pub(super) struct Report<'a> {
     affinity: Option<Value>,
     hausdorff: Option<Value>,
     boundary: Option<Value>,
+    contact: Option<Value>,
+    #[serde(rename = "box")]
+    box_dimension: Option<Value>,
     drawn: Option<f64>,
     notes: &'a [String],
     box_counting: Counting<'a>,
@@ -100,7 +103,9 @@ pub(super) fn json(measured: &Measured) -> Report<'_> {
         similarity: exact.map(|_| similarity(known)),
         affinity: known.and_then(affinity),
         hausdorff: exact.map(|_| hausdorff(known)),
-        boundary: known.and_then(boundary),
+        boundary: known.and_then(|known| other(known.boundary.as_ref())),
+        contact: known.and_then(|known| other(known.contact.as_ref())),
+        box_dimension: known.and_then(|known| other(known.box_dimension.as_ref())),
         drawn: exact.and_then(|exact| exact.drawn),
         notes: exact.map_or(&[][..], |exact| &exact.notes),
         box_counting: Counting {
@@ -165,13 +170,13 @@ pub(in crate::cli) fn hausdorff(known: Option<&Dimensions>) -> Value {
     )
 }
 
-/// Dimension of the boundary of a set with interior.
-fn boundary(known: &Dimensions) -> Option<Value> {
-    let boundary = known.boundary.as_ref()?;
+/// Dimension of another set, or another dimension.
+fn other(known: Option<&OtherDimension>) -> Option<Value> {
+    let known = known?;
     Some(json!({
-        "value": boundary.value,
-        "closed_form": boundary.closed_form,
-        "method": boundary.method,
+        "value": known.value,
+        "closed_form": known.closed_form,
+        "method": known.method,
     }))
 }
 
@@ -423,10 +428,17 @@ fn known(text: &mut String, exact: &GraphDimensions) {
         line("Hausdorff dimension", &own);
         line("", method);
         line("overlap", &overlap.to_string());
-        if let Some(boundary) = &dimensions.boundary {
-            let form = boundary.closed_form.as_ref();
-            let own = boundary.value.map(|value| formatted(value, form));
-            line("boundary", own.as_ref().unwrap_or(&boundary.method));
+        let others = [
+            ("box dimension", &dimensions.box_dimension),
+            ("boundary", &dimensions.boundary),
+            ("contact of copies", &dimensions.contact),
+        ];
+        for (label, other) in others {
+            if let Some(other) = other {
+                let form = other.closed_form.as_ref();
+                let own = other.value.map(|value| formatted(value, form));
+                line(label, own.as_ref().unwrap_or(&other.method));
+            }
         }
         if let Some(drawn) = exact.drawn {
             line("all that is drawn", &formatted(drawn, None));

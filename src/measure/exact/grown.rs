@@ -101,6 +101,8 @@ fn at_random<F: Bounded>(graph: &Graph<F>) -> GraphDimensions {
                 affinity: None,
                 hausdorff: Hausdorff::unknown(value.min(real(F::Point::DIMENSION)), method.into()),
                 boundary: None,
+                contact: None,
+                box_dimension: None,
                 regular: false,
             };
             GraphDimensions::of(Some(dimensions), "the expected sum of ratio^D is 1".into())

@@ -12,14 +12,15 @@ use super::sizes::{Generations, Piece};
 use super::spectral::spectral_radius;
 use super::system::GraphDirectedSystem;
 use super::types::Types;
-use super::{Boundary, Effort, Equation, Hausdorff, Overlap, Similar};
+use super::{Effort, Equation, Hausdorff, OtherDimension, Overlap, Similar};
 
 /// Dimensions of a part, as far as they are known.
 #[derive(Clone, Debug)]
 pub(super) struct PartDimension {
     pub(super) similarity: Similar,
     pub(super) hausdorff: Hausdorff,
-    pub(super) boundary: Option<Boundary>,
+    pub(super) boundary: Option<OtherDimension>,
+    pub(super) contact: Option<OtherDimension>,
 }
 
 /// Difference up to which dimensions count as equal.
@@ -42,6 +43,7 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
         },
         hausdorff: Hausdorff::unknown(value.min(real(system.space)), String::new()),
         boundary: None,
+        contact: None,
     };
     if value == 0.0 {
         part.decide(
@@ -56,7 +58,7 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
         None => part.by_open_set(&flat, effort, "the ratios are not powers of one number"),
     }
     if part.has_inside(&flat) && part.boundary.is_none() {
-        part.boundary = Some(Boundary {
+        part.boundary = Some(OtherDimension {
             value: None,
             closed_form: None,
             method: "not decided: pieces coincide".into(),
@@ -146,12 +148,14 @@ impl PartDimension {
             "open set condition: none of {count} neighbour maps is the identity (Bandt & Graf 1992)"
         );
         self.decide(Overlap::Touching, method);
-        if self.has_inside(flat) {
-            self.boundary = Some(Boundary {
-                value: Some(settled(libm::log(spread) / generations.depth)),
-                closed_form: closed_form(spread, generations.depth),
-                method: format!("spectral radius of {left} touching neighbour maps"),
-            });
+        let common = Some(OtherDimension {
+            value: Some(settled(libm::log(spread) / generations.depth)),
+            closed_form: closed_form(spread, generations.depth),
+            method: format!("spectral radius of {left} touching neighbour maps"),
+        });
+        match self.has_inside(flat) {
+            true => self.boundary = common,
+            false => self.contact = common,
         }
     }
 
@@ -204,7 +208,7 @@ impl PartDimension {
             // The hulls of copies leave no gap: their total area is that of the hull that contains them.
             if self.has_inside(flat) {
                 let value = real(flat.space - 1);
-                self.boundary = Some(Boundary {
+                self.boundary = Some(OtherDimension {
                     value: Some(value),
                     closed_form: plain(value),
                     method: "the set is its convex hull".into(),
