@@ -7,6 +7,12 @@
 //! A draw may also belong to an edge of the element, which neighbours share (Fournier, Fussell & Carpenter 1982). Edges
 //! are known by their ends, and these by how they came to be, never by their coordinates: see [`Corner`].
 
+mod cells;
+mod quadrature;
+
+pub(crate) use cells::{Cells, MAX_CELLS, needed};
+pub(crate) use quadrature::nodes;
+
 use crate::expression::{Interval, Program};
 use crate::random::{self, GOLDEN, Pcg};
 

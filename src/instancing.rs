@@ -5,15 +5,18 @@
 //! that is reached.
 
 mod appearance;
+mod drawn;
 mod drift;
 
 pub use appearance::{Appearance, Thickness};
+pub(crate) use drawn::{FIRST, LinearForm, cells_of_each, draw_into};
 pub use drift::Drift;
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::geometry::{DAffine2, Homothety};
+use crate::draws::Variable;
+use crate::geometry::{DAffine2, DVec2, Homothety};
 use crate::ifs::AffineMap;
 use crate::metadata::Metadata;
 use crate::style::Colour;
@@ -29,6 +32,8 @@ pub struct Instancing<M: AffineMap = DAffine2> {
     pub(crate) objects: Vec<ObjectDefinition<M>>,
     pub(crate) scene: Vec<ObjectInstance<M>>,
     pub(crate) initial: Option<M::Set>,
+    /// Random variables, drawn whenever an object is replaced.
+    pub(crate) variables: Arc<[Variable]>,
     /// Step that is drawn while it grows, if there is one.
     pub(crate) growing: Option<Growing>,
 }
@@ -46,7 +51,8 @@ pub struct ObjectDefinition<M: AffineMap = DAffine2> {
     pub alternatives: Vec<ObjectAlternative>,
     /// Maps whose product is `map`, as written, for the slots of the object.
     pub(crate) transforms: Arc<[M::Written]>,
-    /// Slots of the programs of the object and of its instances: its level, if it has one.
+    /// Slots of the programs of the object and of its instances: its level, if it has one, and representative values of the
+    /// random variables.
     pub(crate) slots: Vec<f64>,
 }
 
@@ -62,7 +68,7 @@ pub struct ObjectAlternative {
 /// Instance of an object or of a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectInstance<M: AffineMap = DAffine2> {
-    /// Map into the coordinates of the object that contains the instance.
+    /// Map into the coordinates of the object that contains the instance; the one of representative draws if it is drawn.
     pub map: M,
     /// Object or shape that is instanced.
     pub master: Master<M>,
@@ -70,6 +76,8 @@ pub struct ObjectInstance<M: AffineMap = DAffine2> {
     pub tint: Option<Tint>,
     /// Maps whose product is `map`, as written, for the slots of the object that contains the instance.
     pub(crate) transforms: Arc<[M::Written]>,
+    /// Forms of these maps; used only where random variables are drawn.
+    pub(crate) forms: Arc<[LinearForm]>,
 }
 
 /// Object or shape of which an instance is a copy.
@@ -145,6 +153,12 @@ impl<M: AffineMap> Instancing<M> {
         self.initial.as_ref()
     }
 
+    /// Returns the random variables, which are drawn whenever an object is replaced.
+    #[must_use]
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
     /// Returns the number of steps after which no object is left to be replaced, or `None` if an object
     /// leads back to itself.
     #[must_use]
@@ -211,6 +225,12 @@ impl Instancing {
         let mut within = self.clone();
         within.metadata = self.metadata.within(place);
         let back = place.backwards();
+        let forth = DAffine2::from_scale_angle_translation(
+            DVec2::splat(place.ratio()),
+            0.0,
+            place.point(DVec2::ZERO),
+        );
+        let [first, last] = [forth, back].map(|it| [it.into()]);
         let objects = within.objects.iter_mut();
         let instances = objects.flat_map(|object| {
             object.map = place.within(&object.map);
@@ -218,6 +238,11 @@ impl Instancing {
         });
         for instance in instances.chain(&mut within.scene) {
             instance.map = place.within(&instance.map);
+            if !self.variables.is_empty() {
+                instance.transforms = [&first, &*instance.transforms, &last].concat().into();
+                let scaling = &[LinearForm::Scaling][..];
+                instance.forms = [scaling, &instance.forms, scaling].concat().into();
+            }
             if let Master::Shape(shape) = &mut instance.master {
                 *shape = shape.transformed(&back)?;
             }

@@ -90,6 +90,10 @@ fn resolve(
     settings: &[Setting],
 ) -> Result<(Model, Diagnostics), Diagnostics> {
     match document {
+        KindDocument::Ifs(document) if document.is_random() => resolve(
+            &KindDocument::Instancing(ifs::structure(document)),
+            settings,
+        ),
         KindDocument::Rule(document) if document.is_in_space => {
             resolved(&document.metadata, settings, |to, metadata| {
                 Some({ to as &mut Resolver<OfRule<Frame3>> }.rule(document, metadata))
@@ -166,6 +170,8 @@ struct Resolver<K> {
     constants: Scope,
     /// Names that expressions use.
     used: HashSet<String>,
+    /// Names of random variables, which some expressions may not use.
+    random: HashSet<String>,
     /// Whether a parent or a component is missing. Unknown names may be defined there.
     incomplete: bool,
     /// Whether parameters are variables, so that numbers need not be constants.

@@ -47,6 +47,7 @@ mod new_files;
 mod pictures;
 mod png;
 mod random_iteration;
+mod random_maps;
 mod readme;
 mod redrawn;
 mod reference;

@@ -28,6 +28,8 @@ fn library() -> Vec<(String, Arc<ifs::System>)> {
         match document.resolve(&[]).unwrap().0 {
             Model::Ifs(system) => Some((entry.name, system)),
             Model::IfsInSpace(_) => None,
+            // A system whose maps are drawn.
+            Model::Instancing(structure) if Graph::of_structure(&structure).draws() => None,
             other => panic!("{} is {:?}", entry.name, other.kind()),
         }
     });

@@ -3,6 +3,7 @@
 mod command_line;
 mod lattice;
 mod pictures;
+mod random;
 mod seeds;
 
 use std::collections::HashMap;

@@ -183,6 +183,7 @@ impl From<InstanceBuilder> for UnionBuilder {
 pub struct StructureBuilder {
     entries: Entries,
     parameters: Entries,
+    variables: Entries,
     objects: Entries,
 }
 
@@ -195,6 +196,7 @@ impl StructureBuilder {
                 .set("kind", kind)
                 .set("scene", scene.into().value()),
             parameters: Entries::default(),
+            variables: Entries::default(),
             objects: Entries::default(),
         }
     }
@@ -231,6 +233,15 @@ impl StructureBuilder {
         }
     }
 
+    /// Adds a random variable, which is drawn whenever an object is replaced from `uniform(a, b)`, `normal(mean,
+    /// deviation)` or `choice(a, b, ...)`; transforms of instances in objects may use it.
+    pub fn random(self, name: impl Into<String>, distribution: impl Into<NumberText>) -> Self {
+        Self {
+            variables: self.variables.add(name, distribution.into().0),
+            ..self
+        }
+    }
+
     /// Sets the set that is drawn in place of objects that are not replaced yet.
     pub fn initial(self, set: SetBuilder) -> Self {
         self.set("initial", set.0.value())
@@ -246,7 +257,11 @@ impl StructureBuilder {
     pub fn document(&self) -> Result<Document, Diagnostics> {
         read(
             &self.entries,
-            &[("params", &self.parameters), ("objects", &self.objects)],
+            &[
+                ("params", &self.parameters),
+                ("random", &self.variables),
+                ("objects", &self.objects),
+            ],
         )
     }
 

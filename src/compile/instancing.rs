@@ -23,7 +23,7 @@ impl<F: Bounded> Graph<F> {
     /// there is one, under the map that the object applies to itself; each step replaces instances of
     /// objects by the instances of which the objects consist. Shapes are infertile. Without shapes and
     /// initial set, an object is drawn as the bounding box of its limit set; alternatives, of which one is drawn at random,
-    /// count together there.
+    /// count together there, under representative maps where maps are drawn.
     #[must_use]
     pub fn of_structure<M: AffineMap<Frame = F>>(structure: &Instancing<M>) -> Self {
         let (mut graph, canonical) = Compiler::new(structure).run();
@@ -34,7 +34,7 @@ impl<F: Bounded> Graph<F> {
         if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
             graph.set_extent(&bounds);
         }
-        graph.draw_alternatives(structure, &canonical);
+        graph.draw_unions(structure, &canonical);
         graph
     }
 
@@ -97,6 +97,7 @@ impl<F: Bounded> Graph<F> {
             master: Master::Object(number),
             tint: None,
             transforms: Arc::default(),
+            forms: Arc::default(),
         });
         let alone = Instancing {
             scene: scene.collect(),

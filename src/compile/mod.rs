@@ -1,7 +1,7 @@
 //! Compilation of the models of all kinds to graphs.
 
-mod alternatives;
 mod distinguished;
+mod drawn;
 pub(crate) mod growing;
 mod ifs;
 mod instancing;

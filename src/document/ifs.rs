@@ -17,6 +17,8 @@ pub struct IfsDocument {
     pub metadata: MetadataDocument,
     /// Whether the system lies in space.
     pub is_in_space: bool,
+    /// Random variables, drawn for every image of the set, with their distributions.
+    pub random: Vec<(Written<String>, WrittenNumber)>,
     /// The maps; `None` if they cannot be read.
     pub maps: Option<MapsDocument>,
     /// The condensation sets.
@@ -41,6 +43,25 @@ pub enum MapsDocument {
     },
     /// The maps of fractal interpolation.
     Interpolated(InterpolationDocument),
+    /// Maps of which some are drawn at random for every image of the set.
+    AtRandom(Vec<AlternativeMapsDocument>),
+}
+
+/// An alternative of the maps of a system as written.
+#[derive(Clone, Debug)]
+pub struct AlternativeMapsDocument {
+    /// The maps, none if nothing is drawn.
+    pub maps: Vec<MapDocument>,
+    /// Its weight, 1 if left out.
+    pub weight: Option<WrittenNumber>,
+}
+
+impl IfsDocument {
+    /// Returns whether the maps are drawn at random for every image of the set.
+    #[must_use]
+    pub fn is_random(&self) -> bool {
+        !self.random.is_empty() || matches!(self.maps, Some(MapsDocument::AtRandom(_)))
+    }
 }
 
 /// Vertices as written.

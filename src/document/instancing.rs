@@ -6,7 +6,10 @@
 use crate::diagnostic::Place;
 
 use super::read::TintDocument;
-use super::{MetadataDocument, ShapeDocument, TurnDocument, Written, WrittenNumber, WrittenPoint};
+use super::{
+    LinearDocument, MetadataDocument, ShapeDocument, TurnDocument, Written, WrittenNumber,
+    WrittenPoint,
+};
 
 /// An instancing structure as written.
 #[derive(Clone, Debug)]
@@ -15,6 +18,8 @@ pub struct InstancingDocument {
     pub metadata: MetadataDocument,
     /// Whether the structure lies in space.
     pub is_in_space: bool,
+    /// Random variables, drawn whenever an object is replaced, with their distributions.
+    pub random: Vec<(Written<String>, WrittenNumber)>,
     /// The objects, in the order of the file.
     pub objects: Vec<ObjectDocument>,
     /// The scene: the union that is drawn; `None` if it is missing.
@@ -111,4 +116,8 @@ pub enum TransformDocument {
     Turns(Vec<TurnDocument>),
     /// Linear map of space by the rows of its matrix.
     MatrixInSpace([WrittenPoint; 3]),
+    /// Translation by the opposite of a vector.
+    TranslateBack(WrittenPoint),
+    /// Linear part of a map of a system.
+    Linear(Box<LinearDocument>),
 }

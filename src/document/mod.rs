@@ -38,9 +38,9 @@ pub use dataset::{
     LawDocument, Mode, PictureDocument, RandomDocument, SourceDocument,
 };
 pub use ifs::{
-    CondensationDocument, EdgeDocument, FormDocument, FractalDocument, IfsDocument,
-    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument, Scales,
-    ScatterDocument, ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
+    AlternativeMapsDocument, CondensationDocument, EdgeDocument, FormDocument, FractalDocument,
+    IfsDocument, InterpolationDocument, LinearDocument, MapDocument, MapsDocument, MeshDocument,
+    Scales, ScatterDocument, ShapeDocument, SolidDocument, TurnDocument, VerticesDocument,
 };
 pub use instancing::{
     AlternativeDocument, InstanceDocument, InstancingDocument, LevelDocument, MasterDocument,

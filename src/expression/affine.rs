@@ -164,6 +164,17 @@ impl Affine<Program, 3> {
 }
 
 impl Affine<Program> {
+    /// Returns the map of space that acts on x and y like this one and takes all z to 0.
+    pub(crate) fn in_space(&self) -> Affine<Program, 3> {
+        let zero = || Program::constant(0.0);
+        let vector = |[x, y]: &[Program; 2]| [x.clone(), y.clone(), zero()];
+        let [right, up] = self.axes.each_ref().map(vector);
+        Affine {
+            axes: [right, up, [zero(), zero(), zero()]],
+            origin: vector(&self.origin),
+        }
+    }
+
     /// Returns the map if its numbers are constants.
     pub(crate) fn as_constant(&self) -> Option<DAffine2> {
         let constant = self.map(Program::as_constant);
@@ -174,6 +185,11 @@ impl Affine<Program> {
 }
 
 impl<const D: usize> Affine<Program, D> {
+    /// Iterates over the expressions.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = &Program> {
+        self.axes.iter().flatten().chain(&self.origin)
+    }
+
     /// Evaluates the product of maps, of which the first one is applied first, with constants as written.
     pub(crate) fn product<A: Evaluation>(
         of: &mut A,
@@ -184,6 +200,27 @@ impl<const D: usize> Affine<Program, D> {
             let map = map.map(|program| program.evaluate(of, slots));
             map.after(of, &before)
         })
+    }
+}
+
+impl From<DAffine3> for Affine<Program, 3> {
+    fn from(map: DAffine3) -> Self {
+        let vector = |it: DVec3| it.to_array().map(Program::constant);
+        let axes = [0, 1, 2].map(|axis| map.matrix3.col(axis));
+        Self {
+            axes: axes.map(vector),
+            origin: vector(map.translation),
+        }
+    }
+}
+
+impl From<DAffine2> for Affine<Program> {
+    fn from(map: DAffine2) -> Self {
+        let vector = |it: DVec2| it.to_array().map(Program::constant);
+        Self {
+            axes: [map.matrix2.x_axis, map.matrix2.y_axis].map(vector),
+            origin: vector(map.translation),
+        }
     }
 }
 

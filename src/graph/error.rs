@@ -26,6 +26,14 @@ pub enum CompileError {
         /// Length of the element relative to that of its initiator element.
         length: f64,
     },
+    /// An object of a structure has an instance whose drawn transform is not finite.
+    #[error("object '{object}' has a drawn transform that is not finite where step = {step}")]
+    DrawnNotFinite {
+        /// Name of the object.
+        object: String,
+        /// Number of the approximant that was replaced.
+        step: f64,
+    },
     /// The model lies in space, and a graph of the plane is asked for.
     #[error("it lies in space, and this is known of the plane only")]
     InSpace,

@@ -36,7 +36,7 @@ pub use forecast::{Forecast, Level, Population};
 pub(crate) use lines::is_ring;
 pub use object::{Alternative, Chain, Instance, Object, Replacement, Seed, Successor};
 pub(crate) use roots::{Root, Roots, SeededFractal};
-pub(crate) use source::{Buffers, Source};
+pub(crate) use source::{Buffers, DrawVisitor, Source};
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -283,9 +283,11 @@ impl<F: Frame> Graph<F> {
             tint,
             paint,
             thickness,
+            composed,
             ..
         } = self.objects[object];
-        let tint = tint.map_or(Appearance::NONE, Appearance::of);
+        let tint = composed.or(tint.map(Appearance::of));
+        let tint = tint.unwrap_or(Appearance::NONE);
         let paint = paint.map(Appearance::of_paint);
         let thickness = thickness.map(Appearance::of_thickness);
         let all = [paint, thickness].into_iter().flatten();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::draws::Corner;
 use crate::geometry::{Frame, Frame2, Point as _};
-use crate::instancing::{Thickness, Tint};
+use crate::instancing::{Appearance, Thickness, Tint};
 use crate::rule::{Part, Placement, RuleFrame};
 use crate::style::Colour;
 
@@ -26,6 +26,8 @@ pub struct Object<F: Frame = Frame2> {
     pub paint: Option<Colour>,
     /// Change of stroke width of its subtree.
     pub thickness: Option<Thickness>,
+    /// Appearance in place of the tint and of those of all that would contain it, if they are no longer there.
+    pub(crate) composed: Option<Appearance>,
     /// Index that expressions see of it, or an equivalent one, from 1; 1 if no index is resolved.
     pub(crate) index: u32,
     /// Number of its behaviour: objects of one behaviour have equal replacements, regardless of
@@ -197,6 +199,7 @@ impl<F: Frame> Object<F> {
             tint: None,
             paint: None,
             thickness: None,
+            composed: None,
             index: 1,
             behaviour: 0,
             replacement: Replacement::Kept,

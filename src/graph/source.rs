@@ -7,7 +7,7 @@ use crate::expression::Interval;
 use crate::geometry::{Frame, Point as _};
 use crate::rule::{ElementContext, Extent, Part, Rule, RuleFrame};
 
-use super::{Alternative, Chain, CompileError, Successor};
+use super::{Alternative, CompileError, Instance, Successor};
 
 /// Source of instances that are computed for each element.
 pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
@@ -36,9 +36,20 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
         middle: F::Point,
     ) -> Vec<Extent>;
 
-    /// Returns the instances of a generator with its weight, if both are the same for all elements.
-    fn drawn(&self, _generator: usize) -> Option<(&Chain<F>, f64)> {
-        None
+    /// Visits the instances of a generator that are wanted, by their numbers, at the nodes of a quadrature over its draws, with
+    /// their weights. Returns the reason why they are not known, or that of the visitor.
+    fn visit_draws(
+        &self,
+        _generator: usize,
+        _is_wanted: &dyn Fn(usize) -> bool,
+        _visit: &mut DrawVisitor<'_, F>,
+    ) -> Result<(), String> {
+        Err("productions are drawn whose effects are not alike".into())
+    }
+
+    /// Returns the weight of a generator, 1 if it is not drawn.
+    fn weight(&self, _generator: usize) -> f64 {
+        1.0
     }
 
     /// Returns the rule, if a rule is the source.
@@ -49,6 +60,9 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
         None
     }
 }
+
+/// Visitor of the instances of a generator, by number, with a weight.
+pub(crate) type DrawVisitor<'v, F> = dyn FnMut(usize, &Instance<F>, f64) -> Result<(), String> + 'v;
 
 /// Buffers that evaluations reuse.
 #[derive(Debug, Default)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::norm::in_best_coordinates;
 use super::{Shape, Shrinking};
-use crate::expression::{self, Program};
+use crate::expression::{self, Doubles, Program};
 use crate::geometry::{
     Affine, BaseElement, Bounds, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Frame, Frame2,
     Frame3, Piece, Solid, convex_hull,
@@ -18,7 +18,15 @@ pub trait AffineMap: Affine {
     /// Condensation sets and initial sets.
     type Set: Clone + Debug + PartialEq + Send + Sync;
     /// A map with the expressions of its file.
-    type Written: Clone + Debug + PartialEq + Send + Sync;
+    type Written: Clone + Debug + PartialEq + Send + Sync + From<Self>;
+
+    /// Evaluates the product of maps as written, of which the first one is applied first.
+    #[must_use]
+    fn product(written: &[Self::Written], slots: &[f64]) -> Self;
+
+    /// Returns a map as written as one of space, which takes all z to 0 if it is one of the plane.
+    #[must_use]
+    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3>;
 
     /// Returns the fixed point; `None` if there is none, or more than one.
     #[must_use]
@@ -77,6 +85,14 @@ impl AffineMap for DAffine2 {
     type Frame = Frame2;
     type Set = Shape;
     type Written = expression::Affine<Program>;
+
+    fn product(written: &[Self::Written], slots: &[f64]) -> Self {
+        expression::Affine::product(&mut Doubles, written, slots).into()
+    }
+
+    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3> {
+        written.in_space()
+    }
 
     fn fixed_point(&self) -> Option<DVec2> {
         let moving = DMat2::IDENTITY - self.matrix2;
@@ -186,6 +202,14 @@ impl AffineMap for DAffine3 {
     type Frame = Frame3;
     type Set = Arc<[Solid]>;
     type Written = expression::Affine<Program, 3>;
+
+    fn product(written: &[Self::Written], slots: &[f64]) -> Self {
+        expression::Affine::product(&mut Doubles, written, slots).into()
+    }
+
+    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3> {
+        written.clone()
+    }
 
     fn fixed_point(&self) -> Option<DVec3> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis - self.matrix3 * axis);

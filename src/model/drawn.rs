@@ -1,6 +1,7 @@
 //! Graphs of models in space as they are drawn.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
@@ -74,8 +75,8 @@ pub enum DrawnError {
 
 impl Model {
     /// Returns the graph of a model in space as it is drawn after a number of steps, or in the limit, in colours by a
-    /// property; `None` for a model of the plane. A rule whose elements depend on draws or on more than place and age, or whose
-    /// colours do, is grown: its approximant is held in memory, with at most [`MAX_HELD`] elements. An L-system without a limit
+    /// property; `None` for a model of the plane. A structure with drawn instances, and a rule whose elements depend on draws or
+    /// on more than place and age, or whose colours do, are grown: the approximant is held in memory, with at most [`MAX_HELD`] elements. An L-system without a limit
     /// set has its last step instead. Lines of its steps are tubes if its style asks for them.
     ///
     /// Objects of a system record the map that is applied last if colours depend on it, unless there are too many for it.
@@ -118,6 +119,15 @@ impl Model {
             }
             model => {
                 let graph = model.compile_in_space(color_by == ColorBy::LastMap)?;
+                if graph.draws() {
+                    let value = value_of(color_by);
+                    let held = held(&graph, growth, value).map(|graph| DrawnInSpace {
+                        graph,
+                        steps: Some(0),
+                        records: value.is_some().then_some(color_by),
+                    });
+                    return Some(held.map_err(DrawnError::from));
+                }
                 Some(Ok(DrawnInSpace {
                     graph,
                     steps,
@@ -179,7 +189,7 @@ fn value_of(color_by: ColorBy) -> Option<Value> {
 fn held(
     graph: &Graph<Frame3>,
     growth: &Growth<'_>,
-    value: Option<Value>,
+    value_of_element: Option<Value>,
 ) -> Result<Graph<Frame3>, WalkError<Infallible>> {
     let growth = Growth {
         max_elements: growth.max_elements.min(MAX_HELD),
@@ -189,10 +199,10 @@ fn held(
     let mut largest = 0;
     for element in Elements::of(graph, &growth) {
         let (fractal, element) = element?;
-        let value = value.map_or(0, |value| value(&element, &fractal));
+        let value = value_of_element.map_or(0, |value| value(&element, &fractal));
         largest = largest.max(value);
         if graph.objects()[element.object].visible {
-            elements.push((element.object, element.frame, value));
+            elements.push((element.object, element.appearance, element.frame, value));
         }
     }
     let classes = (largest + 1).min(MAX_CLASSES);
@@ -203,26 +213,35 @@ fn held(
         };
         usize::try_from(class).unwrap_or_default()
     };
-    let count = graph.objects().len();
-    let instances = { elements.iter() }
-        .map(|(object, frame, value)| Instance::new(class(*value) * count + object, *frame, 0));
-    let instances = instances.collect();
     let classes = usize::try_from(classes).unwrap_or(1);
-    let objects = (0..classes).flat_map(|class| {
-        graph.objects().iter().map(move |object| Object {
-            replacement: Replacement::Kept,
-            behaviour: 0,
-            origin: value.map_or(object.origin, |_| Some(class)),
-            ..object.clone()
-        })
+    let mut objects: Vec<Object<Frame3>> = Vec::new();
+    let mut numbers = BTreeMap::new();
+    let instances = elements.iter().map(|&(object, appearance, frame, value)| {
+        let class = class(value);
+        let key = (object, class, appearance.bits());
+        let number = *numbers.entry(key).or_insert(objects.len());
+        if number == objects.len() {
+            let own = &graph.objects()[object];
+            objects.push(Object {
+                replacement: Replacement::Kept,
+                behaviour: 0,
+                origin: value_of_element.map_or(own.origin, |_| Some(class)),
+                tint: None,
+                thickness: None,
+                composed: Some(appearance),
+                ..own.clone()
+            });
+        }
+        Instance::new(number, frame, 0)
     });
+    let instances = instances.collect();
     Ok(Graph {
-        origins: value.map_or(graph.origins(), |_| classes),
+        origins: value_of_element.map_or(graph.origins(), |_| classes),
         tints: graph.tints(),
         affine: graph.is_affine(),
         middle: graph.middle,
         ..Graph::of(
-            objects.collect(),
+            objects,
             graph.base_elements().to_vec(),
             vec![Chain::loose(instances)],
         )

@@ -38,6 +38,9 @@ impl VaryingMaps {
         let KindDocument::Ifs(document) = document.kind() else {
             return None;
         };
+        if !document.random.is_empty() {
+            return None;
+        }
         let mut resolver = Resolver::<OfIfs> {
             varies: true,
             ..Resolver::default()
@@ -72,7 +75,7 @@ impl VaryingMaps {
                 let (_, maps) = resolver.toward::<DAffine2, 2>(points, shrink)?;
                 maps
             }
-            MapsDocument::Interpolated(_) => return None,
+            MapsDocument::Interpolated(_) | MapsDocument::AtRandom(_) => return None,
         };
         found.maps = maps;
         let is_right = cyclic.is_empty() && !resolver.diagnostics.has_errors();

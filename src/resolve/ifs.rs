@@ -1,5 +1,6 @@
 //! Resolution of iterated function systems.
 
+mod drawn;
 mod scatter;
 
 use crate::document::{
@@ -17,6 +18,7 @@ use crate::style::ColorBy;
 use super::Resolver;
 use super::instancing::StructureMap;
 use super::map::WrittenMap;
+pub(super) use drawn::structure;
 
 /// Maximum size of a system, with all instances of sets and of maps in maps.
 const MAX_INSTANCES: usize = 2_000_000;
@@ -180,6 +182,7 @@ impl Resolver<OfIfs> {
                 })
             }
             MapsDocument::Interpolated(document) => M::interpolation(self, document),
+            MapsDocument::AtRandom(_) => unreachable!("such systems are resolved as structures"),
         }
     }
 

@@ -13,8 +13,9 @@ use crate::document::{
     InstanceDocument, InstancingDocument, LevelDocument, MasterDocument, ObjectDocument,
     ShapeDocument, TransformDocument, UnionDocument,
 };
+use crate::draws::Variable;
 use crate::expression::{Program, Scope};
-use crate::instancing::{Instancing, ObjectDefinition};
+use crate::instancing::{FIRST, Instancing, LinearForm, ObjectDefinition};
 use crate::metadata::Metadata;
 use crate::style::ColorBy;
 
@@ -44,6 +45,8 @@ pub(super) struct OfInstancing<M: StructureMap> {
     size: usize,
     /// Parameters of the file.
     constants: Arc<Scope>,
+    /// Random variables of the transforms of instances.
+    variables: Arc<[Variable]>,
 }
 
 impl<M: StructureMap> Default for OfInstancing<M> {
@@ -57,6 +60,7 @@ impl<M: StructureMap> Default for OfInstancing<M> {
             is_too_many: false,
             size: 0,
             constants: Arc::default(),
+            variables: Arc::default(),
         }
     }
 }
@@ -76,7 +80,7 @@ impl Definitions {
     }
 }
 
-/// A union with compiled expressions, whose first slot is the level.
+/// A union with compiled expressions, whose first slot is the level; random variables follow.
 struct Union<M: StructureMap> {
     name: String,
     instances: Vec<Prepared<M>>,
@@ -92,9 +96,18 @@ struct PreparedAlternative {
     count: usize,
 }
 
+/// Names that the formulas of a union may use.
+struct UnionScope {
+    /// The level, in slot 0.
+    fixed: Scope,
+    /// The level, and the random variables in the slots that follow.
+    drawn: Scope,
+}
+
 struct Prepared<M: StructureMap> {
     master: Option<PreparedMaster<M>>,
     transforms: Arc<[M::Written]>,
+    forms: Arc<[LinearForm]>,
     tint: Option<PreparedTint>,
     place: Place,
 }
@@ -106,6 +119,20 @@ enum PreparedMaster<M: StructureMap> {
         level: Option<Program>,
         place: Place,
     },
+}
+
+/// Returns the form of the linear part of a transform.
+fn form(transform: &TransformDocument) -> LinearForm {
+    match transform {
+        TransformDocument::Rotate(_)
+        | TransformDocument::Turns(_)
+        | TransformDocument::Translate(_)
+        | TransformDocument::TranslateBack(_) => LinearForm::Rotation,
+        TransformDocument::Scale(_) | TransformDocument::ScaleInSpace(_) => LinearForm::Scaling,
+        TransformDocument::Matrix(_)
+        | TransformDocument::MatrixInSpace(_)
+        | TransformDocument::Linear(_) => LinearForm::Any,
+    }
 }
 
 /// Returns a key that identifies a level. 0 and -0 have the same key.
@@ -123,11 +150,19 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let names = document.objects.iter().map(|object| &object.name.value);
         self.kind.written = names.cloned().collect();
         self.kind.constants = Arc::new(self.constants.clone());
+        let mut scope = Scope::inside(&self.kind.constants);
+        let random = self.limited(&document.random, "a structure");
+        self.kind.variables = self.variables(random, &mut scope, FIRST, false).into();
         let initial = document.initial.as_ref().map(|set| self.initial(set));
         for object in &document.objects {
             self.define(object);
         }
-        let scene = self.union(String::new(), document.scene.as_ref()?, None);
+        let constants = Scope::inside(&self.kind.constants);
+        let scope = UnionScope {
+            drawn: constants.clone(),
+            fixed: constants,
+        };
+        let scene = self.union(String::new(), document.scene.as_ref()?, &scope);
         self.check_names(document, &scene);
         if self.diagnostics.has_errors() {
             return None;
@@ -143,7 +178,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
             let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
             let number = self.kind.reached[objects.len()].0;
-            let slots: Vec<f64> = level.into_iter().collect();
+            let slots = self.slots(level);
             let (instances, alternatives) = self.content(&union, level);
             objects.push(ObjectDefinition {
                 name: match level {
@@ -181,6 +216,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 None => None,
                 Some(initial) => Some(initial?),
             },
+            variables: Arc::clone(&self.kind.variables),
             growing: None,
         };
         let tints = structure
@@ -213,10 +249,18 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let name = &document.name.value;
         let number = self.kind.unions.len();
         let variable = match &document.level {
-            Some(LevelDocument::Any(name)) => Some(name.value.as_str()),
+            Some(LevelDocument::Any(name)) => {
+                let mut drawn = self.kind.variables.iter();
+                if drawn.any(|variable| variable.name() == name.value) {
+                    let message = format!("'{}' is a random variable here", name.value);
+                    self.error_with_hint(&name.place, message, "give the level another name");
+                }
+                Some(name.value.as_str())
+            }
             _ => None,
         };
-        let union = self.union(name.clone(), &document.union, variable);
+        let scope = self.scope(variable);
+        let union = self.union(name.clone(), &document.union, &scope);
         self.kind.unions.push(union);
         let level = match &document.level {
             Some(LevelDocument::One(number)) => match self.constant(number) {
@@ -242,45 +286,51 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         }
     }
 
-    fn union(
-        &mut self,
-        name: String,
-        document: &UnionDocument,
-        variable: Option<&str>,
-    ) -> Union<M> {
-        let mut scope = Scope::inside(&self.kind.constants);
-        if let Some(variable) = variable {
-            self.used.insert(variable.to_owned());
-            scope.variable(variable, 0);
+    /// Returns the names that an object's formulas may use; `level` is that of its level.
+    fn scope(&mut self, level: Option<&str>) -> UnionScope {
+        let mut fixed = Scope::inside(&self.kind.constants);
+        if let Some(level) = level {
+            self.used.insert(level.to_owned());
+            fixed.variable(level, 0);
         }
+        let mut drawn = fixed.clone();
+        for (slot, variable) in (FIRST..).zip(&*self.kind.variables) {
+            drawn.variable(variable.name(), slot);
+        }
+        UnionScope { fixed, drawn }
+    }
+
+    fn union(&mut self, name: String, document: &UnionDocument, scope: &UnionScope) -> Union<M> {
         let mut union = Union {
             name,
             instances: document
                 .instances
                 .iter()
-                .map(|instance| self.prepared(instance, &scope))
+                .map(|instance| self.prepared(instance, scope))
                 .collect(),
             alternatives: Vec::new(),
             place: (!document.alternatives.is_empty()).then(|| document.place.first_line()),
-            transforms: self.transforms(&document.transforms, &scope),
+            transforms: self.transforms(&document.transforms, &scope.fixed),
         };
         for alternative in &document.alternatives {
-            let whole = self.transforms(&alternative.transforms, &scope);
+            let whole = self.transforms(&alternative.transforms, &scope.drawn);
             for instance in &alternative.instances {
-                let mut prepared = self.prepared(instance, &scope);
+                let mut prepared = self.prepared(instance, scope);
                 prepared.transforms = [&prepared.transforms[..], &whole].concat().into();
+                let forms = alternative.transforms.iter().map(form);
+                prepared.forms = prepared.forms.iter().copied().chain(forms).collect();
                 union.instances.push(prepared);
             }
             let weight = alternative.weight.as_ref();
             union.alternatives.push(PreparedAlternative {
-                weight: weight.map(|number| self.weight(number, &scope)),
+                weight: weight.map(|number| self.weight(number, &scope.fixed)),
                 count: alternative.instances.len(),
             });
         }
         union
     }
 
-    fn prepared(&mut self, document: &InstanceDocument, scope: &Scope) -> Prepared<M> {
+    fn prepared(&mut self, document: &InstanceDocument, scope: &UnionScope) -> Prepared<M> {
         let master = document.master.as_ref().and_then(|master| match master {
             MasterDocument::Shape(shape) => M::set(self, shape).map(PreparedMaster::Shape),
             MasterDocument::Object { name, level } => {
@@ -290,16 +340,19 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                     Some(primitive) => PreparedMaster::Shape(primitive),
                     None => PreparedMaster::Object {
                         name: name.value.clone(),
-                        level: level.as_ref().map(|level| self.program(level, scope)),
+                        level: level
+                            .as_ref()
+                            .map(|level| self.program(level, &scope.fixed)),
                         place: name.place.clone(),
                     },
                 })
             }
         });
-        let tint = { document.tint.as_deref() }.map(|tint| self.tint(tint, scope));
+        let tint = { document.tint.as_deref() }.map(|tint| self.tint(tint, &scope.fixed));
         Prepared {
             master,
-            transforms: self.transforms(&document.transforms, scope),
+            transforms: self.transforms(&document.transforms, &scope.drawn),
+            forms: document.transforms.iter().map(form).collect(),
             tint,
             place: document.place.clone(),
         }

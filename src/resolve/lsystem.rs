@@ -22,9 +22,6 @@ use super::Resolver;
 /// Maximum nesting depth of branches in a right context, which are matched by recursion.
 const MAX_BRANCHES: i32 = 64;
 
-/// Largest number of variables that are drawn for a module.
-const MAX_VARIABLES: usize = 100;
-
 /// State that is specific to L-systems.
 #[derive(Default)]
 pub(super) struct OfLSystem {
@@ -112,11 +109,7 @@ impl Resolver<OfLSystem> {
         &mut self,
         random: &'d [(Written<String>, WrittenNumber)],
     ) -> &'d [(Written<String>, WrittenNumber)] {
-        if let Some((name, _)) = random.get(MAX_VARIABLES) {
-            let message = format!("an L-system draws {MAX_VARIABLES} variables at most");
-            self.error(&name.place, message);
-        }
-        let random = &random[..random.len().min(MAX_VARIABLES)];
+        let random = self.limited(random, "an L-system");
         let mut scope = Scope::inside(&self.kind.constants);
         self.variables(random, &mut scope, 0, false);
         random

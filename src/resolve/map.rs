@@ -1,7 +1,7 @@
 //! Resolution of affine maps of the plane and of space.
 
 use crate::document::{InterpolationDocument, LinearDocument, MapDocument, WrittenPoint};
-use crate::expression::{Affine, Arithmetic, Program, Symbols};
+use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3};
 use crate::ifs::PointOf;
 
@@ -53,6 +53,21 @@ impl<K> Resolver<K> {
             (Some(shift), None) => linear.moved_to(shift?),
             (None, None) => linear,
         })
+    }
+}
+
+impl<K> Resolver<K> {
+    /// Resolves a linear map whose numbers may depend on the slots of a scope. Reports mistakes and returns `None`.
+    pub(super) fn linear_in_scope<M: WrittenMap<N>, const N: usize>(
+        &mut self,
+        document: &LinearDocument,
+        scope: &Scope,
+    ) -> Option<Affine<Program, N>> {
+        let constants = std::mem::replace(&mut self.constants, scope.clone());
+        let varies = std::mem::replace(&mut self.varies, true);
+        let map = M::linear_map(self, document);
+        (self.constants, self.varies) = (constants, varies);
+        map
     }
 }
 

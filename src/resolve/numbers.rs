@@ -58,6 +58,9 @@ impl<K> Resolver<K> {
         if ElementContext::NAMES.contains(&place.text()) {
             mistake.hint = Some("it is known in generators and in conditions, but not here".into());
         }
+        if self.random.contains(place.text()) {
+            mistake.hint = Some("it is drawn at random, and not known here".into());
+        }
         self.mistakes += 1;
         self.diagnostics.push(mistake.at(&place));
     }

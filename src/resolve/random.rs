@@ -12,7 +12,23 @@ pub(super) const BY_EDGE: &str = "by_edge";
 /// Help text with the notation of distributions.
 const DISTRIBUTIONS: &str = "uniform(a, b), normal(mean, deviation) or choice(a, b, ...)";
 
+/// Largest number of variables that are drawn for a module or an object.
+const MAX_VARIABLES: usize = 100;
+
 impl<K> Resolver<K> {
+    /// Returns as many variables as there may be, and reports one that is too many. `what` is the kind of file.
+    pub(super) fn limited<'d>(
+        &mut self,
+        random: &'d [(Written<String>, WrittenNumber)],
+        what: &str,
+    ) -> &'d [(Written<String>, WrittenNumber)] {
+        if let Some((name, _)) = random.get(MAX_VARIABLES) {
+            let message = format!("{what} draws {MAX_VARIABLES} variables at most");
+            self.error(&name.place, message);
+        }
+        &random[..random.len().min(MAX_VARIABLES)]
+    }
+
     /// Resolves variables, which are drawn for every replacement, and adds them to a scope from slot `slots` on.
     /// `has_edges` states that draws may belong to edges.
     pub(super) fn variables(
@@ -60,6 +76,7 @@ impl<K> Resolver<K> {
                 }
                 let slot = slots + variables.len();
                 scope.variable(name_of, slot);
+                self.random.insert(name_of.to_owned());
                 variables.push(variable);
             }
         }
@@ -68,7 +85,8 @@ impl<K> Resolver<K> {
 
     fn distribution(&mut self, number: &WrittenNumber, scope: &Scope) -> Distribution {
         if number.value.is_unknown() {
-            return Distribution::Choice(vec![Program::unknown()]);
+            // It was reported; no other mistake follows from it.
+            return Distribution::Choice(vec![Program::constant(1.0)]);
         }
         let Some((name, arguments)) = number.value.as_call() else {
             self.error_with_hint(

@@ -1,16 +1,11 @@
 //! Bounds on the positions and lengths of a generator's elements over all random draws.
 
-use crate::expression::{Dependence, Interval, Program};
+use crate::draws::{Cells, MAX_CELLS};
+use crate::expression::{Interval, Program};
 use crate::geometry::DVec3;
 
 use super::frame::{Place, RuleFrame};
 use super::generator::{ElementContext, Generator, ListedElement, Move};
-
-/// Limit of the number of parts into which the ranges of all drawn variables together are divided.
-const MAX_PARTS: usize = 1024;
-
-/// Limit of the number of parts of one variable's range.
-const MAX_PARTS_OF_ONE: usize = 32;
 
 /// Bounds that hold for an element over all draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,18 +24,8 @@ impl<F: RuleFrame> Generator<F> {
     /// The bounds result from interval arithmetic on parts of the variables' ranges: smaller parts lose less
     /// by treating coordinates that depend on one variable as independent.
     pub(crate) fn extents(&self, power: f64, moment: &[Interval; 4]) -> Vec<Extent> {
-        let root = |sum| match power.is_infinite() {
-            true => sum,
-            false => libm::pow(sum, 1.0 / power),
-        };
-        let mean = |element| {
-            let Extent { away, length } = self.cover(element, power, moment);
-            Extent {
-                away: root(away),
-                length: root(length),
-            }
-        };
-        self.elements().map(mean).collect()
+        let cover = |element| self.cover(element, power, moment);
+        self.elements().map(cover).collect()
     }
 
     fn cover(&self, element: &ListedElement, power: f64, moment: &[Interval; 4]) -> Extent {
@@ -51,86 +36,54 @@ impl<F: RuleFrame> Generator<F> {
                 length: f64::INFINITY,
             };
         }
-        let mut cover = Cover {
-            generator: self,
-            element,
-            parts: self.parts_for(element),
-            power,
-            extent: Extent::default(),
-        };
-        cover.go_on(&mut moment.to_vec(), 1.0);
-        cover.extent
-    }
-
-    /// Returns the number of parts into which the range of each variable is divided: 1 for variables that
-    /// do not affect the element.
-    fn parts_for(&self, element: &ListedElement) -> Vec<usize> {
         let ends = [element.from, element.to];
         let moves = self.moves.iter();
         let moves = moves.filter(|moving| ends.iter().any(|end| moving.points.contains(end)));
         let own = ends.iter().flat_map(|&end| self.points[end].as_ref());
-        let mut programs: Vec<&Program> = own.chain(moves.flat_map(Move::programs)).collect();
-        let mut parts = vec![1; self.variables.len()];
-        let mut free = 0;
-        let mut left = MAX_PARTS;
-        for (number, variable) in self.variables.iter().enumerate().rev() {
-            let slot = ElementContext::NAMES.len() + number;
-            let depends = |program: &&Program| program.dependence(slot) != Dependence::None;
-            if programs.iter().any(depends) {
-                programs.extend(variable.programs());
-                parts[number] = match variable.choices() {
-                    Some(choices) if choices <= left => choices,
-                    Some(_) => 1,
-                    None => 0,
-                };
-                free += u32::from(parts[number] == 0);
-                left /= parts[number].max(1);
-            }
-        }
-        let fits = |parts: &usize| parts.checked_pow(free).is_some_and(|all| all <= left);
-        let each = (2..=MAX_PARTS_OF_ONE).rev().find(fits).unwrap_or(1);
-        for parts in parts.iter_mut().filter(|parts| **parts == 0) {
-            *parts = each;
-        }
-        parts
-    }
-}
-
-/// Recursion over the parts of the variables' ranges.
-struct Cover<'g, F: RuleFrame> {
-    generator: &'g Generator<F>,
-    element: &'g ListedElement,
-    parts: Vec<usize>,
-    /// Exponent of the power means; infinite for maxima.
-    power: f64,
-    extent: Extent,
-}
-
-impl<F: RuleFrame> Cover<'_, F> {
-    /// Recurses into the parts of the next variable's range; `likely` is the probability of the parts so
-    /// far.
-    fn go_on(&mut self, slots: &mut Vec<Interval>, likely: f64) {
-        let number = slots.len() - ElementContext::NAMES.len();
-        let Some(variable) = self.generator.variables.get(number) else {
-            return self.add(slots, likely);
-        };
-        for (part, share) in variable.parts(slots, self.parts[number]) {
-            slots.push(part);
-            self.go_on(slots, likely * share);
-            slots.pop();
-        }
-    }
-
-    fn add(&mut self, slots: &[Interval], likely: f64) {
-        let [from, to] = [self.element.from, self.element.to].map(|number| {
-            let moves = self.generator.moves.iter();
-            let moves = moves.filter(|moving| moving.points.contains(&number));
-            let written = place(self.generator.points[number].as_ref(), slots, 0.0);
-            moves.fold(written, |place, moving| moving.image(place, slots))
+        let programs = own.chain(moves.flat_map(Move::programs));
+        let cells = Cells::new(
+            &self.variables,
+            ElementContext::NAMES.len(),
+            MAX_CELLS,
+            programs,
+        );
+        let mut means = PowerMeans::new(power);
+        cells.visit(moment, |slots, likely| {
+            let [from, to] = ends.map(|number| {
+                let moves = self.moves.iter();
+                let moves = moves.filter(|moving| moving.points.contains(&number));
+                let written = place(self.points[number].as_ref(), slots, 0.0);
+                moves.fold(written, |place, moving| moving.image(place, slots))
+            });
+            let middle = [1.0, 0.0, 0.0].map(Interval::point);
+            let extent = Extent {
+                away: far(minus(plus(from, to), middle)) / 2.0,
+                length: far(minus(to, from)),
+            };
+            means.add(extent, likely);
         });
-        let middle = [1.0, 0.0, 0.0].map(Interval::point);
-        let away = far(minus(plus(from, to), middle)) / 2.0;
-        let length = far(minus(to, from));
+        means.extent()
+    }
+}
+
+/// Power means of extents, or their maxima.
+pub(crate) struct PowerMeans {
+    /// Exponent; infinite for maxima.
+    power: f64,
+    sum: Extent,
+}
+
+impl PowerMeans {
+    /// Creates power means for an exponent, which is infinite for maxima.
+    pub(crate) fn new(power: f64) -> Self {
+        Self {
+            power,
+            sum: Extent::default(),
+        }
+    }
+
+    /// Adds an extent with its probability.
+    pub(crate) fn add(&mut self, extent: Extent, likely: f64) {
         let power = self.power;
         let add = |sum: &mut f64, value: f64| {
             if power.is_infinite() {
@@ -139,8 +92,20 @@ impl<F: RuleFrame> Cover<'_, F> {
                 *sum += likely * libm::pow(value, power);
             }
         };
-        add(&mut self.extent.away, away);
-        add(&mut self.extent.length, length);
+        add(&mut self.sum.away, extent.away);
+        add(&mut self.sum.length, extent.length);
+    }
+
+    /// Returns the means.
+    pub(crate) fn extent(&self) -> Extent {
+        let root = |sum| match self.power.is_infinite() {
+            true => sum,
+            false => libm::pow(sum, 1.0 / self.power),
+        };
+        Extent {
+            away: root(self.sum.away),
+            length: root(self.sum.length),
+        }
     }
 }
 

@@ -14,7 +14,7 @@ mod selection;
 
 pub use crate::geometry::{BaseElement, Piece, arc};
 pub use body::{Body, Surface};
-pub(crate) use extent::Extent;
+pub(crate) use extent::{Extent, PowerMeans};
 pub use frame::{RuleFrame, Turn};
 pub(crate) use frame::{constant, evaluated, newell};
 pub(crate) use generator::Origin;

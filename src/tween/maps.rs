@@ -1,6 +1,6 @@
 //! Affine maps between two, in the plane and in space.
 
-use crate::expression::{Affine, Arithmetic, Doubles, Program};
+use crate::expression::{Affine, Arithmetic, Doubles};
 use crate::geometry::{
     Affine as _, BaseElement, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Piece,
 };
@@ -15,9 +15,6 @@ pub(super) trait Tweened: AffineMap {
 
     /// Returns the map whose linear part is that of this map times a factor, and by which a point has the same image.
     fn shrunk(&self, factor: f64, about: PointOf<Self>) -> Self;
-
-    /// Returns the map as it could be written in a file.
-    fn written(&self) -> Self::Written;
 
     /// Returns the set between two; `None` if they are of different shapes.
     fn set(tween: Tween, both: [&Self::Set; 2]) -> Option<Self::Set>;
@@ -36,14 +33,6 @@ impl Tweened for DAffine2 {
     fn shrunk(&self, factor: f64, about: DVec2) -> Self {
         let linear = self.matrix2 * factor;
         Self::from_mat2_translation(linear, self.apply(about) - linear * about)
-    }
-
-    fn written(&self) -> Affine<Program> {
-        let vector = |it: DVec2| it.to_array().map(Program::constant);
-        Affine {
-            axes: [self.matrix2.x_axis, self.matrix2.y_axis].map(vector),
-            origin: vector(self.translation),
-        }
     }
 
     fn set(tween: Tween, both: [&Shape; 2]) -> Option<Shape> {
@@ -110,19 +99,6 @@ impl Tweened for DAffine3 {
     fn shrunk(&self, factor: f64, about: DVec3) -> Self {
         let linear = self.matrix3 * factor;
         Self::from_mat3_translation(linear, self.apply(about) - linear * about)
-    }
-
-    fn written(&self) -> Affine<Program, 3> {
-        let vector = |it: DVec3| it.to_array().map(Program::constant);
-        let DMat3 {
-            x_axis,
-            y_axis,
-            z_axis,
-        } = self.matrix3;
-        Affine {
-            axes: [x_axis, y_axis, z_axis].map(vector),
-            origin: vector(self.translation),
-        }
     }
 
     fn set(_: Tween, [a, b]: [&Self::Set; 2]) -> Option<Self::Set> {

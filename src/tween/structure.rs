@@ -1,35 +1,49 @@
 //! Tweens of structures of objects.
 
+use std::sync::Arc;
+
+use crate::draws::Variable;
 use crate::ifs::PointOf;
 use crate::instancing::{Drift, Instancing, Master, ObjectDefinition, ObjectInstance, Tint};
 
 use super::maps::Tweened;
 use super::{Side, Tween, style, system};
 
-/// Returns the structure between two.
+/// Returns the structure between two, or one of them if they have different random variables.
 pub(super) fn tween<M: Tweened>(
     tween: Tween,
     a: &Instancing<M>,
     b: &Instancing<M>,
 ) -> Instancing<M> {
+    let metadata = tween.metadata([&a.metadata, &b.metadata]);
+    if a.variables != b.variables {
+        let own = tween.pick([a, b]).clone();
+        return Instancing { metadata, ..own };
+    }
     let count = a.objects.len().max(b.objects.len());
     let object = |number: usize| match [a, b].map(|it| it.objects.get(number)) {
-        [Some(a), Some(b)] => Some(object(tween, [a, b])),
+        [Some(one), Some(other)] => Some(object(tween, [one, other], &a.variables)),
         [one, other] => one.or(other).cloned(),
     };
     Instancing {
-        metadata: tween.metadata([&a.metadata, &b.metadata]),
+        metadata,
         objects: (0..count).filter_map(object).collect(),
         scene: instances(tween, [&a.scene, &b.scene]),
         initial: system::set::<M>(tween, [a.initial.as_ref(), b.initial.as_ref()]),
+        variables: Arc::clone(&a.variables),
         growing: None,
     }
 }
 
-/// Returns the object between two, or one of them if they have different alternatives.
-fn object<M: Tweened>(tween: Tween, both: [&ObjectDefinition<M>; 2]) -> ObjectDefinition<M> {
+/// Returns the object between two, or one of them if their instances are drawn differently.
+fn object<M: Tweened>(
+    tween: Tween,
+    both: [&ObjectDefinition<M>; 2],
+    variables: &[Variable],
+) -> ObjectDefinition<M> {
     let [a, b] = both.map(|it| &it.alternatives);
-    if a != b {
+    let mut written = both.iter().flat_map(|it| &it.instances);
+    if a != b || written.any(|it| it.needed(variables).contains(&true)) {
         return tween.pick(both).clone();
     }
     let map = M::between(tween, both.map(|it| &it.map));
@@ -37,7 +51,7 @@ fn object<M: Tweened>(tween: Tween, both: [&ObjectDefinition<M>; 2]) -> ObjectDe
         name: tween.pick(both).name.clone(),
         alternatives: a.clone(),
         instances: instances(tween, both.map(|it| it.instances.as_slice())),
-        transforms: [map.written()].into(),
+        transforms: [map.into()].into(),
         slots: tween.pick(both).slots.clone(),
         map,
     }
@@ -65,7 +79,8 @@ fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectIns
     ObjectInstance {
         master: shape.unwrap_or_else(|| tween.pick(both).master.clone()),
         tint: tint_between(tween, both.map(|it| it.tint)),
-        transforms: [map.written()].into(),
+        transforms: [map.into()].into(),
+        forms: Arc::default(),
         map,
     }
 }
@@ -108,7 +123,8 @@ fn fading(tint: Tint, share: f64) -> Tint {
 fn grown<M: Tweened>(tween: Tween, side: Side, own: &ObjectInstance<M>) -> ObjectInstance<M> {
     let map = own.map.shrunk(tween.of(side), PointOf::<M>::default());
     ObjectInstance {
-        transforms: [map.written()].into(),
+        transforms: [map.into()].into(),
+        forms: Arc::default(),
         map,
         ..own.clone()
     }

@@ -23,7 +23,7 @@ pub(super) fn tween<M: Tweened>(
         condensation: condensation(tween, systems),
         initial: set::<M>(tween, systems.map(Ifs::initial)),
     };
-    let written = definition.maps.iter().map(|it| it.affine.written());
+    let written = definition.maps.iter().map(|it| it.affine.into());
     let written = written.collect();
     let ifs = Ifs::new(definition).map_err(|errors| {
         let messages: Vec<_> = errors.iter().map(ToString::to_string).collect();

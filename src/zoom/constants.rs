@@ -180,9 +180,7 @@ impl<'a> Constants<'a> {
             Kind::Rule(rule) => rule.children(self.graph, parent, wanted, &mut self.precision),
             _ => {
                 let wanted = wanted.iter();
-                wanted
-                    .map(|it| self.child(Some(parent.object), it))
-                    .collect()
+                wanted.map(|it| self.child(Some(parent), it)).collect()
             }
         };
         if is_fixed {
@@ -197,7 +195,7 @@ impl<'a> Constants<'a> {
 
     /// Returns the map of an instance of a model that is no rule, in an object, or in the initiator if there
     /// is no parent.
-    fn child(&mut self, parent: Option<usize>, instance: &Instance) -> Arc<Fixed> {
+    fn child(&mut self, parent: Option<Parent<'_>>, instance: &Instance) -> Arc<Fixed> {
         let bits = self.precision.bits();
         let position = instance.position as usize;
         match &self.kind {
@@ -224,15 +222,17 @@ impl<'a> Constants<'a> {
                     None => product(&[], &[]),
                 };
                 let own = match parent {
-                    Some(parent) => object(parent)
-                        .map(|of| product(&of.instances[position].transforms, &of.slots)),
+                    Some(parent) => canonical[parent.object].map(|number| {
+                        let (union, slots) = structure.drawn(number, parent.state.path);
+                        product(&union[position].transforms, &slots)
+                    }),
                     None => Some(product(&structure.scene()[position].transforms, &[])),
                 };
                 let map = own.map(|own| own.after(&mut self.precision, &inner));
                 Arc::new(Fixed::of(&map.unwrap_or(inner), bits))
             }
             Kind::Turtle(Chords { initiator, objects }) => {
-                let lines = parent.map_or(initiator, |object| &objects[object]);
+                let lines = parent.map_or(initiator, |parent| &objects[parent.object]);
                 let [from, to] = &lines[position];
                 Arc::new(Fixed::between(from, to, instance.frame.direction()))
             }

@@ -5,14 +5,15 @@ use crate::document::MetadataDocument;
 use crate::document::Written;
 use crate::document::WrittenPoint;
 use crate::document::ifs::{
-    CondensationDocument, EdgeDocument, IfsDocument, InterpolationDocument, LinearDocument,
-    MapDocument, MapsDocument, Scales,
+    AlternativeMapsDocument, CondensationDocument, EdgeDocument, IfsDocument,
+    InterpolationDocument, LinearDocument, MapDocument, MapsDocument, Scales, VerticesDocument,
 };
 use crate::document::node::{Node, Value};
 use crate::document::reader::{Fields, Reader};
 use crate::document::shape::{Form, KeySet, Member, Shape, alternative, keys};
 use crate::kind::Kind;
 
+use super::generator::read_random;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::{PARAMS, written};
 use super::set::{CONDENSATION, SET, read_initial, read_set};
@@ -26,23 +27,35 @@ const IFS: Shape = Shape {
     what: "an iterated function system",
     keys: &[&DESCRIPTION, &IFS_ALONE, &LIKING],
     alternatives: &[
-        alternative(&["maps"], &["vertices", "interpolate"]),
-        alternative(&["vertices"], &["maps", "interpolate"]),
-        alternative(&["interpolate"], &["maps", "vertices"]),
+        alternative(&["maps"], &["vertices", "interpolate", "at_random"]),
+        alternative(&["vertices"], &["maps", "interpolate", "at_random"]),
+        alternative(
+            &["interpolate"],
+            &["maps", "vertices", "at_random", "random"],
+        ),
+        alternative(
+            &["at_random"],
+            &["maps", "vertices", "interpolate", "edges"],
+        ),
     ],
     hint: "a system is a mapping of keys: `kfrac cat gasket` shows a short one",
 };
 
 /// Keys that only an iterated function system has.
-const IFS_ALONE: [Member; 10] = keys![
+const IFS_ALONE: [Member; 12] = keys![
     needed kind: Form::Words(&[Kind::Ifs.name()]), "The kind of file.";
     =SPACE;
     extends: Form::File(Shelf::IFS),
         "Another system to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
     =PARAMS;
+    random: Form::Names(&Form::Expression, 0),
+        "Random variables, drawn for every image of the set, for its maps: uniform(a, b), \
+         normal(mean, deviation) or choice(a, b, ...).";
     maps: Form::Either(&[Form::List(&Form::Mapping(&MAP), 1, None), Form::Names(&Form::Mapping(&MAP), 1)]),
         "The maps: a list of them, or a mapping of names to maps.";
+    at_random: Form::List(&Form::Either(&[SOME_MAPS, Form::Mapping(&ALTERNATIVE)]), 1, None),
+        "In place of `maps`: lists of maps of which one is drawn for every image of the set, by its `weight`; `[]` for nothing.";
     vertices: Form::Mapping(&VERTICES), "In place of `maps`: one map towards each of some points.";
     interpolate: Form::Mapping(&INTERPOLATION),
         "In place of `maps`: those of a curve through points that looks the same in every part.";
@@ -55,6 +68,18 @@ const IFS_ALONE: [Member; 10] = keys![
         "Which map may be applied after which: for every map a list of the maps that may follow it, by \
          number from 1 or by name, or a mapping of these to weights. Any may follow any if left out.";
 ];
+
+const SOME_MAPS: Form = Form::List(&Form::Mapping(&MAP), 0, None);
+
+const ALTERNATIVE: Shape = Shape {
+    what: "an alternative",
+    keys: &[&keys![
+        needed maps: SOME_MAPS, "The maps; `[]` for nothing." => "an alternative needs `maps`";
+        weight: Form::Positive, "How often it is drawn, relative to the others; 1 if left out.";
+    ]],
+    alternatives: &[],
+    hint: "at_random: [{maps: [{scale: 1/2}, {scale: 1/2, translate: [1/2, 0]}], weight: 3}, []]",
+};
 
 const MAP: Shape = Shape {
     what: "a map",
@@ -165,23 +190,67 @@ impl OfKind for IfsDocument {
             metadata,
             is_in_space,
             condensation: condensation.collect(),
+            random: read_random(reader, fields.take("random")),
             maps: read_maps(reader, fields),
             initial: read_initial(reader, fields),
             edges: edges
                 .and_then(|node| Some((read_edges(reader, node)?, node.place.first_line()))),
         };
         (reader.is_in_space, reader.may_lie_in_space) = (false, false);
+        if document.is_random() {
+            document.refuse_fixed(reader);
+        }
         document
+    }
+}
+
+impl IfsDocument {
+    /// Reports parts that systems with drawn maps do not have.
+    fn refuse_fixed(&self, reader: &mut Reader) {
+        let maps = match &self.maps {
+            Some(MapsDocument::Listed(maps)) => vec![maps],
+            Some(MapsDocument::AtRandom(alternatives)) => {
+                { alternatives.iter() }.map(|it| &it.maps).collect()
+            }
+            _ => Vec::new(),
+        };
+        let maps = maps.into_iter().flatten();
+        let sets = self.condensation.iter();
+        let weights = maps.map(|map| &map.weight).chain(sets.map(|it| &it.weight));
+        for weight in weights.flatten() {
+            let message = "random iteration does not draw a system whose maps are drawn";
+            let hint = "leave the weight out; alternatives under `at_random` have weights";
+            reader.error_with_hint(&weight.place, message, hint);
+        }
+        if let Some((_, place)) = &self.edges {
+            let message = "a system whose maps are drawn has no `edges`";
+            let hint = "a structure, `kind: instancing`, has several objects with drawn instances";
+            reader.error_with_hint(place, message, hint);
+        }
+        let place = match &self.maps {
+            Some(MapsDocument::Vertices {
+                points: VerticesDocument::Scattered(scatter),
+                ..
+            }) => &scatter.ellipsoid.place,
+            Some(MapsDocument::Vertices {
+                points: VerticesDocument::Listed(points),
+                shrink,
+            }) if points.is_empty() => &shrink.place,
+            Some(MapsDocument::Interpolated(interpolation)) => &interpolation.place,
+            _ => return,
+        };
+        let hint = "write `maps`, or a list of `points`";
+        reader.error_with_hint(place, "there are no maps that can be drawn", hint);
     }
 }
 
 /// Reads the maps, which one of several keys gives.
 fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
-    let alternatives = ["maps", "vertices", "interpolate"];
+    let alternatives = ["maps", "vertices", "interpolate", "at_random"];
     let mut there = alternatives.iter().filter(|key| fields.take(key).is_some());
     let Some(key) = there.next() else {
         let message = "the system has no maps";
-        let hint = "write `maps`, `vertices` or `interpolate`";
+        let hint = "write `maps`, `vertices`, `interpolate` or `at_random`";
         reader.error_with_hint(&fields.place.first_line(), message, hint);
         return None;
     };
@@ -193,9 +262,33 @@ fn read_maps(reader: &mut Reader, fields: &Fields<'_>) -> Option<MapsDocument> {
     let node = fields.take(key)?;
     match *key {
         "maps" => read_listed(reader, node),
+        "at_random" => Some(read_alternatives(reader, node)),
         "vertices" => read_vertices(reader, node),
         _ => read_interpolation(reader, node).map(MapsDocument::Interpolated),
     }
+}
+
+/// Reads alternatives: mappings with maps, or lists of maps.
+fn read_alternatives(reader: &mut Reader, node: &Node) -> MapsDocument {
+    let what = "a list of alternatives";
+    let list = reader.filled(node, what, "alternative", ALTERNATIVE.hint);
+    let read = |reader: &mut Reader, node: &Node| {
+        let (maps, weight) = match &node.value {
+            Value::Sequence(maps) => (maps.as_slice(), None),
+            _ => {
+                let fields = reader.fields(node, &ALTERNATIVE)?;
+                let maps = fields.take("maps")?;
+                let weight = fields.optional(reader, "weight");
+                (reader.list(maps, "a list of maps", MAP.hint), weight)
+            }
+        };
+        let maps = { maps.iter() }.map(|map| read_map(reader, None, map));
+        Some(AlternativeMapsDocument {
+            maps: maps.collect(),
+            weight,
+        })
+    };
+    MapsDocument::AtRandom(list.iter().filter_map(|node| read(reader, node)).collect())
 }
 
 fn read_listed(reader: &mut Reader, node: &Node) -> Option<MapsDocument> {

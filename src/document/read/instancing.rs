@@ -14,6 +14,7 @@ use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 use crate::kind::Kind;
 
+use super::generator::read_random;
 use super::metadata::{DESCRIPTION, LIKING};
 use super::parameters::PARAMS;
 use super::set::{FORMS, OF_FRACTAL, SET, read_initial, read_set};
@@ -31,13 +32,16 @@ const INSTANCING: Shape = Shape {
 };
 
 /// Keys that only an instancing structure has.
-const INSTANCING_ALONE: [Member; 7] = keys![
+const INSTANCING_ALONE: [Member; 8] = keys![
     needed kind: Form::Words(&[Kind::Instancing.name()]), "The kind of file.";
     =SPACE;
     extends: Form::File(Shelf::INSTANCING),
         "Another structure to start from, by name or by file. The keys written here replace its keys; \
          `params`, `style` and `view` merge entry by entry.";
     =PARAMS;
+    random: Form::Names(&Form::Expression, 0),
+        "Random variables, drawn whenever an object is replaced, for the transforms of its instances: \
+         uniform(a, b), normal(mean, deviation) or choice(a, b, ...).";
     alone objects: Form::Names(&UNION_OF, 1),
         "The canonical objects, by name: each a union of instances. An object with a level is written \
          `A(n)`, and `A(0)` for one level that is another."
@@ -137,10 +141,12 @@ impl OfKind for InstancingDocument {
         let objects = objects.unwrap_or_default().iter();
         let objects = objects.filter_map(|(key, node)| read_object(reader, key, node));
         let objects = objects.collect();
+        let random = read_random(reader, fields.take("random"));
         let scene = fields.take("scene");
         let document = Self {
             metadata,
             is_in_space,
+            random,
             objects,
             scene: scene.and_then(|node| read_scene(reader, node)),
             initial: read_initial(reader, fields),

@@ -1,21 +1,25 @@
 //! The expected dimension of rules with random ratios: E Σ ratio^D = 1 (Falconer 1986, Mauldin & Williams
 //! 1986), or spectral radius 1 of the matrix of these expectations.
 
-use crate::digraph::all_loops_shrink;
-use crate::draws::Distribution;
+use std::collections::BTreeMap;
+
+use crate::digraph::{all_loops_shrink, components};
+use crate::draws::nodes;
 use crate::expression::{Dependence, Program};
 use crate::extent::NoLimit;
 use crate::geometry::Point as _;
 use crate::graph::{Alternative, Graph, Instance, Replacement};
-use crate::rule::{ElementContext, Generator, Placement, Rule, RuleFrame, Selection};
+use crate::rule::{ElementContext, Placement, Rule, RuleFrame, Selection};
 
 use crate::measure::perron::crossing;
-use crate::saturating::real;
 
 use super::spectral::dense_radius;
 
-/// Maximum number of quadrature nodes of one generator.
-const MAX_DRAWS: usize = 40_000;
+/// Maximum number of behaviours that lead to each other.
+const MAX_BEHAVIOURS: usize = 50;
+
+/// Maximum number of ratios.
+const MAX_RATIOS: usize = 1_000_000;
 
 /// A ratio between objects, with its probability.
 struct Ratio {
@@ -43,11 +47,9 @@ pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, 
                 }
             }
             Replacement::Evaluated(alternatives) => {
-                if push_drawn(&mut ratios, graph, (object.behaviour, alternatives))? {
-                    continue;
-                }
                 let Some(rule) = graph.source().rule() else {
-                    return Err("productions are drawn whose effects are not alike".into());
+                    push_drawn(&mut ratios, graph, (object.behaviour, alternatives))?;
+                    continue;
                 };
                 for (alternative, weight) in weighted(rule, alternatives)? {
                     let from = object.behaviour;
@@ -57,28 +59,61 @@ pub(super) fn expected_dimension<F: RuleFrame>(graph: &Graph<F>) -> Result<f64, 
         }
     }
     let size = graph.behaviours().count();
-    let edges: Vec<_> = { ratios.iter() }
-        .map(|it| (it.from, it.to, it.ratio))
-        .collect();
-    if !all_loops_shrink(size, &edges, size) {
+    let mut targets = vec![Vec::new(); size];
+    for ratio in &ratios {
+        targets[ratio.from].push(ratio.to);
+    }
+    let component = components(&targets);
+    // Only loops multiply without end.
+    let mut loops: BTreeMap<usize, Vec<Ratio>> = BTreeMap::new();
+    for ratio in ratios {
+        if component[ratio.from] == component[ratio.to] {
+            loops.entry(component[ratio.from]).or_default().push(ratio);
+        }
+    }
+    let mut dimension = None;
+    for mut ratios in loops.into_values() {
+        let mut numbers: Vec<usize> = ratios.iter().flat_map(|it| [it.from, it.to]).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        if numbers.len() > MAX_BEHAVIOURS {
+            return Err("too many objects lead to each other".into());
+        }
+        let number = |of: usize| numbers.binary_search(&of).unwrap_or_default();
+        for ratio in &mut ratios {
+            [ratio.from, ratio.to] = [ratio.from, ratio.to].map(number);
+        }
+        let own: Option<f64> = dimension_of_loops(numbers.len(), &ratios)?;
+        dimension = match (dimension, own) {
+            (Some(a), Some(b)) => Some(f64::max(a, b)),
+            (one, other) => one.or(other),
+        };
+    }
+    dimension.ok_or_else(|| "what is fertile does not multiply".into())
+}
+
+/// Returns the dimension of behaviours that lead to each other; `None` if they do not multiply.
+fn dimension_of_loops(size: usize, ratios: &[Ratio]) -> Result<Option<f64>, String> {
+    let edges = ratios.iter().map(|it| (it.from, it.to, it.ratio));
+    if !all_loops_shrink(size, &edges.collect::<Vec<_>>(), size) {
         return Err(NoLimit::DoesNotShrink.to_string());
     }
     let radius = |dimension: f64| {
         let mut matrix = vec![0.0; size * size];
-        for ratio in &ratios {
+        for ratio in ratios {
             let share = ratio.weight * libm::pow(ratio.ratio, dimension);
             matrix[ratio.from * size + ratio.to] += share;
         }
         dense_radius(matrix, size)
     };
     if radius(0.0) <= 1.0 {
-        return Err("what is fertile does not multiply".into());
+        return Ok(None);
     }
     let (mut low, mut high) = (0.0, 1.0);
     while radius(high) > 1.0 {
         (low, high) = (high, 2.0 * high);
     }
-    Ok(crossing(high, low, radius))
+    Ok(Some(crossing(high, low, radius)))
 }
 
 /// Adds the ratio of a fertile element, from a behaviour to an object.
@@ -117,24 +152,29 @@ fn push_instance<F: RuleFrame>(
     Ok(())
 }
 
-/// Adds the ratios of alternatives whose instances are fixed; returns `false` if they are not.
+/// Adds the ratios of alternatives whose instances depend on draws alone.
 fn push_drawn<F: RuleFrame>(
     ratios: &mut Vec<Ratio>,
     graph: &Graph<F>,
     (from, alternatives): (usize, &[Alternative]),
-) -> Result<bool, String> {
+) -> Result<(), String> {
     let source = graph.source();
-    let drawn = alternatives.iter().map(|it| source.drawn(it.generator));
-    let Some(drawn) = drawn.collect::<Option<Vec<_>>>() else {
-        return Ok(false);
-    };
-    let total: f64 = drawn.iter().map(|(_, weight)| weight).sum();
-    for (alternative, (chain, weight)) in alternatives.iter().zip(drawn) {
-        for (instance, &object) in chain.instances.iter().zip(&alternative.objects) {
-            push_instance(ratios, graph, [from, object], instance, weight / total)?;
+    let weights = alternatives.iter().map(|it| source.weight(it.generator));
+    let total: f64 = weights.sum();
+    for Alternative { generator, objects } in alternatives {
+        if source.weight(*generator) == 0.0 {
+            continue;
         }
+        let is_wanted = |number: usize| graph.is_fertile(objects[number]);
+        source.visit_draws(*generator, &is_wanted, &mut |number, instance, weight| {
+            if ratios.len() >= MAX_RATIOS {
+                return Err("too many numbers are drawn to integrate over".into());
+            }
+            let place = [from, objects[number]];
+            push_instance(ratios, graph, place, instance, weight / total)
+        })?;
     }
-    Ok(true)
+    Ok(())
 }
 
 /// Returns generators with their probabilities.
@@ -187,7 +227,11 @@ fn push_draws<F: RuleFrame>(
         length: 1.0,
     };
     let (mut scratch, mut points) = (Vec::new(), Vec::new());
-    for (values, share) in draws(generator, &moment)? {
+    let needed = vec![true; generator.variables().len()];
+    let Some(nodes) = nodes(generator.variables(), &needed, &moment.slots()) else {
+        return Err("too many numbers are drawn to integrate over".into());
+    };
+    for (values, share) in nodes {
         let draw = |_: &_, slots: &[f64]| values[slots.len()];
         generator.evaluate_with(&moment, draw, &mut scratch, &mut points);
         let elements = generator.elements().zip(&alternative.objects);
@@ -201,96 +245,4 @@ fn push_draws<F: RuleFrame>(
         }
     }
     Ok(())
-}
-
-/// Returns the nodes of all variables by slot, with weights: a product of quadratures.
-fn draws<F: RuleFrame>(
-    generator: &Generator<F>,
-    moment: &ElementContext,
-) -> Result<Vec<(Vec<f64>, f64)>, String> {
-    let mut draws = vec![(moment.slots().to_vec(), 1.0)];
-    for variable in generator.variables() {
-        let mut next = Vec::new();
-        for (slots, weight) in &draws {
-            for (value, share) in nodes(variable.distribution(), slots) {
-                let mut slots = slots.clone();
-                slots.push(value);
-                next.push((slots, weight * share));
-            }
-            if next.len() > MAX_DRAWS {
-                return Err("too many numbers are drawn to integrate over".into());
-            }
-        }
-        draws = next;
-    }
-    Ok(draws)
-}
-
-/// Returns the nodes and weights of a quadrature over a distribution.
-fn nodes(distribution: &Distribution, slots: &[f64]) -> Vec<(f64, f64)> {
-    match distribution {
-        Distribution::Uniform(low, high) => {
-            let (low, high) = (low.eval(slots), high.eval(slots));
-            let place = |(at, weight)| (low + (high - low) * at, weight);
-            legendre().into_iter().map(place).collect()
-        }
-        Distribution::Normal(mean, deviation) => {
-            let (mean, deviation) = (mean.eval(slots), deviation.eval(slots));
-            // The trapezoidal rule is exponentially accurate for the normal density.
-            const STEP: f64 = 0.25;
-            let height = STEP / std::f64::consts::TAU.sqrt();
-            let node = |k: i32| {
-                let at = f64::from(k) * STEP;
-                (mean + deviation * at, height * libm::exp(-at * at / 2.0))
-            };
-            (-33..=33).map(node).collect()
-        }
-        Distribution::Choice(values) => {
-            let weight = 1.0 / real(values.len());
-            values
-                .iter()
-                .map(|value| (value.eval(slots), weight))
-                .collect()
-        }
-    }
-}
-
-/// Returns the nodes and weights of Gauss–Legendre quadrature for the interval from 0 to 1.
-fn legendre() -> Vec<(f64, f64)> {
-    const COUNT: u32 = 20;
-    let count = f64::from(COUNT);
-    let node = |number: u32| {
-        let mut x = libm::cos(std::f64::consts::PI * (f64::from(number) + 0.75) / (count + 0.5));
-        let mut slope = 1.0;
-        for _ in 0..8 {
-            let (mut value, mut before) = (x, 1.0);
-            for degree in 2..=COUNT {
-                let n = f64::from(degree);
-                (value, before) = (
-                    ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n,
-                    value,
-                );
-            }
-            slope = count * (x * value - before) / (x * x - 1.0);
-            x -= value / slope;
-        }
-        (f64::midpoint(1.0, x), 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..COUNT).map(node).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Distribution, legendre, nodes};
-    use crate::expression::Program;
-
-    #[test]
-    fn moments_are_integrated() {
-        let third: f64 = legendre().iter().map(|(at, weight)| weight * at * at).sum();
-        assert!((third - 1.0 / 3.0).abs() < 1e-14, "{third}");
-        let [mean, deviation] = [3.0, 0.5].map(Program::constant);
-        let normal = nodes(&Distribution::Normal(mean, deviation), &[]);
-        let square: f64 = normal.iter().map(|(at, weight)| weight * at * at).sum();
-        assert!((square - 9.25).abs() < 1e-12, "{square}");
-    }
 }

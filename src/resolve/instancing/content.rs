@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
-use crate::instancing::{Master, ObjectAlternative, ObjectInstance};
+use crate::instancing::{FIRST, Master, ObjectAlternative, ObjectInstance};
 use crate::resolve::Resolver;
 
 use super::{MAX_OBJECTS, OfInstancing, Prepared, PreparedMaster, StructureMap, Union, bits};
@@ -45,6 +45,18 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         (instances, alternatives)
     }
 
+    /// Returns the slots of a level: representative values of random variables follow it.
+    pub(super) fn slots(&self, level: Option<f64>) -> Vec<f64> {
+        let mut slots: Vec<f64> = level.into_iter().collect();
+        if !self.kind.variables.is_empty() {
+            slots.resize(FIRST, 0.0);
+        }
+        for variable in &*self.kind.variables {
+            slots.push(variable.typical(&slots));
+        }
+        slots
+    }
+
     /// Adds some instances of a union at a level.
     fn add_instances(
         &mut self,
@@ -53,7 +65,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         level: Option<f64>,
         instances: &mut Vec<ObjectInstance<M>>,
     ) {
-        let slots: Vec<f64> = level.into_iter().collect();
+        let slots = self.slots(level);
         let whole = M::product(&union.transforms, &slots);
         for prepared in all {
             let map = M::product(&prepared.transforms, &slots);
@@ -82,11 +94,13 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                     Master::Object(_) => 1,
                 };
                 let transforms = Arc::clone(&prepared.transforms);
+                let forms = Arc::clone(&prepared.forms);
                 instances.push(ObjectInstance {
                     map,
                     master,
                     tint,
                     transforms,
+                    forms,
                 });
             }
         }

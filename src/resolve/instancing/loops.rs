@@ -1,10 +1,12 @@
 //! Check that the loops of an instancing graph contract.
 
+use std::collections::BTreeSet;
+
 use crate::digraph::{all_loops_shrink, components};
 use crate::document::InstancingDocument;
-use crate::geometry::Linear;
-use crate::ifs::{Contraction, Verdict};
-use crate::instancing::{Instancing, Master};
+use crate::geometry::{Linear, Point as _};
+use crate::ifs::{Contraction, PointOf, Verdict};
+use crate::instancing::{Instancing, Master, ObjectInstance, cells_of_each};
 use crate::resolve::Resolver;
 
 use super::{OfInstancing, StructureMap};
@@ -18,10 +20,14 @@ const MAX_LOOKS: usize = 10_000_000;
 const UNKNOWN: &str = "it can be grown by a number of steps, but its limit is not known";
 
 /// An instance that lies on a loop.
-struct Edge<L> {
+struct Edge<'s, M: StructureMap> {
     from: usize,
     to: usize,
-    linear: L,
+    /// Number of the strongly connected component of its ends.
+    component: usize,
+    instance: &'s ObjectInstance<M>,
+    /// Whether its map is drawn.
+    is_drawn: bool,
 }
 
 impl<M: StructureMap> Resolver<OfInstancing<M>> {
@@ -31,16 +37,33 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         document: &InstancingDocument,
         structure: &Instancing<M>,
     ) -> Option<()> {
-        let edges = edges(structure);
+        let mut edges = edges(structure);
         let objects = structure.objects.len();
-        let stretches = edges
-            .iter()
-            .map(|edge| (edge.from, edge.to, edge.linear.stretch()));
+        let cells = cells_of_each(edges.iter().filter(|edge| edge.is_drawn).count());
+        let stretches =
+            { edges.iter() }.map(|edge| (edge.from, edge.to, stretch(structure, edge, cells)));
         let rounds = objects.min(MAX_LOOKS / edges.len().max(1));
         if all_loops_shrink(objects, &stretches.collect::<Vec<_>>(), rounds) {
             return Some(());
         }
-        let linear: Vec<M::Linear> = edges.iter().map(|edge| edge.linear).collect();
+        // Loops with drawn maps are decided by their largest stretches, others by their maps.
+        let is_drawn: BTreeSet<usize> = { edges.iter().filter(|edge| edge.is_drawn) }
+            .map(|edge| edge.component)
+            .collect();
+        let drawn = edges.extract_if(.., |edge| is_drawn.contains(&edge.component));
+        let drawn: Vec<_> = { drawn }
+            .map(|edge| (edge.from, edge.to, stretch(structure, &edge, cells)))
+            .collect();
+        if !all_loops_shrink(objects, &drawn, rounds) {
+            let message = "draws do not let it be decided whether all loops contract";
+            self.warn(&document.metadata.place.first_line(), message, UNKNOWN);
+        }
+        if edges.is_empty() {
+            return Some(());
+        }
+        let linear: Vec<M::Linear> = { edges.iter() }
+            .map(|edge| structure.map_of(edge.instance).linear())
+            .collect();
         // The map that is applied after an instance's map is that of an instance of its object.
         let mut outer = vec![Vec::new(); structure.objects.len()];
         for (number, edge) in edges.iter().enumerate() {
@@ -85,13 +108,18 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
 }
 
 /// Returns the instances of objects in objects that lie on loops.
-fn edges<M: StructureMap>(structure: &Instancing<M>) -> Vec<Edge<M::Linear>> {
+fn edges<M: StructureMap>(structure: &Instancing<M>) -> Vec<Edge<'_, M>> {
     let mut edges = Vec::new();
     for (from, object) in structure.objects.iter().enumerate() {
         for instance in &object.instances {
             if let Master::Object(to) = instance.master {
-                let linear = structure.map_of(instance).linear();
-                edges.push(Edge { from, to, linear });
+                edges.push(Edge {
+                    from,
+                    to,
+                    component: 0,
+                    instance,
+                    is_drawn: instance.needed(&structure.variables).contains(&true),
+                });
             }
         }
     }
@@ -101,5 +129,23 @@ fn edges<M: StructureMap>(structure: &Instancing<M>) -> Vec<Edge<M::Linear>> {
     }
     let component = components(&targets);
     edges.retain(|edge| component[edge.from] == component[edge.to]);
+    for edge in &mut edges {
+        edge.component = component[edge.from];
+    }
     edges
+}
+
+/// Returns the stretch of an instance's map, or an upper bound of it if the map is drawn, by a number of cells of the draws.
+fn stretch<M: StructureMap>(structure: &Instancing<M>, edge: &Edge<'_, M>, cells: usize) -> f64 {
+    let map = structure.map_of(edge.instance);
+    if !edge.is_drawn {
+        return map.linear().stretch();
+    }
+    let inner = &structure.objects[edge.to].map;
+    let level = structure.objects[edge.from].level();
+    let drawn = (structure.variables(), level, cells);
+    let extent = edge
+        .instance
+        .extent_of_draws(inner, drawn, f64::INFINITY, PointOf::<M>::ZERO);
+    extent.length
 }

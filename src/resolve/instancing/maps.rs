@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::document::{ShapeDocument, TransformDocument, WrittenNumber};
-use crate::expression::{Affine, Arithmetic, Doubles, Program, Scope, Symbols};
+use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3, DVec3, Round, Solid};
 use crate::ifs::{AffineMap, Shape};
 use crate::resolve::Resolver;
@@ -18,9 +18,6 @@ pub(in crate::resolve) trait StructureMap: AffineMap {
         document: &TransformDocument,
         scope: &Scope,
     ) -> Option<Self::Written>;
-
-    /// Computes the product of transforms, of which the first one is applied first.
-    fn product(transforms: &[Self::Written], slots: &[f64]) -> Self;
 
     /// Resolves a set. Reports mistakes and returns `None`.
     fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Self::Set>;
@@ -62,15 +59,17 @@ impl StructureMap for DAffine2 {
                 let turn = of.turn(&angle);
                 Affine::rotation(of, turn)
             }
+            TransformDocument::TranslateBack(shift) => {
+                let back = two(&shift.x, &shift.y);
+                let back = back.each_ref().map(|it| of.negate(it));
+                Affine::identity(of).moved_to(back)
+            }
+            TransformDocument::Linear(map) => resolver.linear_in_scope::<Self, 2>(map, scope)?,
             // The notations of space were not read.
             TransformDocument::ScaleInSpace(_)
             | TransformDocument::Turns(_)
             | TransformDocument::MatrixInSpace(_) => return None,
         })
-    }
-
-    fn product(transforms: &[Affine<Program>], slots: &[f64]) -> Self {
-        Affine::product(&mut Doubles, transforms, slots).into()
     }
 
     fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Shape> {
@@ -121,15 +120,17 @@ impl StructureMap for DAffine3 {
                 }
                 all
             }
+            TransformDocument::TranslateBack(shift) => {
+                let back = resolver.point_in_scope(shift, scope);
+                let back = back.each_ref().map(|it| of.negate(it));
+                Affine::identity(of).moved_to(back)
+            }
             // The notations of the plane were not read.
             TransformDocument::Scale(_)
             | TransformDocument::Rotate(_)
-            | TransformDocument::Matrix(_) => return None,
+            | TransformDocument::Matrix(_)
+            | TransformDocument::Linear(_) => return None,
         })
-    }
-
-    fn product(transforms: &[Affine<Program, 3>], slots: &[f64]) -> Self {
-        Affine::product(&mut Doubles, transforms, slots).into()
     }
 
     fn set<K>(resolver: &mut Resolver<K>, document: &ShapeDocument) -> Option<Arc<[Solid]>> {
