@@ -190,7 +190,7 @@ fn dimensions_are_expected_ones() {
     assert!(dimension(&uniform.replace("{scale: r, rotate: turn}", "{scale: [r, 1/3]}")).is_none());
 }
 
-/// What surely shrinks is known from its ranges, at any angle; other loops are drawn by their steps.
+/// Loops that shrink for all draws are known from the ranges, at any angle; others are drawn by their steps.
 #[test]
 fn loops_that_may_grow_are_warned_of() {
     let warnings = |text: &str| {
