@@ -21,10 +21,11 @@ def mapped(function: Callable[[Any], Any], values: Sequence[Any], parts: int) ->
     tasks = [work.remote(values[start : start + size]) for start in range(0, len(values), size)]
     try:
         results: list[list[Any]] = ray.get(tasks)
-        return [result for part in results for result in part]
-    finally:
-        for task in tasks:  # After a failure or Ctrl-C; what is done stays done.
+    except BaseException:  # A failure, or Ctrl-C. Ray may abort if tasks are cancelled that have just ended.
+        for task in tasks:
             ray.cancel(task)
+        raise
+    return [result for part in results for result in part]
 
 
 def pictures(dataset: Dataset | str, numbers: range, parts: int) -> Batch:
