@@ -183,9 +183,14 @@ try {
     }
     await studio.end();
   }
-  const page = ["studio.html", "studio.css", "studio.js", "design.js"].map((name) => join(root, "src/studio/page", name));
-  const lines = page.map((path) => readFileSync(path, "utf8").split("\n").length - 1).reduce((a, b) => a + b);
-  row("the page", `${(page.map((path) => statSync(path).size).reduce((a, b) => a + b) / 1000).toFixed(0)} kB, ${lines} lines`, "90 kB, 1,500 lines");
+  const size = (names) => {
+    const paths = names.map((name) => join(root, "src/studio/page", name));
+    const bytes = paths.map((path) => statSync(path).size).reduce((a, b) => a + b);
+    const lines = paths.map((path) => readFileSync(path, "utf8").split("\n").length - 1).reduce((a, b) => a + b);
+    return `${(bytes / 1000).toFixed(0)} kB, ${lines} lines`;
+  };
+  row("the page as it is loaded", size(["studio.html", "studio.css", "studio.js", "film.js"]), "90 kB, 1,500 lines");
+  row("figures of a design, loaded when they are seen first", size(["design.js"]), "");
   const crates = (features) => new Set(execFileSync("cargo", ["tree", "--locked", "-e", "normal", "--prefix", "none", ...features], { cwd: root, encoding: "utf8" }).trim().split("\n").map((line) => line.replace(" (*)", ""))).size;
   const without = ["--no-default-features", "--features", "cli"];
   row("crates with and without", `${crates([])}, ${crates(without)}`, "30 more");

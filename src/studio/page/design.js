@@ -21,7 +21,7 @@ const button = (text, act, more = {}) => page.make("button", { type: "button", c
 
 export function start(lent) {
   page = lent;
-  $("design-grid").onchange = $("design-parts").onchange = $("design-lock").onchange = show;
+  $("design-grid").onchange = $("design-parts").onchange = $("design-lock").onchange = $("design-table").ontoggle = show;
   document.addEventListener("keydown", keys, true);
 }
 

@@ -1,6 +1,5 @@
 // The page of the studio: a screen and a hand. Whatever is decided is decided by the server.
 
-import * as design from "./design.js";
 import * as film from "./film.js";
 
 const $ = (id) => document.getElementById(id);
@@ -956,6 +955,13 @@ async function travel(path) {
 }
 $("undo").onclick = () => travel("/undo");
 $("redo").onclick = () => travel("/redo");
+let design = null;
+/** Shows the figures of the open design, whose code is loaded when they are seen first. */
+async function figures() {
+  if ($("design").hidden) return;
+  design ??= import("./design.js").then((it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state }), it));
+  (await design).show();
+}
 const tabs = [...document.querySelectorAll("[role=tab]")];
 function openTab(button, focuses = false) {
   tabs.forEach((it) => {
@@ -968,7 +974,7 @@ function openTab(button, focuses = false) {
   if (button.id === "tab-library") library().catch((error) => say(error.message));
   if (button.id === "tab-text") mark();
   document.body.classList.toggle("designs", button.id === "tab-design");
-  if (button.id === "tab-design" && state.design !== undefined) design.show();
+  if (state.design !== undefined) figures();
 }
 tabs.forEach((button, at) => {
   button.onclick = () => openTab(button);
@@ -1026,7 +1032,7 @@ function take(next) {
     draw(drags);
     if (!drags) recount();
   }
-  if (!$("design").hidden) design.show();
+  figures();
 }
 const refresh = async () => take(await json("GET", "/state"));
 let counting = 0;
@@ -1069,9 +1075,7 @@ async function follow() {
   }
 }
 
-design.start({ tab, json, make, take, ask, stepNow, state: () => state });
 film.start({ tab, json, make, say, values, changed, state: () => state, look: () => look });
-$("design-table").ontoggle = design.show;
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
