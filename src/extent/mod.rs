@@ -24,5 +24,6 @@ pub use bounded::{Bounded, Fineness, Hulls, LinearOf, Own};
 pub use bounding_box::bounding_box;
 pub use bounds::ApproximantBounds;
 pub(crate) use bounds::settled;
+pub(crate) use contract::Products;
 pub use limit::{Limit, NoLimit};
 pub(crate) use search::{Reaches, search};

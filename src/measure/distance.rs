@@ -1,11 +1,12 @@
 //! The Hausdorff distance of two sets: both are covered by points, and the points are compared.
 
+mod cells;
 mod cover;
 mod covering;
 mod hausdorff;
 mod nearest;
 mod region;
-mod squares;
+mod words;
 
 pub use cover::{NoCover, Subject, Subset};
 pub use covering::Covering;

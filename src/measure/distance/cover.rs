@@ -6,6 +6,7 @@ use crate::geometry::{Affine, Bounds, Frame, Frame2, Linear, Point};
 use crate::graph::{Graph, Replacement};
 use crate::grow::{Element, Growth, Visitor, WalkError, walk};
 
+use super::cells::Cells;
 use super::covering::Covering;
 use super::region::{Region, TooMany};
 
@@ -80,7 +81,7 @@ impl<'a, F: Covering> Subject<'a, F> {
     ///
     /// Copies that are small enough become one point each, in the centre of a disc that holds the copy, and
     /// of points that are near each other one is kept. Limit sets whose copies overlap heavily are covered by
-    /// squares of grids instead.
+    /// cells of grids instead.
     ///
     /// # Errors
     ///
@@ -150,7 +151,7 @@ const OVERLAPPING: usize = 12;
 /// Number of copies that are examined before overlaps are judged.
 const FEW: usize = 4096;
 
-/// Covers a limit set by its copies that are as small as the radius, or by squares where copies overlap
+/// Covers a limit set by its copies that are as small as the radius, or by cells of grids where copies overlap
 /// heavily.
 fn cover_limit<F: Covering>(
     graph: &Graph<F>,
@@ -163,13 +164,14 @@ fn cover_limit<F: Covering>(
     let mut open: Vec<(usize, F::Map)> = Vec::new();
     let initiator = graph.initiator(0).instances.iter().rev();
     open.extend(initiator.map(|instance| (instance.object, *instance.frame.map())));
-    let (mut looked_at, mut may_be_squares) = (0, true);
+    let (mut looked_at, mut may_be_cells) = (0, true);
     while let Some((number, map)) = open.pop() {
         looked_at += 1;
-        if may_be_squares && looked_at > FEW + OVERLAPPING * region.visited() {
-            may_be_squares = false;
-            if F::cover_by_squares(graph, most, region)? {
-                return Ok(());
+        if may_be_cells && looked_at > FEW + OVERLAPPING * region.visited() {
+            may_be_cells = false;
+            // Where cells fail because there are too many of them, copies may suffice.
+            if let Ok(Some(cells)) = Cells::found(graph, region.radius, most) {
+                return cells.visit(region).map_err(NoCover::TooMany);
             }
         }
         if !alive[number] {

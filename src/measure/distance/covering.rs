@@ -5,13 +5,16 @@ use crate::fast_hash::FastMap;
 use crate::geometry::{
     BaseElement, Bounds, DAffine2, DAffine3, DVec2, DVec3, Frame2, Frame3, Round, Solid,
 };
-use crate::graph::Graph;
+
+use crate::saturating::whole;
 
 use super::region::{Covered, CoveredSquares, Region, TooMany, radius_of};
-use super::squares::Squares;
 
 /// Frames whose sets are covered by points.
 pub trait Covering: Bounded {
+    /// Sides of a tile of 64 cells.
+    const TILE: [usize; 3];
+
     /// Returns an empty memory of the places of a box that are within a radius of visited points; `None` if it would
     /// take too much room.
     fn covered(bounds: &Bounds<Self::Point>, radius: f64) -> Option<Box<dyn Covered<Self::Point>>>;
@@ -29,22 +32,11 @@ pub trait Covering: Bounded {
         outline: &Self::Outline,
         map: &Self::Map,
     ) -> Result<(), TooMany>;
-
-    /// Covers a limit set by squares of grids; returns `false` if there are none, or too many.
-    ///
-    /// # Errors
-    ///
-    /// If that takes too many points.
-    fn cover_by_squares(
-        _graph: &Graph<Self>,
-        _most: usize,
-        _region: &mut Region<'_, Self::Point>,
-    ) -> Result<bool, TooMany> {
-        Ok(false)
-    }
 }
 
 impl Covering for Frame2 {
+    const TILE: [usize; 3] = [8, 8, 1];
+
     fn covered(bounds: &Bounds, radius: f64) -> Option<Box<dyn Covered<DVec2>>> {
         let covered = CoveredSquares::new(bounds, radius)?;
         Some(Box::new(covered))
@@ -61,24 +53,13 @@ impl Covering for Frame2 {
     ) -> Result<(), TooMany> {
         region.add_outline(outline, map)
     }
-
-    fn cover_by_squares(
-        graph: &Graph,
-        most: usize,
-        region: &mut Region<'_>,
-    ) -> Result<bool, TooMany> {
-        // Where squares fail because there are too many of them, copies may suffice.
-        let Ok(Some(squares)) = Squares::found(graph, region.radius, most) else {
-            return Ok(false);
-        };
-        squares.visit(region)?;
-        Ok(true)
-    }
 }
 
 impl Covering for Frame3 {
-    fn covered(_: &Bounds<DVec3>, radius: f64) -> Option<Box<dyn Covered<DVec3>>> {
-        Some(Box::new(CoveredBalls::new(radius)))
+    const TILE: [usize; 3] = [4, 4, 4];
+
+    fn covered(bounds: &Bounds<DVec3>, radius: f64) -> Option<Box<dyn Covered<DVec3>>> {
+        Some(Box::new(CoveredBalls::new(bounds.min(), radius)))
     }
 
     fn radius_of(solid: &Solid, middle: DVec3) -> f64 {
@@ -218,17 +199,22 @@ fn halves(corners: [DVec3; 4]) -> [[DVec3; 4]; 2] {
 
 /// Balls of one radius about points, by cells of a grid of that side.
 struct CoveredBalls {
+    corner: DVec3,
     radius: f64,
     centres: Vec<DVec3>,
-    /// Number of the last centre in each cell.
-    last: FastMap<[i64; 3], u32>,
+    /// Number of the last centre in each cell, whose coordinates are packed.
+    last: FastMap<u64, u32>,
     /// Number of the centre before each in its cell.
     before: Vec<Option<u32>>,
 }
 
 impl CoveredBalls {
-    fn new(radius: f64) -> Self {
+    /// Number of bits of a coordinate of a cell. Cells beyond are one with the last ones.
+    const BITS: u32 = 21;
+
+    fn new(corner: DVec3, radius: f64) -> Self {
         Self {
+            corner: corner - radius,
             radius,
             centres: Vec::new(),
             last: FastMap::default(),
@@ -236,13 +222,14 @@ impl CoveredBalls {
         }
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "casts from floats saturate"
-    )]
-    fn cell(&self, point: DVec3) -> [i64; 3] {
-        let cell = (point / self.radius).floor();
-        cell.to_array().map(|it| it as i64)
+    fn cell(&self, point: DVec3) -> [usize; 3] {
+        let cell = (point - self.corner) / self.radius;
+        cell.to_array()
+            .map(|it| whole(it).min((1 << Self::BITS) - 1))
+    }
+
+    fn key([x, y, z]: [usize; 3]) -> u64 {
+        (((z << Self::BITS) + y) << Self::BITS) as u64 + x as u64
     }
 }
 
@@ -258,7 +245,7 @@ impl Covered<DVec3> for CoveredBalls {
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let mut next = self.last.get(&[x, y, z]).copied();
+                    let mut next = self.last.get(&Self::key([x, y, z])).copied();
                     while let Some(number) = next {
                         let centre = self.centres[number as usize];
                         if centre.distance_squared(middle) <= spare * spare {
@@ -276,7 +263,8 @@ impl Covered<DVec3> for CoveredBalls {
         let Ok(number) = u32::try_from(self.centres.len()) else {
             return;
         };
-        let before = self.last.insert(self.cell(middle), number);
+        let key = Self::key(self.cell(middle));
+        let before = self.last.insert(key, number);
         self.centres.push(middle);
         self.before.push(before);
     }
