@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use kfrac::catalogue::Catalogue;
-use kfrac::dataset::{DatasetError, Example, WeightedMap};
+use kfrac::dataset::{DatasetError, Example, Maps};
 use kfrac::diagnostic::Source;
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyIndexError;
@@ -149,17 +149,18 @@ impl Dataset {
     /// -------
     /// dict
     ///     `category`, `name` of the category, `instance`; `maps`, rows a, b, c, d, e, f and weight with x' = a x + b y + e,
-    ///     y' = c x + d y + f (empty for other fractals); `parameters` of the file; `flip`: 0 none, 1 from top to bottom, 2 from
-    ///     left to right, 3 both; `dimension`, exact or None.
+    ///     y' = c x + d y + f, or in space the matrix row by row, the image of the origin and the weight (empty for other
+    ///     fractals); `parameters` of the file; `flip`: 0 none, 1 from top to bottom, 2 from left to right, 3 both; `from`,
+    ///     azimuth and elevation of the viewer in degrees, or None in the plane; `dimension`, exact or None.
     fn label<'py>(&self, py: Python<'py>, index: i64) -> PyResult<Bound<'py, PyDict>> {
         let index = self.index(index)?;
         let (label, dimension, name, (category, instance)) = quick(py, || {
             let label = self.set.label(index)?;
             let place = self.set.place(index)?;
             let of = self.set.category(place.0)?;
-            let dimension = match label.maps.is_empty() {
-                true => of.dimension().and_then(|it| it.value),
-                false => label.dimension().and_then(|it| it.value),
+            let dimension = match &label.maps {
+                None => of.dimension().and_then(|it| it.value),
+                Some(_) => label.dimension().and_then(|it| it.value),
             };
             Ok((label, dimension, of.name(), place))
         })?;
@@ -167,14 +168,14 @@ impl Dataset {
         all.set_item("category", category)?;
         all.set_item("name", name)?;
         all.set_item("instance", instance)?;
-        let maps = label.maps.iter().map(WeightedMap::row).collect::<Vec<_>>();
-        all.set_item("maps", maps)?;
+        all.set_item("maps", label.maps.as_ref().map(Maps::rows).unwrap_or_default())?;
         let parameters = PyDict::new(py);
         for (name, value) in label.parameters {
             parameters.set_item(name, value)?;
         }
         all.set_item("parameters", parameters)?;
         all.set_item("flip", label.flip)?;
+        all.set_item("from", label.from)?;
         all.set_item("dimension", dimension)?;
         Ok(all)
     }

@@ -3,16 +3,20 @@
 use std::num::NonZero;
 use std::sync::OnceLock;
 
-use crate::chaos::Game;
+use crate::chaos::{Game, Walked};
 use crate::document::{Fit, Law, Mode};
 use crate::draws::{Path, Variable};
 use crate::fractal::Fractal;
+use crate::geometry::{Affine, DAffine2, DAffine3, DVec3};
+use crate::ifs::Ifs;
 use crate::measure::exact::{Effort, GraphDirectedSystem, Hausdorff, dimensions_within};
 use crate::model::Model;
+use crate::random::Pcg;
 use crate::render::Levels;
-use crate::style::{Style, View};
+use crate::render::space::SpaceOptions;
+use crate::style::{Camera, Style, View};
 
-use super::maps::{Attractor, WeightedMap, weighted};
+use super::maps::{Attractor, Drawable, Maps, WeightedMap, weighted};
 use super::picture::Plain;
 use super::random::{anderson, below, by_coefficients};
 use super::spec::{Origin, Spec};
@@ -52,19 +56,21 @@ pub struct Example {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Label {
-    /// Maps of the system, after variation; empty for other fractals.
-    pub maps: Vec<WeightedMap>,
+    /// Maps of the system, after variation; `None` for other fractals.
+    pub maps: Option<Maps>,
     /// Parameters of the file, with their values.
     pub parameters: Vec<(String, f64)>,
     /// Flip: 0 none, 1 from top to bottom, 2 from left to right, 3 both.
     pub flip: u8,
+    /// Azimuth and elevation of the viewer of a set in space, in degrees, as of [`Camera::from`].
+    pub from: Option<[f64; 2]>,
 }
 
 /// Set of which a category is.
 #[derive(Clone, Debug)]
 enum Subject {
     /// A system of maps, any of which may follow any.
-    Maps(Vec<WeightedMap>),
+    Maps(Maps),
     /// Any other fractal.
     Fractal(Box<Fractal>),
     /// A family whose members the pictures draw.
@@ -87,11 +93,32 @@ impl Category {
             });
         };
         let (name, subject, attempts) = match origin {
-            Origin::Random { maps, law, .. } => {
-                let (maps, attempts) = drawn(spec, number, *maps, *law)?;
+            Origin::Random {
+                maps,
+                law,
+                is_in_space,
+                ..
+            } => {
+                let (maps, attempts) = match (is_in_space, law) {
+                    (false, Law::Anderson) => {
+                        let (maps, attempts) = drawn(spec, number, *maps, anderson)?;
+                        (Maps::Plane(maps), attempts)
+                    }
+                    (false, Law::Uniform) => {
+                        let (maps, attempts) = drawn(spec, number, *maps, by_coefficients)?;
+                        (Maps::Plane(maps), attempts)
+                    }
+                    (true, _) => {
+                        let (maps, attempts) = drawn(spec, number, *maps, by_coefficients)?;
+                        (Maps::Space(maps), attempts)
+                    }
+                };
                 (String::new(), Subject::Maps(maps), attempts)
             }
-            Origin::Table { name, maps } => (name.clone(), Subject::Maps(maps.clone()), 1),
+            Origin::Table { name, maps } => {
+                let maps = Maps::Plane(maps.clone());
+                (name.clone(), Subject::Maps(maps), 1)
+            }
             Origin::Family {
                 name,
                 fractal,
@@ -145,12 +172,12 @@ impl Category {
         self.attempts
     }
 
-    /// Returns the maps before variation; empty for other fractals.
+    /// Returns the maps before variation; `None` for other fractals.
     #[must_use]
-    pub fn maps(&self) -> &[WeightedMap] {
+    pub fn maps(&self) -> Option<&Maps> {
         match &self.subject {
-            Subject::Maps(maps) => maps,
-            _ => &[],
+            Subject::Maps(maps) => Some(maps),
+            _ => None,
         }
     }
 
@@ -176,7 +203,9 @@ impl Category {
 
     /// Works out what a picture shows, and its label.
     pub(super) fn prepare(&self, spec: &Spec, instance: u32) -> Result<Prepared, DatasetError> {
-        let path = path_of(spec, self.number).child(1).child(instance);
+        let views = spec.views.filter(|_| self.subject.is_in_space());
+        let variation = views.map_or(instance, |views| views.variation(instance));
+        let path = path_of(spec, self.number).child(1).child(variation);
         let failed = |reason: &str| DatasetError::Picture {
             category: self.number,
             instance,
@@ -188,20 +217,34 @@ impl Category {
             }
             subject => subject,
         };
-        let flip = match spec.flips {
-            true => u8::try_from(instance / spec.weights.period() % 4).unwrap_or(0),
-            false => 0,
+        let coefficients = match subject {
+            Subject::Maps(Maps::Space(_)) => DAffine3::COEFFICIENTS,
+            _ => DAffine2::COEFFICIENTS,
         };
+        let round = variation as usize / spec.weights.period(coefficients);
+        let from = views.map(|views| views.direction(instance, path));
         let mut label = Label {
-            flip,
+            flip: match spec.flips {
+                true => u8::try_from(round % 4).unwrap_or(0),
+                false => 0,
+            },
+            from,
             ..Label::default()
         };
+        let diverges = || failed("its walks diverge");
+        let weights = spec.weights;
         let shown = match subject {
-            Subject::Maps(maps) => {
-                let varied = spec.weights.vary(maps, instance, path);
-                let (maps, attractor) = varied.ok_or_else(|| failed("its walks diverge"))?;
-                label.maps = maps;
-                Shown::Attractor(attractor)
+            Subject::Maps(Maps::Plane(maps)) => {
+                let varied = weights.vary(maps, variation, path, DAffine2::IDENTITY);
+                let (maps, attractor) = varied.ok_or_else(diverges)?;
+                label.maps = Some(Maps::Plane(maps));
+                Shown::Plane(attractor)
+            }
+            Subject::Maps(Maps::Space(maps)) => {
+                let varied = weights.vary(maps, variation, path, seen(from.unwrap_or_default()));
+                let (maps, attractor) = varied.ok_or_else(diverges)?;
+                label.maps = Some(Maps::Space(maps));
+                Shown::Space(attractor)
             }
             Subject::Fractal(fractal) | Subject::Family(fractal, _) => {
                 label.parameters = parameters(fractal);
@@ -220,7 +263,8 @@ impl Category {
 
 /// Contents of a picture.
 enum Shown {
-    Attractor(Attractor),
+    Plane(Attractor<DAffine2>),
+    Space(Attractor<DAffine3>),
     Fractal(Box<Fractal>),
 }
 
@@ -248,14 +292,13 @@ impl Prepared {
             instance,
             reason,
         };
+        let no_size = || failed("it has no size".into());
         let plain = match shown {
-            Shown::Attractor(attractor) => {
-                let histogram = attractor.histogram(spec.size, spec.fit, &game(spec.points, path));
-                let histogram = histogram.ok_or_else(|| failed("it has no size".into()))?;
-                Plain::of_hits(&histogram, spec.mode)
-            }
+            Shown::Plane(attractor) => plain(&attractor, spec, path).ok_or_else(no_size)?,
+            Shown::Space(attractor) => plain(&attractor, spec, path).ok_or_else(no_size)?,
             Shown::Fractal(fractal) => {
-                drawing(&fractal, spec, path).map_err(|error| failed(error.to_string()))?
+                let drawn = drawing(&fractal, spec, label.from, path);
+                drawn.map_err(|error| failed(error.to_string()))?
             }
         };
         let plain = match spec.mode {
@@ -276,47 +319,65 @@ impl Label {
     /// Returns the dimension of the system that was drawn, as far as it is decided in a moment; `None` for other fractals.
     #[must_use]
     pub fn dimension(&self) -> Option<Hausdorff> {
-        dimension(&self.maps)
+        dimension(self.maps.as_ref()?)
     }
 }
 
 impl Subject {
     fn of(fractal: Fractal) -> Self {
-        if let Model::Ifs(system) = fractal.model() {
-            let ifs = system.ifs();
-            let is_plain = !ifs.is_recurrent() && ifs.condensation().is_empty();
-            if is_plain {
-                let maps = ifs.maps().iter().zip(ifs.weights());
-                let maps = maps.map(|(map, weight)| WeightedMap::new(map.affine, *weight));
-                return Self::Maps(maps.collect());
-            }
+        let maps = match fractal.model() {
+            Model::Ifs(system) => plain_maps(system.ifs()).map(Maps::Plane),
+            Model::IfsInSpace(system) => plain_maps(system.ifs()).map(Maps::Space),
+            _ => None,
+        };
+        maps.map_or_else(|| Self::Fractal(Box::new(fractal)), Self::Maps)
+    }
+
+    fn is_in_space(&self) -> bool {
+        match self {
+            Self::Maps(maps) => matches!(maps, Maps::Space(_)),
+            Self::Fractal(fractal) | Self::Family(fractal, _) => fractal.model().is_in_space(),
         }
-        Self::Fractal(Box::new(fractal))
     }
 }
 
-/// Draws systems until one is accepted; returns it with the number of systems.
-fn drawn(
+/// Returns the maps of a system any of which may follow any, with their weights; `None` for others.
+fn plain_maps<M: Walked>(ifs: &Ifs<M>) -> Option<Vec<WeightedMap<M>>> {
+    let is_plain = !ifs.is_recurrent() && ifs.condensation().is_empty();
+    is_plain.then(|| {
+        let maps = ifs.maps().iter().zip(ifs.weights());
+        let maps = maps.map(|(map, weight)| WeightedMap::new(map.affine, *weight));
+        maps.collect()
+    })
+}
+
+/// Returns the rotation to the coordinates of the view from a direction, by azimuth and elevation in degrees.
+fn seen(from: [f64; 2]) -> DAffine3 {
+    // No vector is up but the axis y, which every direction has.
+    let rotation = Camera::default().from(from).rotation();
+    rotation.map_or(DAffine3::IDENTITY, |it| Affine::new(it, DVec3::ZERO))
+}
+
+/// Draws systems until one is accepted; returns it with the number of systems. A system in space is accepted by the view from
+/// the front.
+fn drawn<M: Drawable>(
     spec: &Spec,
     category: u32,
     [least, most]: [u32; 2],
-    law: Law,
-) -> Result<(Vec<WeightedMap>, u32), DatasetError> {
+    law: impl Fn(&mut Pcg, u32) -> Vec<M>,
+) -> Result<(Vec<WeightedMap<M>>, u32), DatasetError> {
     let (size, points) = TRIAL;
     for attempt in 0..MAX_ATTEMPTS {
         let path = path_of(spec, category).child(0).child(attempt);
         let mut random = path.random("system");
         let count = least + below(&mut random, most - least + 1);
-        let maps = weighted(match law {
-            Law::Anderson => anderson(&mut random, count),
-            Law::Uniform => by_coefficients(&mut random, count),
-        });
-        let Some(attractor) = Attractor::of(&maps) else {
+        let maps = weighted(law(&mut random, count));
+        let Some(attractor) = Attractor::of(&maps, M::IDENTITY) else {
             continue;
         };
         let is_full = spec.fill == 0.0 || {
-            let histogram = attractor.histogram(size, Fit::Box, &game(points, path));
-            histogram.is_some_and(|it| share(it.counts(0)) >= spec.fill)
+            let hits = attractor.hits(size, Fit::Box, &game(points, path));
+            hits.is_some_and(|it| share(&it) >= spec.fill)
         };
         if is_full {
             return Ok((maps, attempt + 1));
@@ -338,7 +399,7 @@ fn share(counts: &[u32]) -> f64 {
 }
 
 /// Returns the game of a picture; pictures are shared between threads, and points are not.
-fn game(points: u64, path: Path) -> Game<'static> {
+fn game<P>(points: u64, path: Path) -> Game<'static, P> {
     Game {
         points,
         seed: path.random("points").bits(),
@@ -368,12 +429,26 @@ fn parameters(fractal: &Fractal) -> Vec<(String, f64)> {
     parameters.map(|it| (it.name.clone(), it.value)).collect()
 }
 
-/// Draws a fractal that is no plain system of maps.
-fn drawing(fractal: &Fractal, spec: &Spec, path: Path) -> Result<Plain, crate::Error> {
+/// Draws the attractor of a system of maps; `None` if it has no size.
+fn plain<M: Drawable>(attractor: &Attractor<M>, spec: &Spec, path: Path) -> Option<Plain> {
+    let hits = attractor.hits(spec.size, spec.fit, &game(spec.points, path))?;
+    Some(Plain::of_hits(&hits, spec.size, spec.mode))
+}
+
+/// Draws a fractal that is no plain system of maps, in space from a direction.
+fn drawing(
+    fractal: &Fractal,
+    spec: &Spec,
+    from: Option<[f64; 2]>,
+    path: Path,
+) -> Result<Plain, crate::Error> {
     let size = (spec.size, spec.size);
     let style = fractal.model().metadata().style.clone();
+    let mut space = SpaceOptions::from(&fractal.model().space_view());
+    space.camera.from = from.unwrap_or(space.camera.from);
     let fractal = fractal
         .clone()
+        .space(space)
         .threads(NonZero::<usize>::MIN)
         .seed(path.random("points").bits())
         .style(Style {
@@ -387,14 +462,16 @@ fn drawing(fractal: &Fractal, spec: &Spec, path: Path) -> Result<Plain, crate::E
     if let Model::Ifs(_) = fractal.model()
         && let Ok(histogram) = fractal.histogram(spec.points, size)
     {
-        return Ok(Plain::of_hits(&histogram, spec.mode));
+        return Ok(Plain::of_hits(histogram.counts(0), spec.size, spec.mode));
     }
     Ok(Plain::of_pixels(&fractal.pixels(size)?, spec.mode))
 }
 
 /// Returns the dimension of a system of maps.
-fn dimension(maps: &[WeightedMap]) -> Option<Hausdorff> {
-    let copies = maps.iter().map(|map| (0, 0, map.map));
-    let system = GraphDirectedSystem::plane(copies)?;
+fn dimension(maps: &Maps) -> Option<Hausdorff> {
+    let system = match maps {
+        Maps::Plane(maps) => GraphDirectedSystem::plane(maps.iter().map(|it| (0, 0, it.map))),
+        Maps::Space(maps) => GraphDirectedSystem::space(maps.iter().map(|it| (0, 0, it.map))),
+    }?;
     Some(dimensions_within(&system, Effort::Quick)?.hausdorff)
 }

@@ -1,6 +1,8 @@
 //! Systems of maps in files of numbers: a row a, b, c, d, e, f, p for each map.
 
-use super::maps::WeightedMap;
+use crate::geometry::DAffine2;
+
+use super::maps::{Drawable, WeightedMap};
 
 /// Largest number of maps.
 const MAX_MAPS: usize = 256;
@@ -33,7 +35,10 @@ pub(super) fn read(text: &str) -> Result<Vec<WeightedMap>, (usize, String)> {
         if maps.len() == MAX_MAPS {
             return Err(wrong(format!("a system has at most {MAX_MAPS} maps")));
         }
-        maps.push(WeightedMap::of_row(row));
+        maps.push(WeightedMap::new(
+            DAffine2::of_coefficients(&row[..6]),
+            row[6],
+        ));
     }
     if maps.iter().all(|map| map.weight == 0.0) {
         return Err((1, "there is no map with a weight".into()));
@@ -44,13 +49,13 @@ pub(super) fn read(text: &str) -> Result<Vec<WeightedMap>, (usize, String)> {
 #[cfg(test)]
 mod tests {
     use super::read;
+    use crate::dataset::Maps;
 
     #[test]
     fn rows_are_maps() {
         let maps = read("0.5,0,0,0.5,0,0,0.25\n\n 1e-1, 2, 3, 4, 5, 6, 7 \r\n").unwrap();
-        let rows: Vec<_> = maps.iter().map(super::WeightedMap::row).collect();
         assert_eq!(
-            rows,
+            Maps::Plane(maps).rows(),
             [
                 [0.5, 0.0, 0.0, 0.5, 0.0, 0.0, 0.25],
                 [0.1, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]

@@ -2,8 +2,10 @@
 
 use std::collections::BinaryHeap;
 
-use crate::geometry::{Bounds, DAffine2, DVec2};
+use crate::geometry::{Bounds, Linear, Point};
 use crate::priority::Keyed;
+
+use super::maps::Drawable;
 
 /// Largest number of maps in a row that are examined for a side of the box.
 const MAX_WORK: usize = 1 << 11;
@@ -12,51 +14,46 @@ const MAX_WORK: usize = 1 << 11;
 const TOLERANCE: f64 = 1e-5;
 
 /// Returns the bounding box of the attractor of affine maps, each of which contracts in the Euclidean norm; `None` if one
-/// does not, or contracts so little that the search takes too long.
+/// does not, or contracts so little that the search takes too long. The box lies in coordinates to which `seen` rotates.
 ///
 /// Each side is found by branch and bound: the maximum of a linear functional over the attractor is that over its images, each of
-/// which lies in the image of a disc that all maps take into itself. All points of the attractor lie in the box, whose sides are
-/// exact to 10⁻⁵ of the radius of that disc.
-pub(super) fn attractor_box(maps: &[DAffine2]) -> Option<Bounds> {
-    let factors: Vec<f64> = maps.iter().map(largest_factor).collect();
+/// which lies in the image of a ball that all maps take into itself. All points of the attractor lie in the box, whose sides are
+/// exact to 10⁻⁵ of the radius of that ball.
+pub(super) fn attractor_box<M: Drawable>(maps: &[M], seen: &M::Linear) -> Option<Bounds<M::Point>> {
+    let factors: Vec<f64> = maps.iter().map(M::largest_factor).collect();
     if !factors.iter().all(|factor| *factor < 1.0) {
         return None;
     }
-    let fixed =
-        |map: &DAffine2| (DAffine2::IDENTITY.matrix2 - map.matrix2).inverse() * map.translation;
-    let points: Vec<DVec2> = maps.iter().map(fixed).collect();
+    let points: Vec<M::Point> = maps.iter().map(M::fixed).collect();
     #[expect(clippy::cast_precision_loss, reason = "there are few maps")]
-    let centre = points.iter().sum::<DVec2>() / points.len() as f64;
+    let centre =
+        { points.iter() }.fold(M::Point::ZERO, |sum, point| sum + *point) / points.len() as f64;
     let reaches = maps.iter().zip(&factors);
     let reaches =
-        reaches.map(|(map, factor)| map.transform_point2(centre).distance(centre) / (1.0 - factor));
+        reaches.map(|(map, factor)| (map.apply(centre) - centre).length() / (1.0 - factor));
     let radius = reaches.fold(0.0, f64::max);
     if !radius.is_finite() {
         return None;
     }
-    let farthest = |direction: DVec2| farthest(maps, &points, centre, radius, direction);
-    let max = DVec2::new(farthest(DVec2::X)?, farthest(DVec2::Y)?);
-    let min = -DVec2::new(farthest(DVec2::NEG_X)?, farthest(DVec2::NEG_Y)?);
+    let mut corners = [M::Point::ZERO; 2];
+    for (number, axis) in M::Point::AXES.iter().enumerate() {
+        let farthest = farthest(maps, &points, centre, radius, seen.transposed(*axis))?;
+        let corner = &mut corners[(number + 1) % 2];
+        *corner = *corner + *axis * farthest;
+    }
+    let [min, max] = corners;
     Some(Bounds::new(min, max))
 }
 
-/// Returns the largest factor by which a map lengthens a vector.
-fn largest_factor(map: &DAffine2) -> f64 {
-    let [a, b, c, d] = map.matrix2.to_cols_array();
-    let sum = a * a + b * b + c * c + d * d;
-    let det = (a * d - b * c).abs();
-    ((sum + 2.0 * det).sqrt() + (sum - 2.0 * det).max(0.0).sqrt()) / 2.0
-}
-
 /// Returns the maximum of a functional over the attractor. `points` are some of its points.
-fn farthest(
-    maps: &[DAffine2],
-    points: &[DVec2],
-    centre: DVec2,
+fn farthest<M: Drawable>(
+    maps: &[M],
+    points: &[M::Point],
+    centre: M::Point,
     radius: f64,
-    direction: DVec2,
+    direction: M::Point,
 ) -> Option<f64> {
-    let node = |vector: DVec2, offset: f64| Keyed {
+    let node = |vector: M::Point, offset: f64| Keyed {
         key: offset + vector.dot(centre) + vector.length() * radius,
         item: (vector, offset),
     };
@@ -73,8 +70,8 @@ fn farthest(
             return Some(key);
         }
         for map in maps {
-            let inner = map.matrix2.transpose() * vector;
-            heap.push(node(inner, offset + vector.dot(map.translation)));
+            let inner = map.linear().transposed(vector);
+            heap.push(node(inner, offset + vector.dot(map.translation())));
         }
     }
     None
@@ -85,6 +82,7 @@ mod tests {
     use super::*;
     use crate::Fractal;
     use crate::dataset::random::anderson;
+    use crate::geometry::{DAffine2, DMat2};
     use crate::random::Pcg;
 
     #[test]
@@ -93,7 +91,7 @@ mod tests {
         let mut found = 0;
         for round in 0..60 {
             let maps = anderson(&mut random, 2 + round % 6);
-            let Some(own) = attractor_box(&maps) else {
+            let Some(own) = attractor_box(&maps, &DMat2::IDENTITY) else {
                 continue;
             };
             found += 1;
@@ -119,6 +117,6 @@ mod tests {
     #[test]
     fn maps_that_do_not_contract_have_no_box() {
         let shear = DAffine2::from_cols_array(&[0.5, 0.0, 3.0, 0.5, 0.0, 0.0]);
-        assert_eq!(attractor_box(&[shear]), None);
+        assert_eq!(attractor_box(&[shear], &DMat2::IDENTITY), None);
     }
 }

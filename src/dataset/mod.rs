@@ -30,7 +30,7 @@
 //! let example = set.example(123)?;
 //! assert_eq!((example.category, example.instance), (2, 23));
 //! assert_eq!(example.picture.size(), [64, 64]);
-//! assert!(example.label.maps.len() >= 2);
+//! assert!(example.label.maps.unwrap().rows().len() >= 2);
 //! # Ok(())
 //! # }
 //! ```
@@ -51,7 +51,7 @@ mod vary;
 pub use crate::document::{Fit, Law, Mode};
 pub use batch::Batch;
 pub use category::{Category, Example, Label};
-pub use maps::WeightedMap;
+pub use maps::{Maps, WeightedMap};
 pub use picture::Colouring;
 pub use vary::Weights;
 

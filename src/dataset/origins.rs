@@ -5,7 +5,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use crate::catalogue::Shelf;
 use crate::diagnostic::{Place, did_you_mean};
-use crate::document::{LawDocument, RandomDocument, SourceDocument, Written, WrittenNumber};
+use crate::document::{Law, LawDocument, RandomDocument, SourceDocument, Written, WrittenNumber};
 use crate::draws::{Distribution, Variable};
 use crate::expression::Program;
 use crate::fractal::{Error, Fractal};
@@ -30,12 +30,19 @@ impl Checker<'_> {
                 ..
             } => {
                 let maps = self.maps(random);
+                let is_in_space = self.is_in_space(random, &document.place);
                 if let Some(params) = document.params.as_ref().and_then(|it| it.first()) {
                     self.error(&params.name.place, "random systems have no parameters", "");
                 }
-                if let (Some(maps), Some(count)) = (maps, count.unwrap_or(Some(1))) {
-                    let law = random.sigma;
-                    origins.push(Origin::Random { maps, law, count });
+                if let (Some(maps), Some(is_in_space), Some(count)) =
+                    (maps, is_in_space, count.unwrap_or(Some(1)))
+                {
+                    origins.push(Origin::Random {
+                        maps,
+                        law: random.sigma,
+                        is_in_space,
+                        count,
+                    });
                 }
             }
             SourceDocument {
@@ -112,6 +119,34 @@ impl Checker<'_> {
         }
     }
 
+    /// Returns whether random maps are those of space.
+    fn is_in_space(&mut self, document: &RandomDocument, place: &Place) -> Option<bool> {
+        let Some(number) = &document.space else {
+            return Some(false);
+        };
+        let dimensions = self.whole(Some(number), 2, 2..=3, "a number of dimensions")?;
+        if dimensions == 2 {
+            return Some(false);
+        }
+        if document.sigma == Law::Anderson {
+            let message = "the law `anderson` is one of maps of the plane";
+            let hint = "random: {maps: [2, 7], space: 3, sigma: uniform}";
+            self.error(&place.first_line(), message, hint);
+            return None;
+        }
+        self.needs_views(&number.place)?;
+        Some(true)
+    }
+
+    /// Reports a set in space without views.
+    fn needs_views(&mut self, place: &Place) -> Option<()> {
+        if !self.has_views {
+            let hint = "instances: {count: 12, views: 12}, or views: random";
+            self.error(place, "a set in space needs views", hint);
+        }
+        self.has_views.then_some(())
+    }
+
     fn maps(&mut self, document: &RandomDocument) -> Option<[u32; 2]> {
         let Some(range) = &document.maps else {
             return Some([2, 7]);
@@ -157,14 +192,13 @@ impl Checker<'_> {
         Some((fractal, laws))
     }
 
-    /// Returns a fractal that can be drawn in the plane; a mistake in its file is reported at a place.
+    /// Returns a fractal that can be drawn; a mistake in its file is reported at a place.
     fn usable(&mut self, fractal: Result<Fractal, Error>, place: &Place) -> Option<Fractal> {
         match fractal {
-            Ok(fractal) if fractal.model().is_in_space() => {
-                self.error(place, "it lies in space, and pictures are of the plane", "");
-                None
-            }
-            Ok(fractal) => Some(fractal),
+            Ok(fractal) => match fractal.model().is_in_space() {
+                true => self.needs_views(place).map(|()| fractal),
+                false => Some(fractal),
+            },
             Err(Error::Invalid(mistakes)) if mistakes.iter().all(|it| it.place().is_none()) => {
                 for mistake in mistakes.iter() {
                     self.found.push(mistake.clone().at(place));
@@ -276,8 +310,8 @@ impl Checker<'_> {
         {
             let source = self.catalogue.open(entry).map_err(Error::from);
             let fractal = source.and_then(|source| Fractal::read(&source, self.catalogue));
-            // Sets in space are left out.
-            if fractal.as_ref().is_ok_and(|it| it.model().is_in_space()) {
+            // Sets in space are left out where there are no views.
+            if !self.has_views && fractal.as_ref().is_ok_and(|it| it.model().is_in_space()) {
                 continue;
             }
             if let Some(fractal) = self.usable(fractal, &kind.place) {

@@ -1,6 +1,5 @@
 //! Pictures of a data set: from hits to levels, patterns, flips and colours.
 
-use crate::chaos::Histogram;
 use crate::document::Mode;
 use crate::draws::Path;
 use crate::render::{Levels, Pixels};
@@ -29,16 +28,15 @@ pub(super) struct Plain {
 }
 
 impl Plain {
-    /// Returns the levels of counted points.
-    pub(super) fn of_hits(histogram: &Histogram, mode: Mode) -> Self {
+    /// Returns the levels of points that were counted in the pixels of a square.
+    pub(super) fn of_hits(hits: &[u32], size: u32, mode: Mode) -> Self {
         let levels = match mode {
-            Mode::Hits => Levels::of_hits(histogram, Tone::Log).into_bytes(),
+            Mode::Hits => Levels::of_counts(hits, [size; 2], Tone::Log).into_bytes(),
             Mode::Binary | Mode::Patch3 => {
-                let counts = histogram.counts(0).iter();
-                counts.map(|&hits| if hits > 0 { 255 } else { 0 }).collect()
+                let levels = hits.iter().map(|&hits| if hits > 0 { 255 } else { 0 });
+                levels.collect()
             }
         };
-        let [size, _] = histogram.size();
         Self { size, levels }
     }
 

@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::random::Pcg;
 
+use super::maps::Drawable;
+
 /// Draws affine maps by their singular values, as Anderson & Farrell do ("Improving fractal pre-training", WACV 2022,
 /// section 3): A = U diag(s1, s2) V with orthogonal U and V, each a rotation by a uniform angle after random reflections of
 /// the axes; 1 > s1 ≥ s2 > 0; Σ (s1 + 2 s2) over the n maps is uniform from (5 + n)/2 to (6 + n)/2; translations are uniform on
@@ -25,14 +27,15 @@ pub(super) fn anderson(random: &mut Pcg, maps: u32) -> Vec<DAffine2> {
     values.into_iter().map(map).collect()
 }
 
-/// Draws affine maps whose six coefficients are uniform on [-1, 1), as the search for FractalDB does (Kataoka et al.,
-/// "Pre-training without natural images", ACCV 2020). Not all of them contract.
-pub(super) fn by_coefficients(random: &mut Pcg, maps: u32) -> Vec<DAffine2> {
-    let map = |_| {
-        let [a, b, c, d, e, f] = [(); 6].map(|()| uniform(random, -1.0, 1.0));
-        DAffine2::from_cols_array(&[a, c, b, d, e, f])
+/// Draws affine maps whose coefficients are uniform on [-1, 1): six in the plane, as the search for FractalDB does (Kataoka et
+/// al., "Pre-training without natural images", ACCV 2020), or twelve in space (Yamada et al., "MV-FractalDB", IROS 2021). Not
+/// all of them contract.
+pub(super) fn by_coefficients<M: Drawable>(random: &mut Pcg, maps: u32) -> Vec<M> {
+    let mut map = || {
+        let coefficients = (0..M::COEFFICIENTS).map(|_| uniform(random, -1.0, 1.0));
+        M::of_coefficients(&coefficients.collect::<Vec<_>>())
     };
-    (0..maps).map(map).collect()
+    (0..maps).map(|_| map()).collect()
 }
 
 /// Draws pairs of singular values s1 ≥ s2 in [0, 1] with Σ (s1 + 2 s2) = `sum`, one after the other: each is uniform on the

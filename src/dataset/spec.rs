@@ -6,13 +6,14 @@ use crate::catalogue::Catalogue;
 use crate::chaos::points_of_text;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
 use crate::document::{DatasetDocument, Fit, Law, Mode, PictureDocument, WrittenNumber};
-use crate::draws::Variable;
+use crate::draws::{Path, Variable};
 use crate::expression::{Expression, Program, Scope};
 use crate::fractal::Fractal;
 use crate::style::Palette;
 
 use super::maps::WeightedMap;
 use super::picture::Colouring;
+use super::random::uniform;
 use super::vary::Weights;
 
 /// Largest side of a picture, in pixels.
@@ -32,12 +33,64 @@ pub(super) struct Spec {
     pub(super) instances: u32,
     pub(super) weights: Weights,
     pub(super) flips: bool,
+    /// Directions from which sets in space are seen.
+    pub(super) views: Option<Views>,
     pub(super) size: u32,
     pub(super) points: u64,
     pub(super) mode: Mode,
     pub(super) colouring: Colouring,
     pub(super) fit: Fit,
     pub(super) fill: f64,
+}
+
+/// Directions from which sets in space are seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Views {
+    /// A direction that is uniform on the sphere for each picture.
+    Random,
+    /// A number of directions evenly around the set, in which every variation is seen.
+    Around(u32),
+}
+
+impl Views {
+    /// Elevation of views around a set, in degrees.
+    const ELEVATION: f64 = 30.0;
+
+    fn parse(text: &str) -> Option<Self> {
+        match text {
+            "random" => Some(Self::Random),
+            number => {
+                let number = number.parse().ok();
+                number
+                    .filter(|it| (1..=MAX_COUNT).contains(it))
+                    .map(Self::Around)
+            }
+        }
+    }
+
+    /// Returns the number of the variation that a picture shows.
+    pub(super) fn variation(self, instance: u32) -> u32 {
+        match self {
+            Self::Random => instance,
+            Self::Around(count) => instance / count,
+        }
+    }
+
+    /// Returns the direction of a picture, by azimuth and elevation in degrees.
+    pub(super) fn direction(self, instance: u32, path: Path) -> [f64; 2] {
+        match self {
+            Self::Random => {
+                let mut random = path.random("view");
+                let azimuth = 360.0 * random.unit();
+                let height = uniform(&mut random, -1.0, 1.0);
+                [azimuth, libm::asin(height).to_degrees()]
+            }
+            Self::Around(count) => {
+                let turn = f64::from(instance % count) / f64::from(count);
+                [360.0 * turn, Self::ELEVATION]
+            }
+        }
+    }
 }
 
 /// Origin of consecutive categories.
@@ -47,6 +100,7 @@ pub(super) enum Origin {
     Random {
         maps: [u32; 2],
         law: Law,
+        is_in_space: bool,
         count: u32,
     },
     /// Members of a family, with the laws of their parameters; one category whose pictures draw them if there is no count.
@@ -80,6 +134,7 @@ impl Spec {
         let mut checker = Checker {
             catalogue,
             source,
+            has_views: false,
             found: Diagnostics::default(),
         };
         let spec = checker.spec(&document);
@@ -93,6 +148,8 @@ impl Spec {
 pub(super) struct Checker<'a> {
     pub(super) catalogue: &'a Catalogue,
     pub(super) source: &'a Arc<Source>,
+    /// Whether there are views of sets in space.
+    pub(super) has_views: bool,
     pub(super) found: Diagnostics,
 }
 
@@ -112,6 +169,20 @@ impl Checker<'_> {
             self.error(&document.place.first_line(), message, "kind: dataset");
         }
         let seed = self.whole(document.seed.as_ref(), 0, 0..=u32::MAX, "a seed");
+        let views = document.instances.as_ref().and_then(|it| it.views.as_ref());
+        let views = views.map(|text| {
+            let views = Views::parse(&text.value);
+            if views.is_none() {
+                let message = format!("'{}' is no choice of views", text.value);
+                self.error(
+                    &text.place,
+                    message,
+                    "views: random, or a number of them such as views: 12",
+                );
+            }
+            views
+        });
+        self.has_views = views.is_some();
         let mut origins = Vec::new();
         let systems = { document.categories.as_ref() }.and_then(|it| it.systems.as_ref());
         for source in systems.into_iter().flatten() {
@@ -147,6 +218,7 @@ impl Checker<'_> {
             instances: count?,
             weights: weights.unwrap_or(Some(Weights::None))?,
             flips: instances.is_some_and(|it| it.flips),
+            views: views.unwrap_or_default(),
             size: 256,
             points: 100_000,
             mode: Mode::default(),

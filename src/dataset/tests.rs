@@ -2,9 +2,15 @@
 
 use std::num::NonZero;
 
+use crate::chaos::Game;
+use crate::geometry::{DAffine2, DAffine3, DMat3, DVec3};
 use crate::measure::exact::Hausdorff;
+use crate::random::Pcg;
+use crate::style::Camera;
 
-use super::{Dataset, DatasetError, Weights};
+use super::maps::{Attractor, weighted};
+use super::random::anderson;
+use super::{Dataset, DatasetError, Fit, WeightedMap, Weights};
 
 const RANDOM: &str = "{kind: dataset, seed: 3, categories: {systems: {random: {maps: [2, 5]}, count: 12}}, \
                       instances: {count: 30, weights: fractaldb, flips: true}, picture: {size: 48, points: 5k, MORE}}";
@@ -51,16 +57,15 @@ fn instances_differ_by_weights_and_flips() {
     let set = set("");
     let at = |instance: u64| set.example(60 + instance).unwrap();
     let own = set.category(2).unwrap().maps();
-    assert_eq!(at(0).label.maps, own);
+    assert_eq!(at(0).label.maps.as_ref(), own);
     // The second coefficient of all maps, times 1 - 2 · 0.4, unless that diverges.
-    let varied = at(5).label.maps;
-    for (one, other) in varied.iter().zip(own) {
-        let [one, other] = [one.row(), other.row()];
+    let varied = at(5).label.maps.unwrap().rows();
+    for (one, other) in varied.iter().zip(own.unwrap().rows()) {
         assert!(
             one.iter()
-                .zip(other)
+                .zip(&other)
                 .enumerate()
-                .all(|(place, (a, b))| place == 1 || *a == b)
+                .all(|(place, (a, b))| place == 1 || a == b)
         );
         assert!((one[1] - 0.2 * other[1]).abs() < 1e-12);
     }
@@ -158,6 +163,102 @@ fn the_library_and_tables_are_categories() {
     );
 }
 
+/// Every variation is seen from all directions before the next one.
+#[test]
+fn systems_in_space_are_seen_from_around() {
+    let text = "{kind: dataset, categories: {systems: [{random: {maps: 3, space: 3, sigma: uniform}, count: 2}, \
+                {rule: sierpinski-tetrahedron}]}, instances: {count: 400, weights: fractaldb, flips: true, views: 6}, \
+                picture: {size: 48, points: 5k}, accept: {fill: 0.02}}";
+    let set = Dataset::parse(text).unwrap();
+    assert_eq!(set.categories(), 3);
+    for category in 0..3 {
+        let at = |instance: u64| set.example(category * 400 + instance).unwrap();
+        let first = at(0);
+        let rows = first.label.maps.as_ref().unwrap().rows();
+        assert!(rows.iter().all(|row| row.len() == 13));
+        for view in 1..6 {
+            let other = at(view);
+            assert_eq!(other.label.maps, first.label.maps);
+            let azimuth = f64::from(u32::try_from(view).unwrap()) * 60.0;
+            assert_eq!(other.label.from, Some([azimuth, 30.0]));
+            assert_ne!(other.picture, first.picture);
+        }
+        let next = at(6);
+        assert_eq!(next.label.from, first.label.from);
+        assert_ne!(next.label.maps, first.label.maps);
+        // After 49 variations, the first one is flipped.
+        let flipped = at(6 * 49);
+        assert_eq!(
+            (flipped.label.flip, flipped.label.maps),
+            (1, first.label.maps)
+        );
+    }
+}
+
+#[test]
+fn directions_of_view_are_uniform() {
+    let text = "{kind: dataset, categories: {systems: [{rule: menger}, {rule: koch}]}, instances: {count: 2000, views: random}, \
+                picture: {size: 24, points: 2k}}";
+    let set = Dataset::parse(text).unwrap();
+    let mut mean = DVec3::ZERO;
+    for index in 0..2000 {
+        let from = set.label(index).unwrap().from.unwrap();
+        mean += Camera::default().from(from).towards() / 2000.0;
+    }
+    // The variance of a coordinate is 1/3; four standard errors.
+    let most = 4.0 / (3.0f64 * 2000.0).sqrt();
+    assert!(mean.abs().max_element() < most, "{mean}");
+    let picture = set.example(0).unwrap().picture;
+    assert!(picture.bytes().iter().any(|byte| *byte > 0));
+    assert_eq!(set.label(2000).unwrap().from, None);
+}
+
+/// The plane in space, and space turned with the viewer, are the same picture.
+#[test]
+fn views_in_space_are_those_of_the_plane() {
+    let mut random = Pcg::new(7, 8);
+    let (size, fit) = (64, Fit::Box);
+    let mut compared = 0;
+    for count in 2..8 {
+        let flat = weighted(anderson(&mut random, count));
+        let game = Game {
+            points: 100_000,
+            ..Game::default()
+        };
+        let expected = Attractor::of(&flat, DAffine2::IDENTITY).unwrap();
+        let expected = expected.hits(size, fit, &game).unwrap();
+        let camera = Camera::default().from([50.0, -20.0]);
+        let turned = DAffine3::from_mat3(camera.rotation().unwrap());
+        for seen in [DAffine3::IDENTITY, turned] {
+            let deep = |it: &WeightedMap| {
+                let matrix = DMat3::from_mat2(it.map.matrix2);
+                let matrix = DMat3::from_cols(matrix.x_axis, matrix.y_axis, DVec3::Z / 2.0);
+                let map = DAffine3::from_mat3_translation(matrix, it.map.translation.extend(0.3));
+                WeightedMap::new(seen.inverse() * map * seen, it.weight)
+            };
+            let deep: Vec<_> = flat.iter().map(deep).collect();
+            let game = Game {
+                points: 100_000,
+                ..Game::default()
+            };
+            let hits = Attractor::of(&deep, seen).unwrap();
+            let hits = hits.hits(size, fit, &game).unwrap();
+            // Means and products of the numbers of points, which are drawn apart.
+            let product = |a: &[u32], b: &[u32]| {
+                let pairs = a.iter().zip(b);
+                pairs
+                    .map(|(a, b)| f64::from(*a) * f64::from(*b))
+                    .sum::<f64>()
+            };
+            let alike = product(&expected, &hits)
+                / (product(&expected, &expected) * product(&hits, &hits)).sqrt();
+            assert!(alike > 0.98, "{count}: {alike}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 12);
+}
+
 #[test]
 fn mistakes_have_their_places() {
     let wrong = [
@@ -193,7 +294,7 @@ fn mistakes_have_their_places() {
         ),
         (
             "{kind: dataset, categories: {systems: {rule: menger}}}",
-            "lies in space",
+            "needs views",
         ),
         (
             "{kind: dataset, categories: {systems: {rule: pythagoras, params: {angel: 3}}}}",
@@ -234,6 +335,22 @@ fn mistakes_have_their_places() {
         (
             "{kind: dataset, categories: {systems: {random: {}}}, accept: {fill: 2}}",
             "a share from 0 to 1",
+        ),
+        (
+            "{kind: dataset, categories: {systems: {random: {space: 3, sigma: uniform}}}}",
+            "needs views",
+        ),
+        (
+            "{kind: dataset, categories: {systems: {random: {space: 3}}}, instances: {views: random}}",
+            "maps of the plane",
+        ),
+        (
+            "{kind: dataset, categories: {systems: {random: {space: 4}}}}",
+            "whole number from 2 to 3",
+        ),
+        (
+            "{kind: dataset, categories: {systems: {random: {}}}, instances: {views: 0}}",
+            "'0' is no choice of views",
         ),
     ];
     for (text, expected) in wrong {

@@ -3,11 +3,8 @@
 use crate::diagnostic::Diagnostic;
 use crate::draws::Path;
 
-use super::maps::{Attractor, WeightedMap};
+use super::maps::{Attractor, Drawable, WeightedMap};
 use super::random::uniform;
-
-/// Number of variations by [`Weights::Steps`].
-const STEPS: u32 = 25;
 
 /// Number of halvings of a variation whose walks diverge, before it is given up.
 const HALVINGS: u32 = 8;
@@ -19,8 +16,8 @@ pub enum Weights {
     /// No variation.
     #[default]
     None,
-    /// One coefficient of all maps at a time, times 1 − 2s, 1 − s, 1 + s or 1 + 2s, and none: 25 variations that follow each
-    /// other (Kataoka et al. 2020, with s = 0.4).
+    /// One coefficient of all maps at a time, times 1 − 2s, 1 − s, 1 + s or 1 + 2s, and none: 25 variations in the plane, or 49 in
+    /// space, that follow each other (Kataoka et al. 2020, with s = 0.4).
     Steps(f64),
     /// Every coefficient of every map, by a factor uniform from 1 − s to 1 + s.
     Jitter(f64),
@@ -57,61 +54,76 @@ impl Weights {
         }
     }
 
-    /// Returns the number of variations after which they repeat, if they do.
-    pub(super) fn period(self) -> u32 {
+    /// Returns the number of variations after which they repeat, if they do, for maps with a number of coefficients.
+    pub(super) fn period(self, coefficients: usize) -> usize {
         match self {
-            Self::Steps(_) => STEPS,
+            Self::Steps(_) => 1 + FACTORS.len() * coefficients,
             _ => 1,
         }
     }
 
-    /// Returns the varied system of an instance. A variation whose walks diverge is taken nearer to none, by halves.
-    pub(super) fn vary(
+    /// Returns a varied system and its attractor, as it is `seen`. A variation whose walks diverge is taken nearer to none, by
+    /// halves.
+    pub(super) fn vary<M: Drawable>(
         self,
-        maps: &[WeightedMap],
-        instance: u32,
+        maps: &[WeightedMap<M>],
+        variation: u32,
         path: Path,
-    ) -> Option<(Vec<WeightedMap>, Attractor)> {
-        let factors = self.factors(maps.len(), instance, path);
+        seen: M,
+    ) -> Option<(Vec<WeightedMap<M>>, Attractor<M>)> {
+        let factors = self.factors(maps.len(), M::COEFFICIENTS, variation, path);
         let mut share = 1.0;
         for _ in 0..=HALVINGS {
             let varied: Vec<_> = { maps.iter().zip(&factors) }
                 .map(|(map, factors)| {
-                    let mut row = map.row();
+                    let mut row = map.map.coefficients();
                     for (value, factor) in row.iter_mut().zip(factors) {
                         *value *= 1.0 + share * (factor - 1.0);
                     }
-                    WeightedMap::of_row(row)
+                    WeightedMap::new(M::of_coefficients(&row), map.weight)
                 })
                 .collect();
-            if let Some(attractor) = Attractor::of(&varied) {
+            if let Some(attractor) = Attractor::of(&varied, seen) {
                 return Some((varied, attractor));
             }
             share /= 2.0;
         }
-        Some((maps.to_vec(), Attractor::of(maps)?))
+        Some((maps.to_vec(), Attractor::of(maps, seen)?))
     }
 
-    /// Returns the factors of a, b, c, d, e and f for every map.
-    fn factors(self, maps: usize, instance: u32, path: Path) -> Vec<[f64; 6]> {
+    /// Returns the factors of the coefficients for every map.
+    fn factors(
+        self,
+        maps: usize,
+        coefficients: usize,
+        variation: u32,
+        path: Path,
+    ) -> Vec<Vec<f64>> {
         match self {
-            Self::None => vec![[1.0; 6]; maps],
-            Self::Steps(step) => vec![steps(instance % STEPS, step); maps],
+            Self::None => vec![vec![1.0; coefficients]; maps],
+            Self::Steps(step) => {
+                let variation = variation as usize % self.period(coefficients);
+                vec![steps(coefficients, variation, step); maps]
+            }
             Self::Jitter(spread) => {
                 let mut random = path.random("weights");
                 let mut factor = || uniform(&mut random, 1.0 - spread, 1.0 + spread);
-                (0..maps).map(|_| [(); 6].map(|()| factor())).collect()
+                let mut factors = || (0..coefficients).map(|_| factor()).collect();
+                (0..maps).map(|_| factors()).collect()
             }
         }
     }
 }
 
-/// Returns the factors of a variation from 0 to 24: none first, then each coefficient in turn.
-fn steps(variation: u32, step: f64) -> [f64; 6] {
-    let mut factors = [1.0; 6];
+/// Steps by which a coefficient is changed.
+const FACTORS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+
+/// Returns the factors of a variation from 0 on: none first, then each coefficient in turn.
+fn steps(coefficients: usize, variation: usize, step: f64) -> Vec<f64> {
+    let mut factors = vec![1.0; coefficients];
     if let Some(changed) = variation.checked_sub(1) {
-        let by = [-2.0, -1.0, 1.0, 2.0][(changed % 4) as usize];
-        factors[(changed / 4) as usize] = 1.0 + by * step;
+        let by = FACTORS[changed % FACTORS.len()];
+        factors[changed / FACTORS.len()] = 1.0 + by * step;
     }
     factors
 }
@@ -121,6 +133,7 @@ mod tests {
     use super::*;
     use crate::dataset::maps::weighted;
     use crate::dataset::random::{anderson, by_coefficients};
+    use crate::geometry::DAffine2;
     use crate::random::Pcg;
 
     #[test]
@@ -145,9 +158,9 @@ mod tests {
 
     #[test]
     fn steps_change_one_coefficient() {
-        let all: Vec<_> = (0..25).map(|it| steps(it, 0.4)).collect();
+        let all: Vec<_> = (0..25).map(|it| steps(6, it, 0.4)).collect();
         assert_eq!(all[0], [1.0; 6]);
-        let changed = |factors: &[f64; 6]| factors.iter().filter(|it| **it != 1.0).count();
+        let changed = |factors: &Vec<f64>| factors.iter().filter(|it| **it != 1.0).count();
         assert!(all[1..].iter().all(|factors| changed(factors) == 1));
         let mut values: Vec<_> = all[1..5].iter().map(|factors| factors[0]).collect();
         values.sort_by(f64::total_cmp);
@@ -159,23 +172,31 @@ mod tests {
     #[test]
     fn varied_systems_can_be_drawn() {
         let mut random = Pcg::new(1, 1);
+        let whole = DAffine2::IDENTITY;
         for round in 0..20 {
             let maps = weighted(anderson(&mut random, 2 + round % 6));
             for instance in 0..25 {
                 let path = Path::of_seed(instance.into());
-                let (varied, _) = Weights::Steps(0.4).vary(&maps, instance, path).unwrap();
+                let (varied, _) = Weights::Steps(0.4)
+                    .vary(&maps, instance, path, whole)
+                    .unwrap();
                 assert_eq!(varied.len(), maps.len());
-                let (jittered, _) = Weights::Jitter(0.1).vary(&maps, instance, path).unwrap();
+                let (jittered, _) = Weights::Jitter(0.1)
+                    .vary(&maps, instance, path, whole)
+                    .unwrap();
                 for (one, other) in jittered.iter().zip(&maps) {
-                    for (a, b) in one.row().iter().zip(other.row()) {
+                    let [one, other] = [one, other].map(|it| it.map.coefficients());
+                    for (a, b) in one.iter().zip(other) {
                         assert!((a - b).abs() <= 0.1 * b.abs() + 1e-15);
                     }
                 }
             }
         }
         // Some of these diverge, and are never drawn.
-        let drawn = (0..200)
-            .filter(|_| Attractor::of(&weighted(by_coefficients(&mut random, 3))).is_some());
+        let drawn = (0..200).filter(|_| {
+            let maps: Vec<DAffine2> = by_coefficients(&mut random, 3);
+            Attractor::of(&weighted(maps), whole).is_some()
+        });
         assert!((1..200).contains(&drawn.count()));
     }
 }

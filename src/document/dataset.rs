@@ -64,6 +64,7 @@ mapping! {
     struct RandomDocument: RANDOM = "a law of random systems", "random: {maps: [2, 7], sigma: anderson}";
     maps: Option<[WrittenNumber; 2]> = Form::Either(&[Form::Whole(1, Some(32)), Form::Point]),
         "Number of maps, or its least and largest value; 2 to 7 if left out.";
+    space: Option<WrittenNumber> = Form::Whole(2, Some(3)), "Number of dimensions: 2, or 3 for maps of space; 2 if left out.";
     sigma: Law = Form::variant::<Law>(),
         "Law of the maps: `anderson`, by singular values, or `uniform`, by coefficients from -1 to 1.";
 }
@@ -75,6 +76,8 @@ mapping! {
     weights: Option<Written<String>> = Form::Text,
         "Factors of the coefficients of maps: `none`, `fractaldb`, `fractaldb(step)` or `jitter(spread)`.";
     flips: bool = Form::Flag(false), "Whether pictures are flipped, in all four ways.";
+    views: Option<Written<String>> = Form::Either(&[Form::Words(&["random"]), Form::Whole(1, None)]),
+        "Directions from which sets in space are seen: `random` for each picture, or a number of them, evenly around the set.";
 }
 
 mapping! {

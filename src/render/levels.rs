@@ -52,7 +52,11 @@ impl Levels {
     /// ```
     #[must_use]
     pub fn of_hits(histogram: &Histogram, tone: Tone) -> Self {
-        let counts = histogram.counts(0);
+        Self::of_counts(histogram.counts(0), histogram.size(), tone)
+    }
+
+    /// Returns the levels of points that were counted in the pixels.
+    pub(crate) fn of_counts(counts: &[u32], size: [u32; 2], tone: Tone) -> Self {
         let most = counts.iter().copied().max().unwrap_or(0);
         let level = |hits: u32| match hits {
             0 => 0,
@@ -64,7 +68,7 @@ impl Levels {
             None => level(hits),
         });
         Self {
-            size: histogram.size(),
+            size,
             channels: 1,
             bytes: levels.collect(),
         }

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
-use crate::dataset::{Dataset, Label, WeightedMap};
+use crate::dataset::{Dataset, Label, Maps};
 
 use super::super::{Failure, output, readable};
 use super::Shard;
@@ -37,10 +37,12 @@ pub(super) struct LabelRow<'a> {
     name: &'a str,
     instance: u32,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    maps: Vec<[f64; 7]>,
+    maps: Vec<Vec<f64>>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     parameters: BTreeMap<&'a str, f64>,
     flip: u8,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    from: Option<[f64; 2]>,
     dimension: Option<f64>,
 }
 
@@ -54,10 +56,11 @@ impl<'a> LabelRow<'a> {
             category,
             name: of.name(),
             instance,
-            maps: rows(&label.maps),
+            maps: rows(label.maps.as_ref()),
             parameters: named(&label.parameters),
             flip: label.flip,
-            dimension: if label.maps.is_empty() { shared() } else { own },
+            from: label.from,
+            dimension: if label.maps.is_none() { shared() } else { own },
         })
     }
 
@@ -66,8 +69,8 @@ impl<'a> LabelRow<'a> {
     }
 }
 
-fn rows(maps: &[WeightedMap]) -> Vec<[f64; 7]> {
-    maps.iter().map(WeightedMap::row).collect()
+fn rows(maps: Option<&Maps>) -> Vec<Vec<f64>> {
+    maps.map(Maps::rows).unwrap_or_default()
 }
 
 fn named(parameters: &[(String, f64)]) -> BTreeMap<&str, f64> {
@@ -101,7 +104,7 @@ struct CategoryRow {
     number: u32,
     name: String,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    maps: Vec<[f64; 7]>,
+    maps: Vec<Vec<f64>>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     parameters: BTreeMap<String, f64>,
     attempts: u32,
