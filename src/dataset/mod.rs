@@ -17,7 +17,7 @@
 //!
 //! Systems of maps are drawn by random iteration, fitted to their box ([`Fit`]); the box is exact where every map contracts
 //! clearly, and otherwise that of 20,000 points. Other fractals are drawn as their files state, in proportion, with the opacity
-//! as the level.
+//! as the level. Sets in space are seen in parallel projection, from directions that the file chooses by `views`.
 //!
 //! ```
 //! # fn main() -> Result<(), kfrac::dataset::DatasetError> {
