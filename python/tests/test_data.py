@@ -45,6 +45,17 @@ def test_pictures_are_arrays() -> None:
             grey[wrong]
 
 
+def test_sets_in_space_are_seen_from_around() -> None:
+    spec = "{kind: dataset, categories: {systems: {random: {maps: 3, space: 3, sigma: uniform}, count: 2}}, \
+instances: {count: 6, views: 3}, picture: {size: 32, points: 5k}, accept: {fill: 0.02}}"
+    pictures = Dataset.parse(spec)
+    labels = [pictures.label(number) for number in range(3)]
+    assert [label["from"] for label in labels] == [[0, 30], [120, 30], [240, 30]]
+    assert labels[0]["maps"] == labels[2]["maps"] and len(labels[0]["maps"][0]) == 13
+    assert not np.array_equal(pictures[0][0], pictures[1][0])
+    assert dataset().label(0)["from"] is None
+
+
 def test_a_picture_is_its_png() -> None:
     for colour in ["gray", "hsv"]:
         pictures = dataset(colour=colour)

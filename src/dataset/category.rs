@@ -444,8 +444,8 @@ fn drawing(
 ) -> Result<Plain, crate::Error> {
     let size = (spec.size, spec.size);
     let style = fractal.model().metadata().style.clone();
-    let mut space = SpaceOptions::from(&fractal.model().space_view());
-    space.camera.from = from.unwrap_or(space.camera.from);
+    let space = SpaceOptions::from(&fractal.model().space_view());
+    let space = space.camera(Camera::default().from(from.unwrap_or_default()));
     let fractal = fractal
         .clone()
         .space(space)
