@@ -2,6 +2,7 @@
 
 import re
 from importlib.metadata import version as version_of
+from typing import Any
 
 project = "kfrac"
 copyright = "the kfrac authors"  # noqa: A001
@@ -27,10 +28,10 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 
 
-def code_spans(_app: object, _what: str, _name: str, _object: object, _options: object, lines: list[str]) -> None:
+def code_spans(_app: Any, _what: str, _name: str, _object: object, _options: Any, lines: list[str]) -> None:
     """Marks names in single backquotes, as the docstrings have them, as code."""
     lines[:] = [re.sub(r"(?<![`:])`([^`]+)`(?![`_])", r"``\1``", line) for line in lines]
 
 
-def setup(app: object) -> None:
-    app.connect("autodoc-process-docstring", code_spans, priority=0)  # type: ignore[attr-defined]
+def setup(app: Any) -> None:
+    app.connect("autodoc-process-docstring", code_spans, priority=0)

@@ -55,8 +55,9 @@ pub(super) struct Arguments {
     ///
     /// pictures is the number of pictures of this part, from index `from` to before `to`; bytes is their size as PNG, and
     /// sha256 the hash of the concatenated hashes of the PNGs, in order. categories have number, name, maps (rows a, b, c, d,
-    /// e, f and weight; in space the matrix, the image of the origin and the weight), parameters, attempts (the number of systems that were drawn until one was accepted) and dimension
-    /// (null where it is not decided). wrong has the pictures or archives that --check found missing or different.
+    /// e, f and weight; in space the matrix, the image of the origin and the weight), parameters, attempts (the number of systems
+    /// that were drawn until one was accepted) and dimension (null where it is not decided). wrong has the pictures or archives
+    /// that --check found missing or different.
     #[arg(long)]
     json: bool,
     /// Prints only errors

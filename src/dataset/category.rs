@@ -222,7 +222,9 @@ impl Category {
             _ => DAffine2::COEFFICIENTS,
         };
         let round = variation as usize / spec.weights.period(coefficients);
-        let from = views.map(|views| views.direction(instance, path));
+        // Patterns, colours and directions are drawn for each picture.
+        let own = path_of(spec, self.number).child(1).child(instance);
+        let from = views.map(|views| views.direction(instance, own));
         let mut label = Label {
             flip: match spec.flips {
                 true => u8::try_from(round % 4).unwrap_or(0),
@@ -255,6 +257,7 @@ impl Category {
             category: self.number,
             instance,
             path,
+            own,
             shown,
             label,
         })
@@ -272,7 +275,10 @@ enum Shown {
 pub(super) struct Prepared {
     category: u32,
     instance: u32,
+    /// Path of the draws of the variation.
     path: Path,
+    /// Path of the draws of the picture.
+    own: Path,
     shown: Shown,
     pub(super) label: Label,
 }
@@ -284,6 +290,7 @@ impl Prepared {
             category,
             instance,
             path,
+            own,
             shown,
             label,
         } = self;
@@ -302,10 +309,10 @@ impl Prepared {
             }
         };
         let plain = match spec.mode {
-            Mode::Patch3 => plain.patterned(path),
+            Mode::Patch3 => plain.patterned(own),
             _ => plain,
         };
-        let picture = { plain.flipped(label.flip) }.coloured(&spec.colouring, path);
+        let picture = { plain.flipped(label.flip) }.coloured(&spec.colouring, own);
         Ok(Example {
             category,
             instance,
@@ -353,7 +360,7 @@ fn plain_maps<M: Walked>(ifs: &Ifs<M>) -> Option<Vec<WeightedMap<M>>> {
 
 /// Returns the rotation to the coordinates of the view from a direction, by azimuth and elevation in degrees.
 fn seen(from: [f64; 2]) -> DAffine3 {
-    // No vector is up but the axis y, which every direction has.
+    // A camera without an upward vector has a rotation from every direction.
     let rotation = Camera::default().from(from).rotation();
     rotation.map_or(DAffine3::IDENTITY, |it| Affine::new(it, DVec3::ZERO))
 }

@@ -179,8 +179,6 @@ impl Drawable for DAffine3 {
         size: u32,
         game: &Game<'_, DVec3>,
     ) -> Option<Vec<u32>> {
-        /// Number of steps of depth, which does not matter: points behind others count.
-        const STEPS: u32 = 1 << 10;
         let bounds = &attractor.bounds;
         let scale = DVec3::new(scale.x, -scale.y, 1.0);
         let middle = DVec2::splat(f64::from(size) / 2.0).extend(0.0);
@@ -188,13 +186,12 @@ impl Drawable for DAffine3 {
             matrix3: DMat3::from_diagonal(scale),
             translation: middle - scale * bounds.centre(),
         };
-        // A box that was estimated may be too small.
-        let deep = bounds.size().max_element().max(f64::MIN_POSITIVE);
         let window = DepthWindow {
             to_window: to_pixels * attractor.seen,
             seen: Seen::Parallel,
-            range: [-deep, deep],
-            steps: STEPS,
+            // Points count at any depth.
+            range: [0.0; 2],
+            steps: 1,
             size: [size; 2],
             within: &[],
         };

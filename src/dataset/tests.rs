@@ -200,14 +200,18 @@ fn directions_of_view_are_uniform() {
     let text = "{kind: dataset, categories: {systems: [{rule: menger}, {rule: koch}]}, instances: {count: 2000, views: random}, \
                 picture: {size: 24, points: 2k}}";
     let set = Dataset::parse(text).unwrap();
-    let mut mean = DVec3::ZERO;
+    let (mut mean, mut squares) = (DVec3::ZERO, DVec3::ZERO);
     for index in 0..2000 {
         let from = set.label(index).unwrap().from.unwrap();
-        mean += Camera::default().from(from).towards() / 2000.0;
+        let towards = Camera::default().from(from).towards();
+        mean += towards / 2000.0;
+        squares += towards * towards / 2000.0;
     }
-    // The variance of a coordinate is 1/3; four standard errors.
-    let most = 4.0 / (3.0f64 * 2000.0).sqrt();
+    // The variance of a coordinate is 1/3, that of its square 4/45; four standard errors.
+    let [most, most_squares] = [1.0 / 3.0, 4.0 / 45.0].map(|it: f64| 4.0 * (it / 2000.0).sqrt());
     assert!(mean.abs().max_element() < most, "{mean}");
+    let apart = (squares - 1.0 / 3.0).abs();
+    assert!(apart.max_element() < most_squares, "{squares}");
     let picture = set.example(0).unwrap().picture;
     assert!(picture.bytes().iter().any(|byte| *byte > 0));
     assert_eq!(set.label(2000).unwrap().from, None);

@@ -54,10 +54,6 @@ const MAX_CELLS: f64 = (1u64 << 29) as f64;
 /// Maximum number of images that are marked, as a multiple of the maximum number of points.
 const MARKED_A_POINT: usize = 96;
 
-/// Maximum distance of the centre of a cell from the part of the set that it represents, as a multiple of
-/// the radius of the cover. The rest of the radius remains for parts that are covered by points nearby.
-const NEAR: f64 = 0.75;
-
 impl<'g, F: Covering> Cells<'g, F> {
     /// Finds cells that cover the limit set, for points that are within a radius of it.
     ///
@@ -95,7 +91,7 @@ impl<'g, F: Covering> Cells<'g, F> {
         if stretched <= 0.0 {
             return Ok(None);
         }
-        let errors = weights.iter().map(|it| it * NEAR * radius / stretched);
+        let errors = weights.iter().map(|it| it * F::NEAR * radius / stretched);
         let errors: Vec<f64> = errors.collect();
         // A coarse pass finds the extents of the sets, for the grids of fine cells.
         const ROUGHER: f64 = 16.0;
@@ -117,7 +113,7 @@ impl<'g, F: Covering> Cells<'g, F> {
 
     /// Adds points of the set to a region.
     pub(super) fn visit(&self, region: &mut Region<'_, F::Point>) -> Result<(), TooMany> {
-        let near = NEAR * region.radius;
+        let near = F::NEAR * region.radius;
         let kept = self.graph.initiator(0).instances.iter();
         for instance in kept.filter(|it| self.objects.is_kept(it.object)) {
             let outline = self.outline_of(instance.object);
@@ -128,7 +124,7 @@ impl<'g, F: Covering> Cells<'g, F> {
             let map = *map * grid.places();
             let side = map.linear().stretch();
             // Points of a wide lattice come first: few of them cover filled regions.
-            for cell in lattice::<F>(grid.counts(), region.radius / side) {
+            for cell in lattice::<F>(grid.counts(), F::APART * region.radius / side) {
                 if grid.has(cell) {
                     region.add_within(map.apply(middle(cell)), near)?;
                 }
@@ -186,7 +182,7 @@ impl<'g, F: Covering> Cells<'g, F> {
             let half = if has_own { error / 2.0 } else { *error };
             let side = 2.0 * half / real(F::Point::DIMENSION).sqrt();
             let tile = side * real(F::TILE[0]);
-            let tiles = (bounds.size() / tile).map(|it| it.ceil().max(1.0));
+            let tiles = (bounds.size() / tile).map(f64::ceil);
             let tiles = tiles.coordinates().map(|it| it.max(1.0));
             cells += 64.0 * tiles.iter().product::<f64>();
             if cells.is_nan() || cells > MAX_CELLS {
@@ -397,15 +393,13 @@ fn lattice<F: Covering>(
     [columns, rows, layers]: [usize; 3],
     radius: f64,
 ) -> impl Iterator<Item = [usize; 3]> {
-    /// Share of the radius that is left for the rounding of covered regions.
-    const SPARE: f64 = 0.07;
     let is_plane = F::Point::DIMENSION == 2;
     // Distances within a slice of the lattice, and between slices; every other slice is shifted by half of the first.
     let [wide, high] = match is_plane {
         true => [3.0f64.sqrt(), 1.5],
         false => [4.0 / 5.0f64.sqrt(), 2.0 / 5.0f64.sqrt()],
     }
-    .map(|it| whole((1.0 - SPARE) * radius * it).max(1));
+    .map(|it| whole(radius * it).max(1));
     let slices = if is_plane { rows } else { layers };
     (0..slices).step_by(high).flat_map(move |slice| {
         let start = slice / high % 2 * (wide / 2);

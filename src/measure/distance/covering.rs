@@ -6,14 +6,20 @@ use crate::geometry::{
     BaseElement, Bounds, DAffine2, DAffine3, DVec2, DVec3, Frame2, Frame3, Round, Solid,
 };
 
-use crate::saturating::whole;
-
 use super::region::{Covered, CoveredSquares, Region, TooMany, radius_of};
 
 /// Frames whose sets are covered by points.
 pub trait Covering: Bounded {
     /// Sides of a tile of 64 cells.
     const TILE: [usize; 3];
+
+    /// Maximum distance of the centre of a cell from the part of the set that it represents, as a multiple of the radius of the
+    /// cover. The rest of the radius remains for parts that are covered by points nearby.
+    const NEAR: f64;
+
+    /// Radius of balls about the points of a lattice that leaves nothing between them uncovered, as a multiple of the radius of
+    /// the cover.
+    const APART: f64;
 
     /// Returns an empty memory of the places of a box that are within a radius of visited points; `None` if it would
     /// take too much room.
@@ -36,6 +42,9 @@ pub trait Covering: Bounded {
 
 impl Covering for Frame2 {
     const TILE: [usize; 3] = [8, 8, 1];
+    const NEAR: f64 = 0.75;
+    // Several discs may cover a part together; a share of the radius is left for the rounding of squares.
+    const APART: f64 = 0.93;
 
     fn covered(bounds: &Bounds, radius: f64) -> Option<Box<dyn Covered<DVec2>>> {
         let covered = CoveredSquares::new(bounds, radius)?;
@@ -57,6 +66,9 @@ impl Covering for Frame2 {
 
 impl Covering for Frame3 {
     const TILE: [usize; 3] = [4, 4, 4];
+    const NEAR: f64 = 0.4;
+    // A part is covered by one ball.
+    const APART: f64 = 1.0 - Self::NEAR;
 
     fn covered(bounds: &Bounds<DVec3>, radius: f64) -> Option<Box<dyn Covered<DVec3>>> {
         Some(Box::new(CoveredBalls::new(bounds.min(), radius)))
@@ -222,14 +234,19 @@ impl CoveredBalls {
         }
     }
 
-    fn cell(&self, point: DVec3) -> [usize; 3] {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts from floats saturate"
+    )]
+    fn cell(&self, point: DVec3) -> [u64; 3] {
         let cell = (point - self.corner) / self.radius;
         cell.to_array()
-            .map(|it| whole(it).min((1 << Self::BITS) - 1))
+            .map(|it| (it as u64).min((1 << Self::BITS) - 1))
     }
 
-    fn key([x, y, z]: [usize; 3]) -> u64 {
-        (((z << Self::BITS) + y) << Self::BITS) as u64 + x as u64
+    fn key([x, y, z]: [u64; 3]) -> u64 {
+        ((z << Self::BITS | y) << Self::BITS) | x
     }
 }
 
@@ -278,7 +295,7 @@ mod tests {
     fn cover(solid: &Solid, radius: f64) -> Vec<DVec3> {
         let mut points = Vec::new();
         let mut visit = |point| points.push(point);
-        let covered = Frame3::covered(&Bounds::EMPTY, radius);
+        let covered = Frame3::covered(&solid.bounds(&DAffine3::IDENTITY), radius);
         let mut region = Region::new(covered, radius, 1_000_000, &mut visit);
         let added = Frame3::add_outline(&mut region, solid, &DAffine3::IDENTITY);
         assert_eq!(added, Ok(()));

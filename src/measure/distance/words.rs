@@ -105,28 +105,7 @@ impl<M: Affine> Words<M> {
     /// again: the less all words stretch, the less do the errors of images add up, the larger are the cells, and the more
     /// words there are.
     pub(super) fn new<F: Bounded<Map = M>>(objects: &Objects<'_, F>, products: &Products) -> Self {
-        /// Maximum number of words.
-        const MOST: usize = 4096;
-        /// Maximum number of words that are replaced.
-        const LONGEST: usize = 1 << 14;
-        // There are as many cells as the power of the sum with the dimension, and each has an image by every word.
-        let sides = M::Point::DIMENSION;
-        let images = |words: usize, sum: f64| (0..sides).fold(real(words), |all, _| all * sum);
-        let mut search = Search::new(objects, &products.weights);
-        let mut best = (images(search.open.len(), products.sum), 0, products.sum);
-        for times in 1..=LONGEST {
-            // With more words, there are more images than that.
-            if real(search.open.len()) >= best.0 || search.open.len() > MOST {
-                break;
-            }
-            search.lengthen();
-            let sum = 1.0 / (1.0 - search.longest());
-            let images = images(search.open.len(), sum);
-            if sum > 0.0 && images < best.0 {
-                best = (images, times, sum);
-            }
-        }
-        let (_, times, sum) = best;
+        let (times, sum) = Self::fewest_images(objects, products);
         let mut search = Search::new(objects, &products.weights);
         (0..times).for_each(|_| search.lengthen());
         let numbers = { search.open.iter() }.map(|(_, Reverse(number))| *number);
@@ -137,6 +116,37 @@ impl<M: Affine> Words<M> {
             kept: search.kept,
             sum,
         }
+    }
+
+    /// Returns how many times a word is replaced until the fewest images have to be found, and the sum of stretches then.
+    fn fewest_images<F: Bounded<Map = M>>(
+        objects: &Objects<'_, F>,
+        products: &Products,
+    ) -> (usize, f64) {
+        /// Maximum number of words, and of times that one is replaced.
+        const MOST: usize = 4096;
+        let mut search = Search::new(objects, &products.weights);
+        let own = search.kept.len();
+        // There are as many cells as the power of the sum with the dimension, and each has an image by every word.
+        let images = |search: &Search<'_, F>, sum: f64| {
+            let words = search.open.len() + search.kept.len() - own;
+            (0..M::Point::DIMENSION).fold(real(words), |all, _| all * sum)
+        };
+        let mut best = (images(&search, products.sum), 0, products.sum);
+        for times in 1..=MOST {
+            // The search ends where even without errors that add up there would be more images.
+            if images(&search, 1.0) >= best.0 || search.open.len() + search.kept.len() > MOST + own
+            {
+                break;
+            }
+            search.lengthen();
+            let sum = 1.0 / (1.0 - search.longest());
+            let images = images(&search, sum);
+            if sum > 0.0 && images < best.0 {
+                best = (images, times, sum);
+            }
+        }
+        (best.1, best.2)
     }
 }
 

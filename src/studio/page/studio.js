@@ -956,11 +956,19 @@ async function travel(path) {
 $("undo").onclick = () => travel("/undo");
 $("redo").onclick = () => travel("/redo");
 let design = null;
-/** Shows the figures of the open design, whose code is loaded when they are seen first. */
+/** Returns the code of the figures of a design, which is loaded when they are seen first. */
+const loaded = () => (design ??= import("./design.js").then(
+  (it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state }), it),
+  (error) => { design = null; throw error; },
+));
+/** Shows the figures of the design, if its tab is open. */
 async function figures() {
   if ($("design").hidden) return;
-  design ??= import("./design.js").then((it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state }), it));
-  (await design).show();
+  try {
+    (await loaded()).show();
+  } catch (error) {
+    say(error.message);
+  }
 }
 const tabs = [...document.querySelectorAll("[role=tab]")];
 function openTab(button, focuses = false) {
