@@ -33,5 +33,11 @@ def code_spans(_app: Any, _what: str, _name: str, _object: object, _options: Any
     lines[:] = [re.sub(r"(?<![`:])`([^`]+)`(?![`_])", r"``\1``", line) for line in lines]
 
 
+def is_left_out(_app: Any, _what: str, _name: str, member: object, _skip: bool, _options: Any) -> bool | None:
+    """Leaves out fields of named tuples that have no documentation but their number."""
+    return True if (getattr(member, "__doc__", None) or "").startswith("Alias for field number") else None
+
+
 def setup(app: Any) -> None:
+    app.connect("autodoc-skip-member", is_left_out)
     app.connect("autodoc-process-docstring", code_spans, priority=0)
