@@ -427,7 +427,8 @@ impl Fractal {
     }
 
     /// Writes a picture (.svg, .png, .pdf, .dxf) or a table of elements (.csv, .json, .jsonl, .ndjson), by the extension of
-    /// the file. An existing file is replaced once the new one is complete.
+    /// the file; in space also a mesh (.stl, .obj, .ply) or nested instances (.usda, .glb, .3mf, .pov). An existing file is
+    /// replaced once the new one is complete.
     #[pyo3(signature = (path, steps=None, *, size=SizeArgument::Long(1024), detail=None, seed=0, max_elements=MOST, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn write(

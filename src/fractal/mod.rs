@@ -11,6 +11,7 @@ mod goal;
 mod options;
 mod points;
 mod results;
+mod scene;
 mod space;
 mod table;
 #[cfg(test)]

@@ -102,7 +102,8 @@ impl Fractal {
 
     /// Writes a file: a picture (`svg`, `png`, `pdf`, `dxf`) or a table of elements (`csv`, `json`, `jsonl`,
     /// `ndjson`), by the extension of its name. An existing file is replaced, once the new one is complete. In
-    /// space, `svg`, `pdf` and `dxf` hold the visible faces and edges of the approximant.
+    /// space, `svg`, `pdf` and `dxf` hold the visible faces and edges of the approximant, and there are meshes (`stl`, `obj`,
+    /// `ply`) and nested instances (`usda`, `glb`, `3mf`, `pov`).
     ///
     /// ```
     /// # fn main() -> Result<(), kfrac::Error> {
@@ -127,10 +128,15 @@ impl Fractal {
             let options = self.options(format, self.size)?;
             return written(path, |out| self.draw(&options, out).map(|_| ()));
         }
+        if let Some(done) = self.write_in_space(path, &extension) {
+            return done;
+        }
         let format = export::TableFormat::from_name(&extension).ok_or_else(|| {
             let message = format!("'{}' has no format that is known", path.display());
-            Diagnostic::error(message)
-                .hint("names end in .svg, .png, .pdf, .dxf, .csv, .json, .jsonl or .ndjson")
+            Diagnostic::error(message).hint(
+                "names end in .svg, .png, .pdf, .dxf, .csv, .json, .jsonl or .ndjson, and in space in .stl, .obj, .ply, .usda, \
+                 .glb, .3mf or .pov",
+            )
         })?;
         if self.model.is_in_space() {
             let graph = self.graph_in_space("it has a table, too")?;
@@ -474,7 +480,7 @@ pub(super) fn forecast<F: Frame>(graph: &Graph<F>, steps: u32) -> Option<Forecas
 }
 
 /// Writes a file by `write`. If that fails, an existing file stays as it is.
-fn written(
+pub(super) fn written(
     path: &Path,
     write: impl FnOnce(&mut OutputFile) -> Result<(), Error>,
 ) -> Result<(), Error> {

@@ -137,7 +137,7 @@ impl Fractal {
     }
 
     /// Returns the graph of a set in space as it is drawn; `instead` states what a set of the plane has.
-    fn drawn_in_space(&self, instead: &'static str) -> Result<&DrawnInSpace, Error> {
+    pub(super) fn drawn_in_space(&self, instead: &'static str) -> Result<&DrawnInSpace, Error> {
         if let Some(drawn) = self.drawn_in_space.get() {
             return Ok(drawn);
         }

@@ -363,3 +363,44 @@ fn distances_are_symmetric_and_in_the_unit_of_the_files() -> Result<(), Error> {
     assert!(sponge.compare(&sponge, Some(1), &coarse)?.may_be_same());
     Ok(())
 }
+
+#[test]
+fn sets_in_space_are_written_for_other_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let sponge = named("menger").steps(2);
+    let written = |name: &str| {
+        let path = folder.path().join(name);
+        sponge.write(&path).unwrap();
+        std::fs::read(path).unwrap()
+    };
+    // A header of 80 bytes, the number of triangles, and 50 bytes for each: 12 of each of 400 cubes.
+    let stl = written("sponge.stl");
+    assert_eq!(stl[80..84], (400u32 * 12).to_le_bytes());
+    assert_eq!(stl.len(), 84 + 50 * 400 * 12);
+    let starts = [
+        ("sponge.PLY", "ply\n"),
+        ("sponge.usda", "#usda 1.0"),
+        ("sponge.glb", "glTF"),
+        ("sponge.3mf", "PK"),
+    ];
+    for (name, start) in starts {
+        assert!(written(name).starts_with(start.as_bytes()), "{name}");
+    }
+    for name in ["sponge.obj", "sponge.pov"] {
+        assert!(!written(name).is_empty(), "{name}");
+    }
+    let path = folder.path().join("none.stl");
+    let deep = named("menger").steps(9).write(&path);
+    assert!(
+        matches!(deep, Err(Error::Walk(WalkError::TooManyElements { .. }))),
+        "{deep:?}"
+    );
+    let flat = named("koch").write(&path);
+    assert!(matches!(flat, Err(Error::InPlane(_))), "{flat:?}");
+    assert!(!path.exists());
+    // A scene of instances holds any depth.
+    named("menger")
+        .steps(40)
+        .write(folder.path().join("deep.usda"))
+        .unwrap();
+}
