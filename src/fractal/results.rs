@@ -18,7 +18,7 @@ use crate::output_file::{OutputFile, WriteError};
 use crate::parallel::is_cancelled;
 use crate::render::space::{pixels_in_space, write_space, write_visible};
 use crate::render::{self, Format, Labels, Options, Picture, Pixels, RenderError, Size};
-use crate::style::{ColorBy, Named};
+use crate::style::{ColorBy, Colour, Named};
 
 use super::{Error, Fractal, Goal, proposed_steps};
 
@@ -91,6 +91,7 @@ impl Fractal {
             let space = self.space_options();
             let mut options = options;
             set.colour(&mut options.style);
+            options.style.background.get_or_insert(Colour::TRANSPARENT);
             let drawn = pixels_in_space(&set.graph, set.steps, &options, &space, cancel);
             return Ok(drawn?.pixels);
         }
