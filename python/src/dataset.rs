@@ -168,7 +168,10 @@ impl Dataset {
         all.set_item("category", category)?;
         all.set_item("name", name)?;
         all.set_item("instance", instance)?;
-        all.set_item("maps", label.maps.as_ref().map(Maps::rows).unwrap_or_default())?;
+        all.set_item(
+            "maps",
+            label.maps.as_ref().map(Maps::rows).unwrap_or_default(),
+        )?;
         let parameters = PyDict::new(py);
         for (name, value) in label.parameters {
             parameters.set_item(name, value)?;
