@@ -1,11 +1,17 @@
 //! Data sets that the command writes: parts, order, resumption, checks.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::Path;
+use std::sync::Arc;
 
 use kfrac::dataset::Dataset;
+use parquet::data_type::Int64Type;
+use parquet::file::reader::{FileReader as _, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::record::RowAccessor as _;
+use parquet::schema::parser::parse_message_type;
 use serde_json::Value;
 
 use crate::common::{files, said};
@@ -119,6 +125,86 @@ fn archives_are_those_of_the_whole_in_any_part() {
 }
 
 #[test]
+fn tables_have_the_pictures_and_labels_of_the_archives() {
+    let folder = tempfile::tempdir().unwrap();
+    run(
+        folder.path(),
+        &["-o", "whole/%04d.parquet", "--archive", "6"],
+    );
+    for part in ["2/2", "1/2"] {
+        let parts = ["-o", "parts/%04d.parquet", "--archive", "6"];
+        run(folder.path(), &[&parts[..], &["--shard", part]].concat());
+    }
+    run(folder.path(), &["-o", "tar/%d.tar"]);
+    let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let set = Dataset::parse(SPEC).unwrap();
+    let mut labels = Vec::new();
+    for archive in 0..4 {
+        let name = format!("{archive:04}.parquet");
+        assert!(file(&format!("whole/{name}")) == file(&format!("parts/{name}")));
+        let table = File::open(folder.path().join("whole").join(name)).unwrap();
+        let table = SerializedFileReader::new(table).unwrap();
+        for row in table.get_row_iter(None).unwrap() {
+            let row = row.unwrap();
+            let example = set.example(labels.len() as u64).unwrap();
+            let name = set.category(example.category).unwrap().name();
+            let image = row.get_group(0).unwrap();
+            assert!(image.get_bytes(0).unwrap().data() == example.picture.into_png());
+            let path = format!("{name}/{:06}.png", example.instance);
+            assert_eq!(image.get_string(1).unwrap(), &path);
+            assert_eq!(row.get_long(1).unwrap(), i64::from(example.category));
+            assert_eq!(row.get_string(2).unwrap(), name);
+            labels.push(row.get_string(3).unwrap().clone());
+        }
+    }
+    let archive = file("tar/0.tar");
+    let mut archive = tar::Archive::new(archive.as_slice());
+    let mut expected = Vec::new();
+    for entry in archive.entries().unwrap() {
+        let mut entry = entry.unwrap();
+        if entry.path().unwrap().extension().unwrap() == "json" {
+            let mut text = String::new();
+            entry.read_to_string(&mut text).unwrap();
+            expected.push(text);
+        }
+    }
+    assert_eq!(labels, expected);
+
+    // Tables that exist are counted by their pictures, and compared as a whole.
+    let manifest = file("whole/manifest.json");
+    fs::remove_file(folder.path().join("whole/0002.parquet")).unwrap();
+    let again = ["-o", "whole/%04d.parquet", "--archive", "6"];
+    run(folder.path(), &again);
+    assert!(file("whole/manifest.json") == manifest);
+    run(folder.path(), &[&again[..], &["--check"]].concat());
+    let other = file("whole/0000.parquet");
+    fs::write(folder.path().join("whole/0003.parquet"), other).unwrap();
+    let check = ["dataset", "set.yaml", "--check"];
+    let (status, message) = said(folder.path(), &[&check[..], &again].concat());
+    assert_eq!(status, Some(1));
+    assert!(
+        message.contains("0003.parquet is missing, or differs"),
+        "{message}"
+    );
+    let schema = parse_message_type("message numbers { required int64 number; }").unwrap();
+    let mut foreign =
+        SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::default()).unwrap();
+    let mut group = foreign.next_row_group().unwrap();
+    let mut column = group.next_column().unwrap().unwrap();
+    let numbers = column.typed::<Int64Type>();
+    numbers.write_batch(&[1, 2], None, None).unwrap();
+    column.close().unwrap();
+    group.close().unwrap();
+    let foreign = foreign.into_inner().unwrap();
+    for other in [foreign.as_slice(), b"no table"] {
+        fs::write(folder.path().join("whole/0003.parquet"), other).unwrap();
+        let (status, message) = said(folder.path(), &[&check[..2], &again].concat());
+        assert_eq!(status, Some(1));
+        assert!(message.contains("0003.parquet"), "{message}");
+    }
+}
+
+#[test]
 fn what_is_there_is_kept_and_checked() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["-o", "out"]);
@@ -144,10 +230,11 @@ fn another_data_set_is_not_mixed_in() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["-o", "out"]);
     fs::write(folder.path().join("set.yaml"), SPEC.replace("24", "25")).unwrap();
-    let wrong: [(&[&str], i32, &str); 5] = [
+    let wrong: [(&[&str], i32, &str); 6] = [
         (&["-o", "out"], 1, "holds another data set"),
         (&["-o", "nothing", "--check"], 1, "holds no data set"),
         (&["-o", "out/archive.tar"], 2, "%06d.tar"),
+        (&["-o", "out/table.parquet"], 2, "%06d.parquet"),
         (&["-o", "new", "--shard", "4/3"], 2, "K from 1 to N"),
         (&["-o", "new", "--archive", "0"], 2, "from 1 to"),
     ];

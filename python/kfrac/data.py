@@ -1,7 +1,7 @@
 """Data sets of pictures of fractals, with labels, for the training of networks.
 
 A file of the kind `dataset` describes categories, the variation of their pictures and how these are drawn; `kfrac dataset`
-writes it as a folder or as archives. Here its pictures are arrays, drawn when they are asked for:
+writes it as a folder, as archives or as tables in Parquet. Here its pictures are arrays, drawn when they are asked for:
 
 >>> from kfrac.data import Batches, Dataset
 >>> dataset = Dataset.parse('''
@@ -146,9 +146,11 @@ def write_parquet(
     pyarrow: Any = typeless
     parquet: Any = parquet_typeless
     image = pyarrow.struct([("bytes", pyarrow.binary()), ("path", pyarrow.string())])
-    schema = pyarrow.schema(
-        [("image", image), ("category", pyarrow.int64()), ("name", pyarrow.string()), ("label", pyarrow.string())]
-    )
+    columns = [("image", image), ("category", pyarrow.int64()), ("name", pyarrow.string()), ("label", pyarrow.string())]
+    features = {name: {"dtype": str(kind), "_type": "Value"} for name, kind in columns[1:]}
+    features["image"] = {"_type": "Image"}
+    # `datasets` decodes the pictures of a column that is named here.
+    schema = pyarrow.schema(columns, metadata={"huggingface": json.dumps({"info": {"features": features}})})
     start, stop = dataset.shard(*shard)
     with parquet.ParquetWriter(path, schema, compression="none") as writer:
         for first in range(start, stop, rows):

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet
 import pytest
 import webdataset
 from PIL import Image
 
-from kfrac.data import Dataset
+from kfrac.data import Dataset, write_parquet
 
 PROGRAM = os.environ.get("KFRAC")
 
@@ -53,6 +54,21 @@ def test_webdataset_reads_the_archives(tmp_path: Path) -> None:
         assert {key: sample["json"][key] for key in ("instance", "maps", "flip")} == {
             key: label[key] for key in ("instance", "maps", "flip")
         }
+
+
+def test_tables_are_those_of_pyarrow(tmp_path: Path) -> None:
+    write(tmp_path, "-o", "out/%06d.parquet", "--archive", "40")
+    own = tmp_path / "out" / "000000.parquet"
+    pictures = Dataset.parse(SPEC)
+    other = tmp_path / "other.parquet"
+    write_parquet(pictures, other)
+    schemas: list[Any] = [pyarrow.parquet.read_schema(path) for path in (own, other)]
+    assert schemas[0].equals(schemas[1])
+    features = [json.loads(schema.metadata[b"huggingface"]) for schema in schemas]
+    assert features[0] == features[1]
+    tables: list[Any] = [pyarrow.parquet.read_table(path) for path in (own, other)]
+    for name in ("image", "category", "name"):
+        assert tables[0][name].to_pylist() == tables[1][name].to_pylist()
 
 
 def test_folders_are_those_of_image_folder(tmp_path: Path) -> None:

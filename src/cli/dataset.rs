@@ -31,12 +31,13 @@ pub(super) struct Arguments {
     /// File of the kind `dataset`, or - for standard input
     #[arg(value_name = "SPEC", value_hint = ValueHint::FilePath)]
     spec: PathBuf,
-    /// Folder with a folder for each category, or archives: a name such as set/%06d.tar
+    /// Folder with a folder for each category, or archives: set/%06d.tar, set/%06d.parquet
     ///
     /// A folder has the file CATEGORY/INSTANCE.png for each picture, as torchvision's ImageFolder reads it, and
-    /// labels.jsonl. Archives are those of WebDataset: KEY.png, KEY.cls (the number of the category) and KEY.json (the
-    /// label). Beside them lie dataset.yaml, the data set itself, and manifest.json. Files that exist are not written
-    /// again.
+    /// labels.jsonl. Archives in tar are those of WebDataset: KEY.png, KEY.cls (the number of the category) and KEY.json (the
+    /// label). Tables in Parquet have the columns image (bytes, a PNG, and path), category, name and label (JSON), as
+    /// Hugging Face's library datasets reads them. Beside them lie dataset.yaml, the data set itself, and manifest.json. Files
+    /// that exist are not written again.
     #[arg(long, short, value_name = "OUT", value_hint = ValueHint::AnyPath)]
     output: PathBuf,
     /// Part of the work, such as 3/64: the third of 64 parts
@@ -71,6 +72,8 @@ Examples:
       Writes a folder that ImageFolder reads
   kfrac dataset set.yaml -o archives/%06d.tar --shard 3/64
       Writes the third of 64 parts, as archives for WebDataset
+  kfrac dataset set.yaml -o tables/%06d.parquet
+      Writes tables in Parquet, as Hugging Face's datasets reads them
   kfrac dataset set.yaml -o pictures --check
       Draws all pictures again, and reports those that differ
 ";

@@ -1,8 +1,11 @@
-//! Data sets as archives for WebDataset.
+//! Data sets as archives: of WebDataset, or tables in Parquet.
+
+mod parquet;
+mod tar;
 
 use std::fs;
-use std::io::Cursor;
 use std::ops::Range;
+use std::path::Path;
 
 use anyhow::Context;
 
@@ -10,6 +13,59 @@ use super::super::{Failure, output};
 use super::folder::{ArchiveName, write_file};
 use super::manifest::{LabelRow, Tally};
 use super::{Job, Shard};
+
+/// Format of archives.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Format {
+    /// Files of WebDataset: KEY.png, KEY.cls and KEY.json.
+    Tar,
+    /// A table with a row for each picture.
+    Parquet,
+}
+
+/// Picture in an archive.
+struct Entry {
+    category: u32,
+    instance: u32,
+    name: String,
+    png: Vec<u8>,
+    /// Label as JSON.
+    label: String,
+}
+
+/// Archive that is made in memory.
+trait Archive {
+    fn add(&mut self, entry: Entry) -> anyhow::Result<()>;
+
+    /// Returns the bytes of the archive.
+    fn finish(self: Box<Self>) -> anyhow::Result<Vec<u8>>;
+}
+
+impl Format {
+    /// Returns the format that the extension of a file names.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "tar" => Some(Self::Tar),
+            "parquet" => Some(Self::Parquet),
+            _ => None,
+        }
+    }
+
+    fn begin(self) -> anyhow::Result<Box<dyn Archive>> {
+        Ok(match self {
+            Self::Tar => Box::new(tar::Files::new()),
+            Self::Parquet => Box::new(parquet::Table::new()?),
+        })
+    }
+
+    /// Returns the pictures of an archive.
+    fn pictures(self, path: &Path) -> anyhow::Result<Vec<Vec<u8>>> {
+        match self {
+            Self::Tar => tar::pictures(path),
+            Self::Parquet => parquet::pictures(path),
+        }
+    }
+}
 
 /// Writes the archives of a part of the work, or compares them; returns the range of their pictures. Archive n has the pictures
 /// from n · `size` on, whatever the part.
@@ -30,20 +86,18 @@ pub(super) fn write(
     for archive in own.clone() {
         let pictures = archive * size..((archive + 1) * size).min(len);
         let path = name.path(archive);
-        let written = fs::read(&path).ok();
-        if let Some(written) = written.as_ref().filter(|_| !job.checks) {
-            for png in pictures_of(written).with_context(|| output::called(&path))? {
+        if !job.checks && path.is_file() {
+            let written = name.format.pictures(&path);
+            for png in written.with_context(|| output::called(&path))? {
                 tally.add(&png);
             }
             continue;
         }
-        let bytes = made(job, pictures, &mut tally)?;
-        match job.checks {
-            true if written.is_none_or(|written| written != bytes) => {
-                tally.wrong.push(path.display().to_string());
-            }
-            true => {}
-            false => write_file(&path, &bytes)?,
+        let bytes = made(job, name.format, pictures, &mut tally)?;
+        if !job.checks {
+            write_file(&path, &bytes)?;
+        } else if fs::read(&path).map_or(true, |written| written != bytes) {
+            tally.wrong.push(path.display().to_string());
         }
     }
     Ok((
@@ -53,50 +107,30 @@ pub(super) fn write(
 }
 
 /// Returns the bytes of an archive.
-fn made(job: &Job<'_>, pictures: Range<u64>, tally: &mut Tally) -> Result<Vec<u8>, Failure> {
+fn made(
+    job: &Job<'_>,
+    format: Format,
+    pictures: Range<u64>,
+    tally: &mut Tally,
+) -> Result<Vec<u8>, Failure> {
     let set = job.set;
-    let mut archive = tar::Builder::new(Vec::new());
+    let mut archive = format.begin()?;
     job.each(
         pictures,
         |index| {
             let example = set.example(index)?;
-            let label = LabelRow::new(set, index, &example.label)?.json()?;
-            let key = format!("{:05}_{:06}", example.category, example.instance);
-            Ok((key, example.category, example.picture.into_png(), label))
+            Ok(Entry {
+                category: example.category,
+                instance: example.instance,
+                name: set.category(example.category)?.name().to_owned(),
+                label: LabelRow::new(set, index, &example.label)?.json()?,
+                png: example.picture.into_png(),
+            })
         },
-        |_, (key, category, png, label)| {
-            tally.add(&png);
-            let files = [
-                ("png", png.as_slice()),
-                ("cls", category.to_string().as_bytes()),
-                ("json", label.as_bytes()),
-            ]
-            .map(|(extension, bytes)| (format!("{key}.{extension}"), bytes.to_vec()));
-            for (name, bytes) in files {
-                let mut header = tar::Header::new_ustar();
-                header.set_size(bytes.len() as u64);
-                header.set_mode(0o644);
-                header.set_mtime(0);
-                header.set_entry_type(tar::EntryType::Regular);
-                archive.append_data(&mut header, name, bytes.as_slice())?;
-            }
-            Ok(())
+        |_, entry| {
+            tally.add(&entry.png);
+            Ok(archive.add(entry)?)
         },
     )?;
-    Ok(archive.into_inner()?)
-}
-
-/// Returns the pictures of an archive.
-fn pictures_of(bytes: &[u8]) -> anyhow::Result<Vec<Vec<u8>>> {
-    let mut archive = tar::Archive::new(Cursor::new(bytes));
-    let mut pictures = Vec::new();
-    for entry in archive.entries()? {
-        let mut entry = entry?;
-        if entry.path()?.extension().is_some_and(|it| it == "png") {
-            let mut png = Vec::new();
-            std::io::Read::read_to_end(&mut entry, &mut png)?;
-            pictures.push(png);
-        }
-    }
-    Ok(pictures)
+    Ok(archive.finish()?)
 }

@@ -12,6 +12,7 @@ use crate::output_file::OutputFile;
 
 use super::super::template::NumberedName;
 use super::super::{Failure, output};
+use super::archive::Format;
 use super::manifest::{LabelRow, Tally};
 use super::{Job, Shard};
 
@@ -26,6 +27,7 @@ pub(super) struct Place {
 pub(super) struct ArchiveName {
     name: NumberedName,
     folder: PathBuf,
+    pub(super) format: Format,
 }
 
 impl ArchiveName {
@@ -36,20 +38,22 @@ impl ArchiveName {
 
 /// Returns the place that an output names.
 pub(super) fn place(output: &Path) -> Result<Place, Failure> {
-    if output.extension().is_none_or(|it| it != "tar") {
+    let Some(format) = Format::of(output) else {
         return Ok(Place {
             folder: output.into(),
             archive: None,
         });
-    }
+    };
     let name = output
         .file_name()
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
     let Some(numbered) = NumberedName::parse(&name) else {
-        let message =
-            format!("'{name}' has no place for the number of an archive: %06d.tar, for example");
+        let extension = output.extension().unwrap_or_default().display();
+        let message = format!(
+            "'{name}' has no place for the number of an archive: %06d.{extension}, for example"
+        );
         return Err(Failure::Usage(message));
     };
     let folder = output.parent().filter(|it| !it.as_os_str().is_empty());
@@ -59,6 +63,7 @@ pub(super) fn place(output: &Path) -> Result<Place, Failure> {
         archive: Some(ArchiveName {
             name: numbered,
             folder,
+            format,
         }),
     })
 }
