@@ -290,20 +290,21 @@ fn steps_grow_out_of_the_ones_before() {
 fn whole_steps_pass_into_growth() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // The largest mean difference of a pixel, of 255: strokes round off where elements are divided.
+    // The largest mean difference of a pixel, of 255: strokes round off where elements are divided. Sets in space with one
+    // box at all steps are not fitted together: that takes the box of every frame.
     let rules = [
-        ("koch", "step", 0.2),
-        ("carpet", "step", 0.2),
-        ("pentaflake", "step", 0.2),
-        ("pythagoras-squares", "step", 1.0),
-        ("koch-surface", "step", 0.2),
-        ("sphere-flake", "step", 0.2),
-        ("sierpinski-tetrahedron", "step", 0.2),
-        ("koch-lsystem", "step", 0.2),
-        ("plant-a", "step", 0.5),
-        ("bush-in-space", "none", 1.0),
+        ("koch", "step", "all", 0.2),
+        ("carpet", "step", "all", 0.2),
+        ("pentaflake", "step", "all", 0.2),
+        ("pythagoras-squares", "step", "all", 1.0),
+        ("koch-surface", "step", "each", 0.2),
+        ("sphere-flake", "step", "each", 0.2),
+        ("sierpinski-tetrahedron", "step", "each", 0.2),
+        ("koch-lsystem", "step", "all", 0.2),
+        ("plant-a", "step", "all", 0.5),
+        ("bush-in-space", "none", "all", 1.0),
     ];
-    for (rule, color_by, most) in rules {
+    for (rule, color_by, fit, most) in rules {
         let film = [
             "animate",
             rule,
@@ -317,6 +318,8 @@ fn whole_steps_pass_into_growth() {
             "0..1",
             "--size",
             "96x72",
+            "--fit",
+            fit,
             "--color-by",
             color_by,
             "-o",
@@ -404,6 +407,30 @@ steps: 3
     assert_eq!(kept().as_deref(), Some("2 of them kept"));
     fs::write(folder.join("mine.yaml"), rule.replace("1/3", "0.3")).unwrap();
     assert_eq!(kept(), None);
+}
+
+/// Frames of sets in space are kept as well: of whole sets, of sections, and of points.
+#[test]
+fn finished_frames_in_space_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let cut = ["--slice", "1,1,1=1.5"];
+    let chaos = ["--method", "chaos", "--points", "5000"];
+    for more in [&[][..], &cut, &chaos] {
+        let film = [
+            "animate", "menger", "--from", "0..90,25", "--frames", "3", "--size", "40x30", "-o",
+            "%d.png",
+        ];
+        let film = [&film[..], more].concat();
+        let (status, first) = said(folder, &film);
+        assert!(status == Some(0) && !first.contains("kept"), "{first}");
+        let frame = fs::read(folder.join("1.png")).unwrap();
+        fs::remove_file(folder.join("1.png")).unwrap();
+        let (_, again) = said(folder, &film);
+        assert!(again.contains("2 of them kept"), "{again}");
+        assert!(fs::read(folder.join("1.png")).unwrap() == frame);
+        (0..3).for_each(|number| fs::remove_file(folder.join(format!("{number}.png"))).unwrap());
+    }
 }
 
 #[test]

@@ -19,7 +19,7 @@ use crate::parallel::all_cores;
 use crate::render::{self, PngEncoding, RenderError, Size, Spares};
 use crate::rule::Placement;
 
-use super::held::Held;
+use super::held::{Held, Survey};
 use super::output::{Counted, Output};
 use super::rule::Loaded;
 use super::{Failure, number, output, text};
@@ -118,6 +118,12 @@ impl GrowthArguments {
         self.held
             .as_ref()
             .map_or_else(PngEncoding::default, |held| held.png)
+    }
+
+    /// Returns the numbers for which a picture is grown, with the destination that records them, if it need not be drawn.
+    pub(super) fn survey(&self) -> Option<(&Held, Survey)> {
+        let held = self.held.as_deref()?;
+        Some((held, held.survey?))
     }
 
     /// Returns the memory of finished pictures, for those that follow.

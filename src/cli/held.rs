@@ -21,11 +21,20 @@ pub(crate) struct Held {
     pub(crate) png: PngEncoding,
     /// Largest number of bytes of standard output.
     pub(crate) most: usize,
-    /// Whether a picture of the plane is not drawn: only its numbers are found.
-    pub(crate) surveys: bool,
+    /// Part of the numbers of a picture for which it is grown, if it need not be drawn.
+    pub(crate) survey: Option<Survey>,
     /// Memory of finished pictures, for those that follow.
     pub(crate) spares: Spares,
     done: Mutex<Done>,
+}
+
+/// Numbers for which a picture is grown. It is not drawn where they are found without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Survey {
+    /// Place, size and cost.
+    Place,
+    /// Text from which the picture can be made again.
+    Provenance,
 }
 
 /// Results of a command beside its files.

@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::cli::held::{Done, Held};
+use crate::cli::held::{Done, Held, Survey};
 use crate::parallel::with_team;
 use crate::render::{PngEncoding, Spares};
 
@@ -34,7 +34,7 @@ pub(super) enum Purpose {
     Png,
     /// Lines, as SVG.
     Lines,
-    /// Numbers of the pictures, without pixels in the plane.
+    /// Numbers of the pictures.
     Survey,
     /// Numbers of PNGs, with their provenance.
     PngSurvey,
@@ -95,7 +95,11 @@ impl Job<'_> {
             Purpose::Pixels | Purpose::Lines | Purpose::Survey => PngEncoding::raw(),
         };
         let mut held = Held::new(MAX_BYTES, encoding);
-        held.surveys = matches!(self.purpose, Purpose::Survey | Purpose::PngSurvey);
+        held.survey = match self.purpose {
+            Purpose::Survey => Some(Survey::Place),
+            Purpose::PngSurvey => Some(Survey::Provenance),
+            Purpose::Pixels | Purpose::Png | Purpose::Lines => None,
+        };
         held.spares = frames.spares.clone();
         let held = held.in_place_of(std::mem::take(&mut self.done.bytes));
         let held = Arc::new(held);

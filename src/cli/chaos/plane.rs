@@ -230,11 +230,6 @@ impl<'a> PlaneGame<'a> {
         if let Some(held) = held {
             held.note_window(&canvas, &self.iteration.place);
         }
-        if held.is_some_and(|held| held.surveys) {
-            return Ok(String::new());
-        }
-        let histogram = self.histogram(&canvas, progress)?;
-        let density = self.density(size);
         let described = self.iteration.described();
         let mut options = self.iteration.options();
         options.push(("format", "png".into()));
@@ -242,6 +237,12 @@ impl<'a> PlaneGame<'a> {
         options.extend(given);
         options.extend(picture.options());
         let labels = labels(self.iteration.loaded, &described, "grow", options);
+        if let Some((held, _)) = growth.survey() {
+            held.done().provenance = Some(labels.provenance);
+            return Ok(String::new());
+        }
+        let histogram = self.histogram(&canvas, progress)?;
+        let density = self.density(size);
         write_density_with(&growth.spares(), &histogram, &density, &labels, out)
             .map_err(explain)?;
         let inside = match histogram.inside() {

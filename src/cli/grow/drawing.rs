@@ -104,8 +104,7 @@ impl<'a> Drawing<'a> {
         }
         let place = *graph.place();
         let surveys = matches!(self.shown, ShownPart::Window);
-        let held = arguments.growth.held.as_ref();
-        if let Some(held) = held.filter(|held| held.surveys && surveys) {
+        if let Some((held, _)) = arguments.growth.survey().filter(|_| surveys) {
             held.done().estimate = growth::png_estimate(&graph, *goal, &options);
             let picture = self
                 .surveyed(graph)

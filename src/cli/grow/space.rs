@@ -6,11 +6,12 @@ use anyhow::anyhow;
 
 use crate::grow::Progress;
 use crate::model::for_pixels;
-use crate::render::space::{SpacePicture, pixels_in_space};
+use crate::render::space::{SpacePicture, pixels_in_space, sight_in_space};
 use crate::render::{self, Detail, Picture, Unit};
 use crate::style::Named;
 
 use super::super::chaos::SpaceGame;
+use super::super::held::Survey;
 use super::super::labels::labels;
 use super::super::rule::Loaded;
 use super::super::{Failure, output, readable, steps};
@@ -69,6 +70,18 @@ pub(super) fn draw(
     let drawn = loaded.drawn_in_space(steps, for_pixels(options.style.color_by))?;
     drawn.colour(&mut options.style);
     let graph = drawn.graph;
+    if let Some((held, survey)) = arguments.growth.survey() {
+        held.done().provenance = Some(options.labels.provenance.clone());
+        if survey == Survey::Provenance {
+            return Ok((path.clone(), String::new(), 0));
+        }
+        // Whether anything is left of a set that is cut is known from its picture, and so is the place of points.
+        if game.is_none() && space.is_whole() {
+            let sight = sight_in_space(&graph, drawn.steps, &options, &space);
+            held.note_sight(sight.map_err(|error| output::explain(error, path))?);
+            return Ok((path.clone(), String::new(), 0));
+        }
+    }
     if let Some(game) = game {
         if let Plan::Chaos(Some(_)) | Plan::Cloud = plan {
             let (summary, bytes) = arguments.write_picture(path, |out, progress| match *plan {

@@ -61,7 +61,7 @@ use self::camera::Placement;
 use self::descent::{Descent, Roots};
 use self::forms::Forms;
 use self::lit::Lit;
-use self::scene::{ClassBy, End};
+use self::scene::{ClassBy, End, Part};
 use self::shade::Inks;
 use self::shadows::Shadows;
 use self::slice::Search;
@@ -118,6 +118,22 @@ pub fn pixels_in_space(
         picture,
         sight: placement.sight(space.camera.look_at),
     })
+}
+
+/// Returns what lies in the middle of a picture that [`pixels_in_space`] would draw of a set that is not cut.
+///
+/// # Errors
+///
+/// If there is nothing to draw or no room for it, if the camera is not valid, or if the extent of the set is not known.
+#[cfg(feature = "cli")]
+pub(crate) fn sight_in_space(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+) -> Result<Sight, RenderError> {
+    let placement = placement(graph, &[], steps, options, space)?;
+    Ok(placement.sight(space.camera.look_at))
 }
 
 /// Picture in memory.
@@ -207,6 +223,25 @@ impl Tile<'_> {
 /// Number of colours by normal.
 const NORMALS: usize = 65;
 
+/// Places the set on the picture. `parts` are needed for a set that is not whole.
+fn placement(
+    graph: &Graph<Frame3>,
+    parts: &[Part],
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+) -> Result<Placement, SpaceError> {
+    let search = Search {
+        parts,
+        start: &scene::start(graph),
+        steps,
+    };
+    // A section has the depths of its plane.
+    let within = space.within(0.0);
+    let (size, pad) = (options.size, options.view.pad());
+    place::place(graph, &search, &space.camera, &within, size, pad)
+}
+
 /// Draws the picture into memory.
 fn draw(
     graph: &Graph<Frame3>,
@@ -218,20 +253,7 @@ fn draw(
     const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
     let parts = scene::parts(graph, steps);
-    let search = Search {
-        parts: &parts,
-        start: &scene::start(graph),
-        steps,
-    };
-    let placement = place::place(
-        graph,
-        &search,
-        &space.camera,
-        // A section has the depths of its plane.
-        &space.within(0.0),
-        options.size,
-        options.view.pad(),
-    )?;
+    let placement = placement(graph, &parts, steps, options, space)?;
     #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
     let cuts = space.within(SAMPLES as f64 / placement.scale());
     let cuts = cuts.iter().map(|cut| slice::mapped(cut, &placement.map));

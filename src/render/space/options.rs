@@ -99,6 +99,12 @@ impl SpaceOptions {
         slabs.chain(self.cuts.iter().copied()).collect()
     }
 
+    /// Returns whether the picture is confined to no half-spaces.
+    #[cfg(feature = "cli")]
+    pub(crate) fn is_whole(&self) -> bool {
+        self.slice.is_none() && self.cuts.is_empty()
+    }
+
     /// Returns whether the colours of pixels, or the caller, need depths.
     pub(super) fn needs_depths(&self, has_faces: bool) -> bool {
         self.shade.unwrap_or_default().has_relief(has_faces)
