@@ -354,8 +354,11 @@ impl Catalogue {
     /// ```
     #[must_use]
     pub fn description(&self, entry: &LibraryFile) -> Description {
-        let node = self.open(entry).ok();
-        let node = node.and_then(|source| Node::parse(&source).ok());
+        let source = match embedded(entry.shelf, &entry.name) {
+            Some(text) if entry.path.is_none() => Some(Source::new("(described)", described(text))),
+            _ => self.open(entry).ok(),
+        };
+        let node = source.and_then(|source| Node::parse(&source).ok());
         let get = |key| Some(&node.as_ref()?.get(key)?.value);
         let text = |key| match get(key) {
             Some(Value::Text(text)) => Some(text.trim_end().to_owned()),
@@ -444,6 +447,23 @@ fn on_shelf<'n>(shelves: &[Shelf], name: &'n str) -> Option<(Shelf, &'n str)> {
     Some((*shelf, name))
 }
 
+/// Returns the lines of an embedded file that describe it. In the files of the library, keys begin lines, and their values
+/// are indented.
+fn described(text: &str) -> String {
+    const KEYS: [&str; 4] = ["title:", "about:", "source:", "tags:"];
+    let mut lines = String::new();
+    let mut is_kept = false;
+    for line in text.split_inclusive('\n') {
+        if !line.starts_with([' ', '\n']) {
+            is_kept = KEYS.iter().any(|key| line.starts_with(key));
+        }
+        if is_kept {
+            lines.push_str(line);
+        }
+    }
+    lines
+}
+
 /// Returns the text of an embedded file.
 fn embedded(shelf: Shelf, name: &str) -> Option<&'static str> {
     let path = format!("{}/{name}.yaml", shelf.folder());
@@ -493,4 +513,33 @@ pub(crate) fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     let read = open_file(path)?.take(most).read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;
     Source::read_file(path, bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Catalogue, EMBEDDED, described};
+    use crate::diagnostic::Source;
+    use crate::document::node::Node;
+
+    #[test]
+    fn lines_that_describe_embedded_files_have_their_descriptions() {
+        for (path, text) in EMBEDDED {
+            let [whole, lines] = [*text, &described(text)]
+                .map(|text| Node::parse(&Source::new("file", text)).unwrap());
+            for key in ["title", "about", "source", "tags"] {
+                let [whole, lines] = [&whole, &lines].map(|node| node.get(key));
+                let is_same = match (whole, lines) {
+                    (Some(whole), Some(lines)) => whole.same_value(lines),
+                    (whole, lines) => whole.is_none() && lines.is_none(),
+                };
+                assert!(is_same, "{path}, {key}");
+            }
+        }
+        let library = Catalogue::embedded();
+        let entries = library.entries();
+        let titled = { entries.iter() }
+            .filter(|entry| library.description(entry).title.is_some())
+            .count();
+        assert!(titled > 200, "{titled}");
+    }
 }

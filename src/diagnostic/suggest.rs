@@ -55,10 +55,15 @@ pub(crate) fn nearest<'a>(
         .filter(|candidate| *candidate != name)
         .filter_map(|candidate| {
             let known = folded(candidate)?;
-            let distance = distance(&wanted, &known);
             let longest = wanted.len().max(known.len());
+            let most = (longest / 3).max(1);
+            // The distance is at least the difference of the lengths.
+            if wanted.len().abs_diff(known.len()) > most {
+                return None;
+            }
+            let distance = distance(&wanted, &known);
             // Otherwise every name of one letter would be near to every other.
-            let near = distance == 0 || (distance <= (longest / 3).max(1) && distance < longest);
+            let near = distance == 0 || (distance <= most && distance < longest);
             near.then_some((distance, candidate))
         })
         .min_by_key(|(distance, _)| *distance)

@@ -1,8 +1,10 @@
 //! Contraction of products of maps, for graphs whose single maps do not all contract.
 
-use crate::geometry::{Affine, Frame, Point};
+use std::hash::Hasher as _;
 
 use super::bounded::Bounded;
+use crate::fast_hash::{FastHasher, FastMap};
+use crate::geometry::{Affine, Frame, Point};
 use crate::graph::{Graph, Instance};
 
 /// Bound on the stretch of products of maps: with weights u of the objects, the product over n instances
@@ -123,14 +125,23 @@ impl<F: Bounded> Graph<F> {
 impl<F: Frame> Graph<F> {
     /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
     pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(F::Map, usize)>> {
-        let mut images = vec![Vec::new(); self.behaviours().count()];
+        let mut images: Vec<Vec<_>> = vec![Vec::new(); self.behaviours().count()];
+        let mut known: FastMap<u64, Vec<usize>> = FastMap::default();
         for (number, object) in self.behaviours_by_number() {
+            let images = &mut images[object.behaviour];
+            known.clear();
             for (_, instance) in self.children(number) {
-                let child = &self.objects[instance.object];
-                let image = (*instance.frame.map(), child.behaviour);
-                let is_new = || !images[object.behaviour].contains(&image);
-                if self.is_replaced(instance.object) && counts(instance.object) && is_new() {
-                    images[object.behaviour].push(image);
+                if !self.is_replaced(instance.object) || !counts(instance.object) {
+                    continue;
+                }
+                let image = (
+                    *instance.frame.map(),
+                    self.objects[instance.object].behaviour,
+                );
+                let alike = known.entry(hash(&image)).or_default();
+                if !alike.iter().any(|place| images[*place] == image) {
+                    alike.push(images.len());
+                    images.push(image);
                 }
             }
         }
@@ -140,4 +151,20 @@ impl<F: Frame> Graph<F> {
     pub(super) fn is_replaced(&self, object: usize) -> bool {
         self.objects[object].successor().is_some()
     }
+}
+
+/// Returns a hash of an image: equal images have equal ones.
+fn hash<M: Affine>((map, inner): &(M, usize)) -> u64 {
+    let mut hasher = FastHasher::default();
+    hasher.write_usize(*inner);
+    let axes = M::Point::AXES
+        .iter()
+        .step_by(2)
+        .map(|axis| map.apply(*axis));
+    for point in axes.chain([map.translation()]) {
+        // Negative zero is zero.
+        let coordinates = point.coordinates().map(|it| (it + 0.0).to_bits());
+        coordinates.into_iter().for_each(|it| hasher.write_u64(it));
+    }
+    hasher.finish()
 }

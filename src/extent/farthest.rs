@@ -12,8 +12,17 @@ use super::Bounded;
 /// Limit of the number of instances that are replaced, for a direction.
 const MAX_WORK: usize = 1 << 17;
 
+/// Limit of the number of instances that are looked at, for a direction.
+const MAX_LOOKED: usize = 1 << 22;
+
+/// Limit of the number of instances that are kept, for a direction.
+const MAX_KEPT: usize = 1 << 19;
+
 /// Limit of the number of instances in each other that are searched for a first value.
 const MAX_DEPTH: usize = 1 << 10;
+
+/// Relative difference that is rounding.
+const ROUNDING: f64 = 1e-16;
 
 /// Relative error of the box.
 const TOLERANCE: f64 = 1e-13;
@@ -69,8 +78,8 @@ impl<F: Bounded> Graph<F> {
     }
 
     /// Returns a value of a linear functional that the limit set reaches: that of the farthest instance, of the farthest in it,
-    /// and so on. Few instances reach farther than that.
-    fn reached(&self, axis: F::Point, alive: &[bool], reaches: &[f64]) -> f64 {
+    /// and so on. Few instances reach farther than that. `size` is that of the set, about.
+    fn reached(&self, axis: F::Point, size: f64, alive: &[bool], reaches: &[f64]) -> f64 {
         let mut instances: Vec<&Instance<F>> = self.initiator(0).instances.iter().collect();
         let (mut outer, mut start) = (axis, 0.0);
         let mut surely = f64::NEG_INFINITY;
@@ -97,7 +106,12 @@ impl<F: Bounded> Graph<F> {
                     });
                 }
             }
-            let Some(node) = best else { break };
+            // Nothing in it is farther, but for rounding.
+            let is_close =
+                |node: &Node<F>| node.farthest <= surely + ROUNDING * (size + surely.abs());
+            let Some(node) = best.filter(|node| !is_close(node)) else {
+                break;
+            };
             let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {
                 break;
             };
@@ -161,22 +175,23 @@ impl<F: Bounded> Graph<F> {
         for instance in &self.initiator(0).instances {
             add(&mut heap, &mut surely, instance, axis, 0.0)?;
         }
-        let mut work = 0;
+        let (mut work, mut looked) = (0, 0);
         let size = heap.peek().map_or(0.0, |node| node.farthest - surely);
-        surely = surely.max(self.reached(axis, alive, reaches));
+        surely = surely.max(self.reached(axis, size, alive, reaches));
         while let Some(node) = heap.pop() {
             let tolerance = TOLERANCE * (size + surely.abs());
             if node.farthest <= surely + tolerance {
                 return Some(f64::midpoint(node.farthest.max(surely), surely));
             }
-            work += 1;
-            if work > MAX_WORK {
-                return None;
-            }
             let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {
                 continue;
             };
+            work += 1;
+            if work > MAX_WORK || looked > MAX_LOOKED || heap.len() > MAX_KEPT {
+                return None;
+            }
             for (_, instance) in successor.placed_instances() {
+                looked += 1;
                 add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
             }
         }

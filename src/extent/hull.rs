@@ -1,7 +1,10 @@
 //! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
 //! in products.
 
-use crate::geometry::{Bounds, DMat2, DVec2, Frame2, convex_hull, hausdorff_distance, thinned};
+use crate::digraph::components;
+use crate::geometry::{
+    Bounds, DAffine2, DMat2, DVec2, Frame2, convex_hull, hausdorff_distance, thinned,
+};
 use crate::ifs::Shrinking;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
@@ -72,6 +75,48 @@ impl Polygons {
         }
     }
 
+    /// Replaces the polygons of behaviours that do not lead back to themselves by the hulls of their parts, from the bottom
+    /// up; returns the number of corners that are mapped.
+    fn start_from_below(
+        &mut self,
+        images: &[Vec<(DAffine2, usize)>],
+        points: &[Vec<DVec2>],
+        fineness: Fineness,
+    ) -> usize {
+        let targets = images
+            .iter()
+            .map(|images| images.iter().map(|it| it.1).collect());
+        let component = components(&targets.collect::<Vec<_>>());
+        let mut sizes = vec![0; images.len()];
+        component.iter().for_each(|part| sizes[*part] += 1);
+        let mut order: Vec<usize> = (0..images.len()).collect();
+        order.sort_by_key(|behaviour| component[*behaviour]);
+        let mut work = 0;
+        for behaviour in order {
+            let images = &images[behaviour];
+            let leads_to_itself = || images.iter().any(|(_, inner)| *inner == behaviour);
+            if sizes[component[behaviour]] > 1 || leads_to_itself() {
+                continue;
+            }
+            let mut all = points[behaviour].clone();
+            for (map, inner) in images {
+                let corners = self.corners[*inner].iter();
+                all.extend(corners.map(|corner| map.transform_point2(*corner)));
+            }
+            work += all.len();
+            let mut corners = convex_hull(all, 0.0);
+            let mut bounds = Bounds::EMPTY;
+            corners.iter().for_each(|corner| bounds.add(*corner));
+            let mut tolerance = fineness.tolerance * bounds.size().max_element();
+            while corners.len() > fineness.max_corners {
+                corners = thinned(&corners, tolerance);
+                tolerance *= 2.0;
+            }
+            self.corners[behaviour] = corners;
+        }
+        work
+    }
+
     fn sorted(mut self) -> Self {
         self.rightmost = { self.corners.iter() }.map(|it| rightmost(it)).collect();
         self
@@ -134,7 +179,8 @@ impl Graph {
             let is_empty = points[behaviour].is_empty() && images[behaviour].is_empty();
             corners.extend((!is_empty).then_some(self.middle));
         }
-        let (mut work, mut asked) = (0, 0);
+        let mut work = hulls.start_from_below(&images, &points, fineness);
+        let mut asked = 0;
         let (mut tolerance, mut coarse, mut is_fine) = (0.0, 0.25, false);
         for round in 0.. {
             let polygons = &hulls.corners[..images.len()];

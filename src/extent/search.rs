@@ -15,6 +15,9 @@ use crate::priority::Keyed;
 /// Maximum number of replacements; beyond it the search is abandoned.
 const MAX_WORK: usize = 1 << 18;
 
+/// Maximum number of elements that are looked at.
+const MAX_LOOKED: usize = 1 << 23;
+
 /// Radii of subtrees and padding, by object.
 pub(crate) struct Reaches<'a> {
     /// Radius of the disc that contains the subtree of an object, about the middle of its unit frame: see
@@ -44,13 +47,15 @@ struct Maximisation<'a, F: Frame, E> {
     direction: F::Point,
     /// Elements by the upper bounds of their subtrees' extent in that direction.
     heap: BinaryHeap<Keyed<Node<F>>>,
+    /// Number of elements that have been looked at.
+    looked: usize,
 }
 
 /// Computes the bounding box that a walk with `enter` as its visitor's decision would find, bit by bit.
 ///
 /// `None` if the walk counts indices, if a subtree is not bounded, if a generator yields points that are not
-/// finite, if the search takes more than 2¹⁸ replacements, or if it is cancelled. The box is empty if nothing
-/// is drawn.
+/// finite, if the search takes more than 2¹⁸ replacements or 2²³ elements, or if it is cancelled. The box is empty if
+/// nothing is drawn.
 pub(crate) fn search<F: Frame>(
     graph: &Graph<F>,
     growth: &Growth<'_>,
@@ -68,6 +73,7 @@ pub(crate) fn search<F: Frame>(
         bounds: Bounds::EMPTY,
         direction: F::Point::ZERO,
         heap: BinaryHeap::new(),
+        looked: 0,
     };
     let mut evaluator = Evaluator::default();
     let mut drawn = Successor::default();
@@ -84,7 +90,8 @@ pub(crate) fn search<F: Frame>(
                 break;
             }
             work += 1;
-            if work > MAX_WORK || is_cancelled(growth.cancel) {
+            let is_much = work > MAX_WORK || search.looked > MAX_LOOKED;
+            if is_much || is_cancelled(growth.cancel) {
                 return None;
             }
             let moment = ReplacementContext {
@@ -129,6 +136,7 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Maximisation<'_, F, E> {
     fn add(&mut self, state: TraversalState<F>, object: usize, born: u32, level: u32) {
         // The slack covers rounding in the bound, which could exclude an element that decides the box.
         const SLACK: f64 = 1.0 + 1e-9;
+        self.looked += 1;
         let subtree = Subtree {
             frame: state.frame,
             object,

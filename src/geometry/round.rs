@@ -91,10 +91,14 @@ impl Round {
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
         let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
         let share = std::f64::consts::TAU / f64::from(PARTS);
-        let around = |radius: f64, height: f64| -> f64 {
-            let parts = (0..PARTS).map(|part| {
+        let circle: Vec<[f64; 2]> = (0..PARTS)
+            .map(|part| {
                 let angle = 360.0 * (f64::from(part) + 0.5) / f64::from(PARTS);
-                let (cosine, sine) = (degrees::cos(angle), degrees::sin(angle));
+                [degrees::cos(angle), degrees::sin(angle)]
+            })
+            .collect();
+        let around = |radius: f64, height: f64| -> f64 {
+            let parts = circle.iter().map(|[cosine, sine]| {
                 (cofactors * DVec3::new(radius * cosine, height, radius * sine)).length()
             });
             parts.sum::<f64>() * share

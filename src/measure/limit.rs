@@ -128,6 +128,9 @@ const EXACT: f64 = 1e-13;
 /// Maximum number of sweeps or levels of an iteration.
 const MAX_SWEEPS: usize = 10_000;
 
+/// Number of copies that are looked at for an extent in a direction.
+const MAX_WORK: usize = 1 << 20;
+
 impl<M: Space> LimitSet<M> {
     /// Creates the limit set of a graph's fertile elements.
     ///
@@ -195,7 +198,7 @@ impl<M: Space> LimitSet<M> {
         };
         set.find_points();
         set.find_radii()?;
-        set.bounds = Self::extent(&set.objects, &set.start, EXACT);
+        set.bounds = Self::extent(&set.objects, &set.start, EXACT, MAX_WORK);
         // A single point has no extent except by rounding.
         const ROUNDING: f64 = 1e-12;
         let scale = set.start.iter().map(|copy| copy.scale).fold(0.0, f64::max);
@@ -299,7 +302,7 @@ impl<M: Space> LimitSet<M> {
             ..*copy
         };
         let start: Vec<_> = self.start.iter().map(turned).collect();
-        let bounds = Self::extent(&self.objects, &start, TOLERANCE);
+        let bounds = Self::extent(&self.objects, &start, TOLERANCE, MAX_WORK);
         match self.is_layer {
             true => Bounds::new(flattened(bounds.min()), flattened(bounds.max())),
             false => bounds,
@@ -330,9 +333,12 @@ impl<M: Space> LimitSet<M> {
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
+        // The middles are those of discs, which need not be the smallest.
+        let most_work = (4 * MAX_WORK / self.objects.len().max(1)).max(MAX_WORK >> 4);
         let middle = |object| {
             const TOLERANCE: f64 = 1e-3;
-            Self::extent(&self.objects, &[LimitCopy::whole(object)], TOLERANCE).centre()
+            let whole = [LimitCopy::whole(object)];
+            Self::extent(&self.objects, &whole, TOLERANCE, most_work).centre()
         };
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();
         let middles = (0..self.objects.len())
@@ -355,7 +361,11 @@ impl<M: Space> LimitSet<M> {
             (copy.map.apply(points[copy.object]) - points[object]).length()
         };
         let mut radii = vec![0.0; points.len()];
-        for _ in 0..MAX_SWEEPS {
+        let copies: usize = { self.objects.iter() }
+            .map(|part| part.children.len())
+            .sum();
+        let sweeps = ((MAX_WORK << 6) / copies.max(1)).clamp(64, MAX_SWEEPS);
+        for _ in 0..sweeps {
             let mut change: f64 = 0.0;
             for object in (0..self.objects.len()).rev() {
                 let children = self.objects[object].children.iter();
@@ -385,16 +395,17 @@ impl<M: Space> LimitSet<M> {
         (largest < 1.0).then(|| vec![radius * (1.0 + ROUNDING); points.len()])
     }
 
-    /// Returns the bounding box of copies, to a part of their size.
+    /// Returns the bounding box of copies, to a part of their size, if about `most_work` copies suffice in every direction.
     fn extent(
         objects: &[ObjectLimit<M>],
         copies: &[LimitCopy<M>],
         tolerance: f64,
+        most_work: usize,
     ) -> Bounds<M::Point> {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
         for (axis, both) in M::Point::AXES.chunks_exact(2).enumerate() {
-            high[axis] = reach(objects, copies, both[0], tolerance);
-            low[axis] = -reach(objects, copies, both[1], tolerance);
+            high[axis] = reach(objects, copies, both[0], tolerance, most_work);
+            low[axis] = -reach(objects, copies, both[1], tolerance, most_work);
         }
         Bounds::new(
             M::Point::of_coordinates(low),

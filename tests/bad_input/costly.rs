@@ -79,6 +79,24 @@ fn what_is_too_much_to_resolve_is_counted() {
 }
 
 #[test]
+fn extents_of_many_elements_and_maps_are_bounded() {
+    let elements: String = (0..75_000)
+        .map(|i| format!("  - [sin(30)*{}/100, cos(30 + {})/100]\n", i % 7, i % 13))
+        .collect();
+    let text = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{elements}  - [1, 0]\n");
+    accepted(&text, &INFO);
+    let maps: String = (0..600)
+        .map(|i| {
+            let (axis, turn, x, y) = (i % 5, i % 360, i % 97, i % 89);
+            format!(
+                "  - {{scale: 0.9, rotate: {{axis: [1, {axis}, 2], angle: {turn}}}, translate: [{x}, {y}, 3]}}\n"
+            )
+        })
+        .collect();
+    accepted(&format!("kind: ifs\nspace: 3\nmaps:\n{maps}"), &CHECK);
+}
+
+#[test]
 fn many_generators_see_many_parameters() {
     let params: String = (0..10_000).map(|i| format!("  p{i}: 1\n")).collect();
     let generators: String = (0..10_000)

@@ -20,6 +20,12 @@ use super::state::{Pose, StrokeAttributes, TurtleState};
 /// Limit of the number of steps within which the state of all kinds must recur.
 const MAX_STEPS: u32 = 32;
 
+/// Number of steps that are tried at first if words are long: the state of most systems recurs sooner.
+const FEW_STEPS: u32 = 4;
+
+/// Number of modules from which words are long.
+const LONG: usize = 1 << 12;
+
 /// Relative difference that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -132,14 +138,26 @@ impl Graph {
     /// All steps are similar if the state of all kinds recurs up to its size, because the following steps
     /// depend on nothing else.
     pub(super) fn of_edges(system: &LSystem) -> Result<Self, NotCompiled> {
-        let edges = Edges {
-            effects: Effects::closed(system, MAX_STEPS)?,
+        let of_steps = |steps| {
+            let effects = Effects::closed(system, steps)?;
+            Ok(Edges { effects })
         };
-        let kinds = &edges.effects.kinds.all;
-        if { kinds }.iter().any(|kind| kind.alternatives.len() > 1) {
+        let few = of_steps(FEW_STEPS)?;
+        let kinds = &few.effects.kinds;
+        let alternatives = || kinds.all.iter().map(|kind| &kind.alternatives);
+        if alternatives().any(|alternatives| alternatives.len() > 1) {
             return Err(NotCompiled);
         }
-        edges.run()
+        let words = alternatives()
+            .flatten()
+            .map(|alternative| &alternative.word);
+        let modules = words.chain([&kinds.axiom]).map(|word| word.len());
+        if modules.sum::<usize>() >= LONG
+            && let Some(graph) = few.run(FEW_STEPS)?
+        {
+            return Ok(graph);
+        }
+        of_steps(MAX_STEPS)?.run(MAX_STEPS)?.ok_or(NotCompiled)
     }
 
     /// Returns whether an L-system rewrites edges: whether one graph describes it for all numbers of
@@ -155,7 +173,8 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    fn run(&self) -> Result<Graph, NotCompiled> {
+    /// Returns the graph; `None` if the state does not recur within so many steps.
+    fn run(&self, steps: u32) -> Result<Option<Graph>, NotCompiled> {
         let kinds = &self.effects.kinds;
         let draws = self.draws()?;
         let first =
@@ -167,7 +186,7 @@ impl Edges {
         }
         let start = self.shape(&kinds.axiom, 0, None)?;
         let mut stages: Vec<Stage> = Vec::new();
-        for left in 0..MAX_STEPS {
+        for left in 0..steps {
             // The shapes of this stage must equal those of the first.
             for (kind, shape) in shapes.iter().enumerate() {
                 let Some(shape) = shape else { continue };
@@ -184,11 +203,11 @@ impl Edges {
             }
             let stage = self.stage(left)?;
             if stages.iter().any(|before| before.is_like(&stage)) {
-                return self.graph(&shapes);
+                return self.graph(&shapes).map(Some);
             }
             stages.push(stage);
         }
-        Err(NotCompiled)
+        Ok(None)
     }
 
     /// Returns, for every kind, whether it draws. Fails unless each kind that does draws exactly one

@@ -33,12 +33,14 @@ impl<P: Point> Facing<P> {
 /// Returns the extent of copies in a direction of length 1, to a part of their size.
 ///
 /// The copies whose discs may reach farthest are divided repeatedly. Of copies with equal vectors, the one that is
-/// moved farthest is kept; of more than 64 others, those whose discs reach farthest.
+/// moved farthest is kept; of more than 64 others, those whose discs reach farthest. The search ends after about `most_work`
+/// copies.
 pub(super) fn reach<M: Affine>(
     objects: &[ObjectLimit<M>],
     copies: &[LimitCopy<M>],
     direction: M::Point,
     tolerance: f64,
+    most_work: usize,
 ) -> f64 {
     const MAX_COPIES: usize = 64;
     let whole = Facing {
@@ -51,15 +53,17 @@ pub(super) fn reach<M: Affine>(
     let tolerance = tolerance * sizes.map(|(at, most)| most - at).fold(0.0, f64::max);
     let mut certain = f64::NEG_INFINITY;
     let mut reaching = Vec::new();
+    let mut work = 0;
     for _ in 0..MAX_SWEEPS {
         reaching.clear();
+        work += copies.len();
         for copy in copies.drain(..) {
             let (at, most) = copy.reach(objects);
             certain = certain.max(at);
             reaching.push((most, copy));
         }
         reaching.retain(|(most, _)| *most > certain + tolerance);
-        if reaching.is_empty() {
+        if reaching.is_empty() || work > most_work {
             break;
         }
         keep_farthest(&mut reaching);

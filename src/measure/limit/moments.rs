@@ -205,6 +205,10 @@ impl<'c, M: Space> Descent<'c, M> {
 
     /// Continues with balls smaller by the factor `base`.
     fn go_down(&mut self, base: f64) {
+        if self.looked_at > MAX_COPIES {
+            self.pieces.clear();
+            return;
+        }
         self.choose();
         self.before += self.looked_at;
         self.looked_at = 0;
@@ -313,6 +317,9 @@ impl<'c, M: Space> Descent<'c, M> {
         weight: f64,
     ) -> Vec<MassPiece<M>> {
         self.looked_at += pieces.len() * all.len() / DISTANCES;
+        if self.looked_at > MAX_COPIES {
+            return Vec::new();
+        }
         let with_near = |piece: &Small<M>| {
             let mut mass = 0.0;
             let mut near = Vec::with_capacity(all.len());

@@ -9,7 +9,7 @@ use crate::measure::space::Space;
 use crate::saturating::{real, whole};
 use std::num::NonZero;
 
-use super::{EXACT, LimitCopy, LimitSet};
+use super::{EXACT, LimitCopy, LimitSet, MAX_WORK};
 
 /// The slice of a limit set by a plane.
 ///
@@ -48,7 +48,7 @@ impl LimitSet<DAffine3> {
                 ..*copy
             })
             .collect();
-        let bounds = Self::extent(&self.objects, &start, EXACT);
+        let bounds = Self::extent(&self.objects, &start, EXACT, MAX_WORK);
         let slack = ROUNDING * bounds.size().max_element();
         let (low, high) = (bounds.min().z, bounds.max().z);
         if low > slack || high < -slack {

@@ -17,7 +17,7 @@ use crate::measure::cover::Counts;
 use crate::measure::space::Space;
 use crate::saturating::{real, whole};
 
-use super::{EXACT, LimitCopy, LimitSet, NEGLIGIBLE};
+use super::{EXACT, LimitCopy, LimitSet, MAX_WORK, NEGLIGIBLE};
 
 /// Maximum number of states, of copies that are examined, and of linear parts of maps.
 const MAX_STATES: usize = 1 << 13;
@@ -192,7 +192,7 @@ impl<M: Space> States<'_, M> {
             std::collections::hash_map::Entry::Occupied(known) => *known.get(),
             std::collections::hash_map::Entry::Vacant(_) if shapes == MAX_SHAPES => return None,
             std::collections::hash_map::Entry::Vacant(new) => {
-                *new.insert(LimitSet::extent(objects, &[linear], EXACT))
+                *new.insert(LimitSet::extent(objects, &[linear], EXACT, MAX_WORK))
             }
         };
         Some(Bounds::new(shape.min() + at, shape.max() + at))

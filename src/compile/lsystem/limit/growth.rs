@@ -104,9 +104,8 @@ impl<F: TurtleFrame> Steps<F> {
     pub(super) fn relevant(&self, reader: &Reader<'_, F>) -> Result<Vec<Variable>, NoGrowth> {
         let mut relevant = vec![false; reader.fertile.len() + 1];
         let mut places = |reading: &Reading<F::Heading>| {
-            for part in &reading.parts {
-                reading.terms(part.at).for_each(|it| relevant[it.of] = true);
-            }
+            let terms = reading.terms_of_parts();
+            terms.for_each(|it| relevant[it.of] = true);
         };
         let mut draws = false;
         for step in self.recurring() {

@@ -75,6 +75,19 @@ impl<H> Reading<H> {
             Some(last)
         })
     }
+
+    /// Iterates over the terms of the sums at which parts are drawn, each once.
+    pub(super) fn terms_of_parts(&self) -> impl Iterator<Item = &Turned<H>> {
+        let mut is_place = vec![false; self.sums.len() + 1];
+        self.parts.iter().for_each(|part| is_place[part.at] = true);
+        // A sum is that of an earlier one and a term.
+        let sums = self.sums.iter().enumerate().rev();
+        sums.filter_map(move |(before, last)| {
+            let is_term = is_place[before + 1];
+            is_place[last.at] |= is_term;
+            is_term.then_some(last)
+        })
+    }
 }
 
 /// Directions after all variables at a step, and whether they draw.
