@@ -78,13 +78,27 @@ fn examples_work() {
             if example.starts_with("kfrac studio") || example.contains(" --watch") {
                 continue;
             }
-            // Large enough to be drawn in bands; the pixels of a whole wall take minutes without
-            // optimisation.
-            let words = words.map(|word| word.replace("60000", "4900").replace("30000", "1500"));
-            // A fit may be worse, but sooner.
-            let sooner = ["--effort", "200", "--maps", "3"].map(String::from);
-            let is_fit = example.starts_with("kfrac fit ") && !example.contains("--maps");
-            let words = words.chain(is_fit.then_some(sooner).into_iter().flatten());
+            // As large as it takes to be drawn in bands, as many frames as it takes to zoom, a part of the library, and a
+            // worse fit: the whole takes minutes without optimisation.
+            let words = words.map(|word| match word.as_str() {
+                "60000" => "4900".into(),
+                "30000" => "1500".into(),
+                "900" => "90".into(),
+                _ => word,
+            });
+            if example.starts_with("kfrac fit leaf.png") {
+                // Another example has drawn a large leaf.
+                let small = folder.path().join("gasket.png");
+                fs::copy(small, folder.path().join("leaf.png")).unwrap();
+            }
+            let sooner = match example {
+                fit if fit.starts_with("kfrac fit ") && !fit.contains("--maps") => {
+                    &["--effort", "200", "--maps", "3"][..]
+                }
+                "kfrac list --html gallery" => &["tree"],
+                _ => &[],
+            };
+            let words = words.chain(sooner.iter().map(|word| (*word).to_owned()));
             let output = kfrac().args(words).current_dir(folder.path()).output();
             let output = output.unwrap();
             assert!(output.status.success(), "{example}: {output:?}");

@@ -225,7 +225,12 @@ fn changes(value: &Value, keys: &BTreeMap<String, Value>) -> Vec<Value> {
                 }
             }
             Value::Object(entries) => {
-                for (key, other) in keys {
+                // Mappings inside others are many: each gets other keys.
+                let (first, stride) = match place.as_str() {
+                    "" => (0, 1),
+                    inner => (inner.len() % STRIDE, STRIDE),
+                };
+                for (key, other) in keys.iter().skip(first).step_by(stride) {
                     change(&|value| value[key] = other.clone());
                 }
                 for key in entries.keys() {
@@ -237,6 +242,9 @@ fn changes(value: &Value, keys: &BTreeMap<String, Value>) -> Vec<Value> {
     }
     changed
 }
+
+/// Distance of the keys that are added to a mapping inside another one.
+const STRIDE: usize = 3;
 
 /// Returns the diagnostics of the reader for a rule, or for a rule that names the component; both are written
 /// as JSON, which is also YAML.
