@@ -7,6 +7,7 @@
 //! The embedded library has the following files.
 #![doc = include_str!(concat!(env!("OUT_DIR"), "/names.md"))]
 
+mod description;
 mod file;
 
 use std::collections::BTreeMap;
@@ -15,9 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Place, Source, did_you_mean};
-use crate::document::node::{Node, Value};
 use crate::kind::Kind;
-use crate::metadata::Description;
 
 pub use file::{cannot_be_read, open_file};
 
@@ -341,43 +340,6 @@ impl Catalogue {
         Ok(Source::new(format!("library/{folder}/{name}.yaml"), text))
     }
 
-    /// Returns title, description, source and tags of a library file, without checking the rest of it. A file that cannot be
-    /// read has none.
-    ///
-    /// ```
-    /// use kfrac::catalogue::Catalogue;
-    ///
-    /// let library = Catalogue::embedded();
-    /// let entries = library.entries();
-    /// let is_plant = |it: &&_| library.description(it).tags.contains(&"plant".into());
-    /// assert!(entries.iter().filter(is_plant).any(|it| it.name == "barnsley-fern"));
-    /// ```
-    #[must_use]
-    pub fn description(&self, entry: &LibraryFile) -> Description {
-        let source = match embedded(entry.shelf, &entry.name) {
-            Some(text) if entry.path.is_none() => Some(Source::new("(described)", described(text))),
-            _ => self.open(entry).ok(),
-        };
-        let node = source.and_then(|source| Node::parse(&source).ok());
-        let get = |key| Some(&node.as_ref()?.get(key)?.value);
-        let text = |key| match get(key) {
-            Some(Value::Text(text)) => Some(text.trim_end().to_owned()),
-            _ => None,
-        };
-        Description {
-            title: text("title"),
-            about: text("about"),
-            source: text("source"),
-            tags: match get("tags") {
-                Some(Value::Sequence(tags)) => {
-                    let tags = tags.iter().filter_map(Node::written);
-                    tags.map(str::to_owned).collect()
-                }
-                _ => Vec::new(),
-            },
-        }
-    }
-
     /// Returns all files of the given name on the given shelves, in the order of lookup: the first
     /// hides the others.
     fn candidates(&self, shelves: &[Shelf], name: &str) -> Vec<LibraryFile> {
@@ -447,23 +409,6 @@ fn on_shelf<'n>(shelves: &[Shelf], name: &'n str) -> Option<(Shelf, &'n str)> {
     Some((*shelf, name))
 }
 
-/// Returns the lines of an embedded file that describe it. In the files of the library, keys begin lines, and their values
-/// are indented.
-fn described(text: &str) -> String {
-    const KEYS: [&str; 4] = ["title:", "about:", "source:", "tags:"];
-    let mut lines = String::new();
-    let mut is_kept = false;
-    for line in text.split_inclusive('\n') {
-        if !line.starts_with([' ', '\n']) {
-            is_kept = KEYS.iter().any(|key| line.starts_with(key));
-        }
-        if is_kept {
-            lines.push_str(line);
-        }
-    }
-    lines
-}
-
 /// Returns the text of an embedded file.
 fn embedded(shelf: Shelf, name: &str) -> Option<&'static str> {
     let path = format!("{}/{name}.yaml", shelf.folder());
@@ -513,33 +458,4 @@ pub(crate) fn read_file(path: &Path) -> Result<Arc<Source>, Diagnostic> {
     let read = open_file(path)?.take(most).read_to_end(&mut bytes);
     read.map_err(|error| cannot_be_read(path, &error))?;
     Source::read_file(path, bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Catalogue, EMBEDDED, described};
-    use crate::diagnostic::Source;
-    use crate::document::node::Node;
-
-    #[test]
-    fn lines_that_describe_embedded_files_have_their_descriptions() {
-        for (path, text) in EMBEDDED {
-            let [whole, lines] = [*text, &described(text)]
-                .map(|text| Node::parse(&Source::new("file", text)).unwrap());
-            for key in ["title", "about", "source", "tags"] {
-                let [whole, lines] = [&whole, &lines].map(|node| node.get(key));
-                let is_same = match (whole, lines) {
-                    (Some(whole), Some(lines)) => whole.same_value(lines),
-                    (whole, lines) => whole.is_none() && lines.is_none(),
-                };
-                assert!(is_same, "{path}, {key}");
-            }
-        }
-        let library = Catalogue::embedded();
-        let entries = library.entries();
-        let titled = { entries.iter() }
-            .filter(|entry| library.description(entry).title.is_some())
-            .count();
-        assert!(titled > 200, "{titled}");
-    }
 }
