@@ -339,6 +339,7 @@ fn edits_of_other_layouts_are_what_they_state() {
         "- - 1 # one\n  - 2\n- a: 1\n  b: 2 # two\n  c: 3\n-   - x\n    - y\n",
         "a:\n- 1\n- 2   # two\n\n# between\n- 3\nb: {c: [1, 2], d: 'it''s'} # end",
         "points: [ [0, 0],  # first\n  [1, 0] # last\n  ]\r\nabout: >\r\n  some words\r\n  and more\r\nc: |-\r\n  x\r\n",
+        "- - 1/2\n  - >-\n    cos +\n    sin\n- - |\n    a\n  - >-\n    b\n    c",
         "\u{feff}a: [1, 2, 3,]\nb:\nc: ~\nd: \"\"\n",
         "a: &x [1, 2]\nb: *x\nc: [*x, 3]\n",
     ];

@@ -41,8 +41,8 @@ pub(super) fn removed(text: &Text<'_>, parent: &Node, step: &Step) -> Option<Vec
         return Some(vec![vec![(start..own.end, empty.into())]]);
     }
     let starts = |index: usize| match &parent.value {
-        Value::Sequence(items) => text.dash(&items[index]),
-        _ => Some(ranges[index].start),
+        Value::Sequence(items) => text.dash(items.get(index)?),
+        _ => Some(ranges.get(index)?.start),
     };
     let start = starts(index)?;
     let line = text.line_start(start);
@@ -50,7 +50,7 @@ pub(super) fn removed(text: &Text<'_>, parent: &Node, step: &Step) -> Option<Vec
     let way = match is_first_on_line {
         true => whole_lines(text, line, ranges[index].end),
         // The first part of a collection that stands behind a dash: what follows takes its place.
-        false => start..starts(index + 1).filter(|_| index + 1 < ranges.len())?,
+        false => start..starts(index + 1)?,
     };
     let lost = &text.text[ranges[index].end.min(way.end)..way.end];
     let keeps_comments = is_first_on_line || !lost.contains('#');

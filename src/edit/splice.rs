@@ -167,7 +167,7 @@ impl Text<'_> {
 
     /// Returns the place of the dash of an item of a list in block style.
     pub(super) fn dash(&self, item: &Node) -> Option<usize> {
-        let start = self.range(item).start;
+        let start = self.header(item).unwrap_or(self.range(item).start);
         let before = self.text[..start].trim_end();
         before.ends_with('-').then(|| before.len() - 1)
     }
