@@ -194,12 +194,19 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
             replacement: Replacement::Fixed(Arc::new(whole)),
             ..self.object(INITIAL, None, None)
         }];
+        // Without a digraph and outlines, the set inside every map is replaced alike.
+        let is_alike = !self.ifs.is_recurrent() && self.outlines() == 0;
         for branch in 0..self.branches() {
             let last_map = self.by_last_map.then_some(branch);
+            let mut known = None;
             for map in 0..maps {
-                let successor = self.successor(Some((branch, map)), &self.before[map]);
+                let new = || Arc::new(self.successor(Some((branch, map)), &self.before[map]));
+                let successor = match is_alike {
+                    true => Arc::clone(known.get_or_insert_with(new)),
+                    false => new(),
+                };
                 objects.push(Object {
-                    replacement: Replacement::Fixed(Arc::new(successor)),
+                    replacement: Replacement::Fixed(successor),
                     ..self.object(INITIAL, Some(map), last_map)
                 });
             }

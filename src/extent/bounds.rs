@@ -20,6 +20,9 @@ const MAX_STATES: usize = 20_000;
 /// Limit of the number of states at all levels together.
 const MAX_WORK: usize = 1_000_000;
 
+/// Limit of the number of states that are looked at.
+const MAX_LOOKED: usize = 32 * MAX_WORK;
+
 /// Limit of the number of levels.
 const MAX_LEVELS: u32 = 20_000;
 
@@ -275,7 +278,7 @@ impl<F: Bounded> Graph<F> {
         let start = self.initiator(steps.unwrap_or(0)).instances.iter();
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
-        let mut work = 0;
+        let (mut work, mut looked) = (0, 0);
         for level in 0..=MAX_LEVELS {
             let last = steps == Some(level);
             let levels = steps.map(|steps| steps - level);
@@ -300,9 +303,11 @@ impl<F: Bounded> Graph<F> {
             }
             certain = certain.max(best);
             let certain = certain - reach.slack() * (1.0 + certain.abs());
+            // No comparison holds where nothing is certain yet.
+            let is_hopeless =
+                |state: &SupportTerm<F>, levels| reach.span(state, levels)[0] < certain;
             for state in states {
-                let [farthest, _] = reach.span(&state, levels);
-                let hopeless = farthest < certain;
+                let hopeless = is_hopeless(&state, levels);
                 let dead = steps.is_none() && !reach.alive[state.object];
                 if hopeless || dead {
                     continue;
@@ -323,11 +328,15 @@ impl<F: Bounded> Graph<F> {
                         }
                         continue;
                     }
-                    let all = successor.placed_instances();
-                    next.extend(all.map(|(_, instance)| {
+                    let all = successor.placed_instances().map(|(_, instance)| {
                         child(instance, state.vector, state.offset, state.lost)
+                    });
+                    let left = levels.map(|levels| levels - 1);
+                    next.extend(all.filter(|it| {
+                        looked += 1;
+                        !is_hopeless(it, left)
                     }));
-                    if next.len() > MAX_WORK {
+                    if next.len() > MAX_WORK || looked > MAX_LOOKED {
                         return None;
                     }
                 }

@@ -142,17 +142,22 @@ impl<M: Space> LimitSet<M> {
         if !graph.shrinks() {
             return Err(NoLimit::DoesNotShrink);
         }
-        let fertile = |object| graph.children(object).map(|(_, instance)| instance);
-        // Objects that are the start of an infinite fertile path.
-        let lasting = settled(vec![true; graph.objects().len()], |lasting| {
-            let goes_on = |object| fertile(object).any(|instance| lasting[instance.object]);
+        // Objects of one behaviour have equal sets.
+        let firsts: Vec<usize> = graph.behaviours_by_number().map(|it| it.0).collect();
+        let behaviour = |instance: &Instance<F>| graph.objects()[instance.object].behaviour;
+        let fertile = |number: usize| graph.children(firsts[number]).map(|(_, instance)| instance);
+        // Behaviours from which an infinite fertile path starts.
+        let lasting = settled(vec![true; firsts.len()], |lasting| {
+            let goes_on = |number| fertile(number).any(|instance| lasting[behaviour(instance)]);
             (0..lasting.len()).map(goes_on).collect()
         });
-        let kept = |instance: &&Instance<F>| lasting[instance.object];
-        let placed =
-            |instance: &Instance<F>| (LimitCopy::new(*instance.frame.map(), instance.object), 1.0);
-        let children = |object| fertile(object).filter(kept).map(placed).collect();
-        let children = (0..graph.objects().len()).map(children).collect();
+        let kept = |instance: &&Instance<F>| lasting[behaviour(instance)];
+        let placed = |instance: &Instance<F>| {
+            let copy = LimitCopy::new(*instance.frame.map(), behaviour(instance));
+            (copy, 1.0)
+        };
+        let children = |number| fertile(number).filter(kept).map(placed).collect();
+        let children = (0..firsts.len()).map(children).collect();
         let start = graph.initiator(0).instances.iter();
         let start: Vec<_> = start.filter(kept).map(placed).collect();
         if start.is_empty() {
@@ -168,10 +173,11 @@ impl<M: Space> LimitSet<M> {
     /// Precondition: objects that are copied contain copies in turn, and cycles contract.
     fn of_copies(mut children: Vec<Vec<Shared<M>>>, start: Vec<Shared<M>>) -> Option<Shares<M>> {
         loop {
+            let own = children.len();
             let (objects, whole) = grouped(children.clone(), start.clone());
             let (objects, shares) = objects.into_iter().map(unzipped).unzip();
             let (whole, masses) = unzipped(whole);
-            if let Some(set) = Self::of_groups(objects, whole) {
+            if let Some(set) = Self::of_groups(objects, own, whole) {
                 return Some(Shares {
                     set,
                     shares,
@@ -182,7 +188,12 @@ impl<M: Space> LimitSet<M> {
         }
     }
 
-    fn of_groups(children: Vec<Vec<LimitCopy<M>>>, start: Vec<LimitCopy<M>>) -> Option<Self> {
+    /// Creates the limit set from the copies in every object's set; the objects from `own` on are groups.
+    fn of_groups(
+        children: Vec<Vec<LimitCopy<M>>>,
+        own: usize,
+        start: Vec<LimitCopy<M>>,
+    ) -> Option<Self> {
         let part = |children| ObjectLimit {
             point: M::Point::ZERO,
             radius: 0.0,
@@ -197,7 +208,7 @@ impl<M: Space> LimitSet<M> {
             is_layer: false,
         };
         set.find_points();
-        set.find_radii()?;
+        set.find_radii(own)?;
         set.bounds = Self::extent(&set.objects, &set.start, EXACT, MAX_WORK);
         // A single point has no extent except by rounding.
         const ROUNDING: f64 = 1e-12;
@@ -326,25 +337,42 @@ impl<M: Space> LimitSet<M> {
         }
     }
 
-    /// Computes the discs about all points and all centres; `None` if they are not bounded.
-    fn find_radii(&mut self) -> Option<()> {
+    /// Computes the discs about all points and all centres; `None` if they are not bounded. The objects from
+    /// `own` on are groups.
+    fn find_radii(&mut self, own: usize) -> Option<()> {
         let points: Vec<M::Point> = self.objects.iter().map(|part| part.point).collect();
         let radii = self.radii_about(&points)?;
         for (part, radius) in self.objects.iter_mut().zip(radii) {
             part.radius = radius;
         }
         // The middles are those of discs, which need not be the smallest.
-        let most_work = (4 * MAX_WORK / self.objects.len().max(1)).max(MAX_WORK >> 4);
+        let most_work = (4 * MAX_WORK / own.max(1)).max(MAX_WORK >> 4);
         let middle = |object| {
             const TOLERANCE: f64 = 1e-3;
             let whole = [LimitCopy::whole(object)];
             Self::extent(&self.objects, &whole, TOLERANCE, most_work).centre()
         };
         let lasting = |object: &usize| !self.objects[*object].children.is_empty();
-        let middles = (0..self.objects.len())
-            .map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
-        let middles: Vec<M::Point> = middles.collect();
-        let reaches = self.radii_about(&middles)?;
+        let middles =
+            (0..own).map(|object| Some(object).filter(lasting).map_or(M::Point::ZERO, middle));
+        let mut middles: Vec<M::Point> = middles.collect();
+        middles.extend_from_slice(&points[own..]);
+        let mut reaches = self.radii_about(&middles)?;
+        if own < middles.len() {
+            // The boxes of groups are those of the discs of their members, of which the inner ones come first.
+            for (group, part) in self.objects.iter().enumerate().skip(own) {
+                let mut bounds = Bounds::EMPTY;
+                for copy in &part.children {
+                    let around = M::Point::splat(copy.scale * reaches[copy.object]);
+                    let at = copy.map.apply(middles[copy.object]);
+                    bounds.add(at - around);
+                    bounds.add(at + around);
+                }
+                middles[group] = bounds.centre();
+                reaches[group] = bounds.size().length() / 2.0;
+            }
+            reaches = self.radii_about(&middles)?;
+        }
         let discs = middles.into_iter().zip(reaches);
         for (part, (middle, reach)) in self.objects.iter_mut().zip(discs) {
             (part.middle, part.reach) = (middle, reach);

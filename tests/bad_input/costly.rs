@@ -94,6 +94,13 @@ fn extents_of_many_elements_and_maps_are_bounded() {
         })
         .collect();
     accepted(&format!("kind: ifs\nspace: 3\nmaps:\n{maps}"), &CHECK);
+    let maps: String = (0..200)
+        .map(|i| {
+            let (turn, x, y) = (i * 77 % 360, i % 17, i % 13);
+            format!("  - {{scale: 0.9, rotate: {turn}, translate: [{x}, {y}]}}\n")
+        })
+        .collect();
+    accepted(&format!("kind: ifs\nmaps:\n{maps}"), &["dim", "many.yaml"]);
 }
 
 #[test]

@@ -128,6 +128,22 @@ const MAX_BALLS: usize = 20_000_000;
 /// Size, in a system of size 1, from which pieces that are not separated are taken to touch.
 const TOUCH: f64 = 1e-7;
 
+/// A piece of a set, in a ball.
+#[derive(Clone, Copy)]
+struct Piece {
+    set: usize,
+    map: DAffine3,
+    centre: DVec3,
+    radius: f64,
+}
+
+impl Piece {
+    /// Returns the distance of the balls of two pieces; negative where they meet.
+    fn gap(&self, other: &Self) -> f64 {
+        self.centre.distance(other.centre) - (self.radius + other.radius) * (1.0 + 1e-9)
+    }
+}
+
 /// Returns `true` if no two copies in a set have a point in common: the larger piece of a pair is divided
 /// until the balls around pieces are disjoint. Returns `false` where pieces are closer than numbers resolve,
 /// or where the search is given up.
@@ -137,14 +153,11 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
         copies[copy.from].push((copy.to, copy.map));
     }
     let balls = Balls::of(copies.clone());
-    let ball = |(set, map): &(usize, DAffine3)| -> (DVec3, f64) {
-        let centre = map.transform_point3(balls.centres[*set]);
-        (centre, ratio(map.matrix3) * balls.radii[*set])
-    };
-    // The distance of the balls of two pieces; negative where they meet.
-    let gap = |a: &(usize, DAffine3), b: &(usize, DAffine3)| {
-        let ((a, r), (b, s)) = (ball(a), ball(b));
-        a.distance(b) - (r + s) * (1.0 + 1e-9)
+    let piece = |set: usize, map: DAffine3| Piece {
+        set,
+        map,
+        centre: map.transform_point3(balls.centres[set]),
+        radius: ratio(map.matrix3) * balls.radii[set],
     };
     let mut balls_left = effort.of(MAX_BALLS);
     let mut open = Vec::new();
@@ -154,30 +167,31 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
             Some(left) => balls_left = left,
             None => return false,
         }
-        for (number, a) in copies.iter().enumerate() {
-            let pairs = copies[..number].iter().map(|b| (*a, *b));
-            open.extend(pairs.filter(|(a, b)| gap(a, b) <= 0.0));
+        let pieces: Vec<Piece> = copies.iter().map(|(set, map)| piece(*set, *map)).collect();
+        for (number, a) in pieces.iter().enumerate() {
+            let pairs = pieces[..number].iter().map(|b| (*a, *b));
+            open.extend(pairs.filter(|(a, b)| a.gap(b) <= 0.0));
+            // All of them would be examined.
+            if open.len() > effort.of(MAX_PAIRS) {
+                return false;
+            }
         }
     }
     let mut seen = 0;
     while let Some((a, b)) = open.pop() {
         seen += 1;
-        let (larger, smaller) = if ball(&a).1 >= ball(&b).1 {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let inner = &copies[larger.0];
-        if seen > effort.of(MAX_PAIRS) || ball(&larger).1 < TOUCH || balls_left < inner.len() {
+        let (larger, smaller) = if a.radius >= b.radius { (a, b) } else { (b, a) };
+        let inner = &copies[larger.set];
+        if seen > effort.of(MAX_PAIRS) || larger.radius < TOUCH || balls_left < inner.len() {
             return false;
         }
         balls_left -= inner.len();
         let pairs = inner
             .iter()
-            .map(|(to, map)| ((*to, larger.1 * *map), smaller));
-        let mut pairs: Vec<_> = pairs.filter(|(a, b)| gap(a, b) <= 0.0).collect();
+            .map(|(to, map)| (piece(*to, larger.map * *map), smaller));
+        let mut pairs: Vec<_> = pairs.filter(|(a, b)| a.gap(b) <= 0.0).collect();
         // The nearest pair is examined first.
-        pairs.sort_by(|x, y| gap(&y.0, &y.1).total_cmp(&gap(&x.0, &x.1)));
+        pairs.sort_by(|(a, b), (c, d)| c.gap(d).total_cmp(&a.gap(b)));
         open.extend(pairs);
     }
     true
