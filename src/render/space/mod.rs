@@ -20,6 +20,7 @@ mod lit;
 mod occlusion;
 mod options;
 mod place;
+mod planes;
 mod points;
 mod relief;
 mod round;

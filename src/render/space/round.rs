@@ -3,11 +3,14 @@
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use crate::geometry::{DAffine3, DMat3, DVec3, HalfSpace, Round};
 
 use super::buffer::{Buffer, CLASS_BITS, EMPTY};
 use super::camera::Projection;
 use super::lit::{Classes, Lit};
+use super::planes::{LANES, LONG, Planes};
 use super::solid::{Depths, View};
 
 /// Points of a ray: `start` + w · `along`, for real w.
@@ -16,9 +19,6 @@ struct Ray {
     start: DVec3,
     along: DVec3,
 }
-
-/// Samples of a row are met in multiples of this number.
-const LANES: usize = 8;
 
 /// Draws the image of a primitive under a map that is not singular. `rectangle` contains what is seen of it on the
 /// tile.
@@ -30,7 +30,7 @@ pub(super) fn draw(
     place: &DAffine3,
     [left, top, right, bottom]: [usize; 4],
     classes: &mut Classes<'_>,
-    row: &mut Row,
+    (row, planes): (&mut Row, &mut Planes),
 ) {
     let surface = Surface {
         primitive,
@@ -38,19 +38,25 @@ pub(super) fn draw(
         middle: place.translation,
     };
     let [corner_x, corner_y] = view.corner;
-    let count = right - left;
-    row.resize(count.next_multiple_of(LANES));
+    let width = right - left;
+    let may_be_long = primitive != Round::Ball && width >= LONG;
+    let is_long = may_be_long && surface.find_sides(view, planes, width);
     for y in top..bottom {
+        let [left, right] = match is_long {
+            true => planes.seen_on_row(view, y, [left, right]),
+            false => [left, right],
+        };
+        row.resize((right - left).next_multiple_of(LANES));
         let first = [corner_x + left as f64 + 0.5, corner_y + y as f64 + 0.5];
         meet(&surface, view, first, row);
         let keys = &mut buffer.row_mut(y)[left..right];
-        if !hide(keys, row) {
+        let Some(seen) = hide(keys, row) else {
             continue;
-        }
+        };
         if let (Classes::OfLevels { lit, bits, .. }, []) = (&*classes, view.cuts) {
-            light(&surface, view, first, (lit, *bits), row);
+            light(&surface, view, first, (lit, *bits), (row, seen.clone()));
         }
-        for (x, key) in keys.iter_mut().enumerate() {
+        for (x, key) in keys.iter_mut().enumerate().take(seen.end).skip(seen.start) {
             if row.depths[x] > *key {
                 continue;
             }
@@ -90,6 +96,22 @@ struct Surface {
 }
 
 impl Surface {
+    /// Finds the sides of the box around the primitive; returns whether rows of `width` samples are long enough
+    /// for them.
+    fn find_sides(&self, view: &View<'_>, planes: &mut Planes, width: usize) -> bool {
+        let across = self.inverse.transpose();
+        // All primitives but the ball reach from y = 0 to y = 1.
+        let low = DVec3::new(1.0, 0.0, 1.0);
+        let face = |normal: DVec3, distance: f64| {
+            let normal = across * normal;
+            (normal, distance + normal.dot(self.middle))
+        };
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter();
+        let faces = axes.flat_map(|axis| [face(axis, 1.0), face(-axis, low.dot(axis))]);
+        planes.set(view.projection, faces, &mut Classes::One(0));
+        planes.find_sides(width)
+    }
+
     /// Returns the ray of a sample. The distance along it is that from the middle, or in perspective from the viewer.
     #[inline(always)]
     fn ray(&self, projection: Projection, [x, y]: [f64; 2]) -> Ray {
@@ -204,19 +226,36 @@ fn key<const PARALLEL: bool>(surface: &Surface, depths: Depths, [low, high]: [f6
     }
 }
 
-/// Removes what is behind the samples of a row; returns whether anything is left.
+/// Removes what is behind the samples of a row; returns the part that contains all that is left; `None` if nothing is.
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
-fn hide(keys: &[u32], row: &mut Row) -> bool {
+fn hide(keys: &[u32], row: &mut Row) -> Option<Range<usize>> {
     let mut nearest = EMPTY;
     for (depth, key) in row.depths.iter_mut().zip(keys) {
         *depth = if *depth <= *key { *depth } else { EMPTY };
         nearest = nearest.min(*depth);
     }
-    nearest < EMPTY
+    if nearest == EMPTY {
+        return None;
+    }
+    let depths = &row.depths[..keys.len()];
+    let is_left = |depth: &u32| *depth < EMPTY;
+    let start = depths.iter().position(is_left)?;
+    let end = depths.iter().rposition(is_left)? + 1;
+    Some(start..end)
 }
 
-/// Finds the levels of intensity where the rays of a row meet a primitive.
-fn light(surface: &Surface, view: &View<'_>, first: [f64; 2], lit: (&Lit, u32), row: &mut Row) {
+/// Finds the levels of intensity where the rays of a part of a row meet a primitive.
+fn light(
+    surface: &Surface,
+    view: &View<'_>,
+    [first, y]: [f64; 2],
+    lit: (&Lit, u32),
+    (row, part): (&mut Row, Range<usize>),
+) {
+    // Whole lanes.
+    let part = part.start / LANES * LANES..part.end.next_multiple_of(LANES);
+    let first = [first + part.start as f64, y];
+    let row = (&row.ways[part.clone()], &mut row.levels[part]);
     let is_parallel = matches!(view.projection, Projection::Parallel);
     match (surface.primitive, is_parallel) {
         (Round::Ball, true) => light_on::<false, true>(surface, view, first, lit, row),
@@ -233,7 +272,7 @@ fn light_on<const CAPPED: bool, const PARALLEL: bool>(
     view: &View<'_>,
     [first, y]: [f64; 2],
     (lit, bits): (&Lit, u32),
-    row: &mut Row,
+    (ways, levels): (&[f64], &mut [u16]),
 ) {
     let projection = match view.projection {
         _ if PARALLEL => Projection::Parallel,
@@ -242,7 +281,6 @@ fn light_on<const CAPPED: bool, const PARALLEL: bool>(
     let towards = surface.inverse * lit.towards();
     let across = surface.inverse.transpose();
     let (primitive, lit) = (surface.primitive, *lit);
-    let (ways, levels) = (&row.ways, &mut row.levels);
     let ways = &ways[..levels.len()];
     for x in 0..levels.len() {
         let ray = surface.inside(surface.ray(projection, [first + f64::from(x as u32), y]));

@@ -9,6 +9,7 @@ use crate::graph::Graph;
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
 use super::camera::Projection;
 use super::lit::Classes;
+use super::planes::{Planes, draw_row};
 use super::round;
 
 /// Least thickness of a solid, in samples: what is flat would fall between them.
@@ -19,9 +20,6 @@ const PAD: f64 = 1.5;
 
 /// Determinant of a matrix whose columns have a mean square of 1, above which it is not flat.
 const FLAT: f64 = 0.02;
-
-/// Share of its slope by which a plane counts as seen edge-on.
-const EDGE_ON: f64 = 1e-12;
 
 /// Depths in multiples of 2⁻²² of the range.
 #[derive(Clone, Copy)]
@@ -94,115 +92,6 @@ pub(super) fn faces(
     })
 }
 
-/// A linear function of the position in samples, `z` + `x` · x + `y` · y.
-#[derive(Clone, Copy, Default)]
-struct Plane {
-    x: f64,
-    y: f64,
-    z: f64,
-}
-
-/// The faces of a convex solid as functions of the position in samples.
-///
-/// Their values are z in a parallel picture, and one over the distance in a picture from a point, where planes
-/// are linear functions, too.
-#[derive(Default)]
-pub(super) struct Planes {
-    /// The solid lies below.
-    front: Vec<Plane>,
-    /// Classes of these faces.
-    classes: Vec<u16>,
-    /// The solid lies above.
-    back: Vec<Plane>,
-    /// Faces seen edge-on: the solid lies where they are at most 0.
-    edges: Vec<Plane>,
-}
-
-impl Planes {
-    /// Takes the half-spaces n · x ≤ d whose intersection is a solid, with the classes of its faces.
-    pub(super) fn set(
-        &mut self,
-        projection: Projection,
-        faces: impl Iterator<Item = (DVec3, f64)>,
-        classes: &mut Classes<'_>,
-    ) {
-        self.front.clear();
-        self.classes.clear();
-        self.back.clear();
-        self.edges.clear();
-        for (normal, distance) in faces {
-            // The face is z = plane / across.
-            let (plane, across) = match projection {
-                Projection::Parallel => (
-                    Plane {
-                        x: -normal.x,
-                        y: -normal.y,
-                        z: distance,
-                    },
-                    normal.z,
-                ),
-                Projection::Central { focus, middle } => {
-                    let [x, y] = [normal.x / focus, normal.y / focus];
-                    let z = -normal.z - x * middle[0] - y * middle[1];
-                    // With w = 1 / distance from the viewer, n · x ≤ d is n · ray ≤ d w.
-                    (
-                        Plane {
-                            x: -x,
-                            y: -y,
-                            z: -z,
-                        },
-                        -distance,
-                    )
-                }
-            };
-            let slope = plane.x.abs() + plane.y.abs();
-            if across.abs() <= EDGE_ON * slope {
-                self.edges.push(Plane {
-                    x: -plane.x,
-                    y: -plane.y,
-                    z: -plane.z,
-                });
-                continue;
-            }
-            let plane = Plane {
-                x: plane.x / across,
-                y: plane.y / across,
-                z: plane.z / across,
-            };
-            if across > 0.0 {
-                self.front.push(plane);
-                self.classes.push(classes.of(normal));
-            } else {
-                self.back.push(plane);
-            }
-        }
-        if let Projection::Central { .. } = projection {
-            // Nothing is seen that is behind the viewer.
-            self.back.push(Plane::default());
-        }
-    }
-
-    /// Returns the nearest value at a point of the picture, its slopes, and the class of its face; `None` if the solid is
-    /// farther from the point than `spread`, along the axes.
-    pub(super) fn meet(&self, [x, y]: [f64; 2], spread: f64) -> Option<(f64, [f64; 2], u16)> {
-        let at = |plane: &Plane| plane.z + plane.x * x + plane.y * y;
-        let room = |plane: &Plane| (plane.x.abs() + plane.y.abs()) * spread;
-        if self.edges.iter().any(|edge| at(edge) > room(edge)) {
-            return None;
-        }
-        let (mut high, mut nearest) = (f64::INFINITY, (f64::INFINITY, [0.0; 2], 0));
-        for (front, class) in self.front.iter().zip(&self.classes) {
-            let z = at(front);
-            high = high.min(z + room(front));
-            if z < nearest.0 {
-                nearest = (z, [front.x, front.y], *class);
-            }
-        }
-        let low = self.back.iter().map(|back| at(back) - room(back));
-        (high >= low.fold(f64::NEG_INFINITY, f64::max)).then_some(nearest)
-    }
-}
-
 /// Draws solids; the lists are reused.
 #[derive(Default)]
 pub(super) struct Pencil {
@@ -224,7 +113,7 @@ impl Pencil {
     ) {
         if let Some(primitive) = solid.primitive() {
             let place = placed(solid, map, view);
-            let row = &mut self.row;
+            let memory = (&mut self.row, &mut self.planes);
             round::draw(
                 buffer,
                 view,
@@ -232,7 +121,7 @@ impl Pencil {
                 &place,
                 rectangle,
                 &mut classes,
-                row,
+                memory,
             );
             buffer.refresh(rectangle);
             return;
@@ -241,7 +130,12 @@ impl Pencil {
             faces(solid, map, view).chain(view.cuts.iter().map(|cut| (cut.normal, cut.distance)));
         self.planes.set(view.projection, faces, &mut classes);
         let [left, top, right, bottom] = rectangle;
+        let is_long = self.planes.find_sides(right - left);
         for y in top..bottom {
+            let [left, right] = match is_long {
+                true => self.planes.seen_on_row(view, y, [left, right]),
+                false => [left, right],
+            };
             let row = &mut buffer.row_mut(y)[left..right];
             match classes {
                 Classes::One(class) => draw_row::<false>(&self.planes, row, view, [left, y], class),
@@ -249,74 +143,6 @@ impl Pencil {
             }
         }
         buffer.refresh(rectangle);
-    }
-}
-
-/// Samples that are drawn together.
-const LANES: usize = 8;
-
-/// Draws a solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
-/// are `LIT`, or else all have `class`.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
-#[expect(clippy::cast_precision_loss, reason = "tiles are small")]
-pub(super) fn draw_row<const LIT: bool>(
-    planes: &Planes,
-    row: &mut [u32],
-    view: &View<'_>,
-    [left, y]: [usize; 2],
-    class: u16,
-) {
-    let is_parallel = matches!(view.projection, Projection::Parallel);
-    let [corner_x, corner_y] = view.corner;
-    let at_y = corner_y + y as f64 + 0.5;
-    for (number, keys) in row.chunks_mut(LANES).enumerate() {
-        let first = corner_x + (left + number * LANES) as f64 + 0.5;
-        let at = |plane: &Plane| plane.z + plane.y * at_y + plane.x * first;
-        let mut highest = [f64::INFINITY; LANES];
-        let mut classes = [u32::from(class); LANES];
-        for (plane, own) in planes.front.iter().zip(&planes.classes) {
-            let start = at(plane);
-            for (step, highest) in highest.iter_mut().enumerate() {
-                let z = start + plane.x * step as f64;
-                if LIT {
-                    classes[step] = if z < *highest {
-                        u32::from(*own)
-                    } else {
-                        classes[step]
-                    };
-                }
-                *highest = if z < *highest { z } else { *highest };
-            }
-        }
-        let mut lowest = [f64::NEG_INFINITY; LANES];
-        for plane in &planes.back {
-            let start = at(plane);
-            for (step, lowest) in lowest.iter_mut().enumerate() {
-                let z = start + plane.x * step as f64;
-                *lowest = if z > *lowest { z } else { *lowest };
-            }
-        }
-        for plane in &planes.edges {
-            let start = at(plane);
-            for (step, lowest) in lowest.iter_mut().enumerate() {
-                let is_beyond = start + plane.x * step as f64 > 0.0;
-                *lowest = if is_beyond { f64::INFINITY } else { *lowest };
-            }
-        }
-        let mut own = [EMPTY; LANES];
-        for lane in 0..LANES {
-            let (high, low) = (highest[lane], lowest[lane]);
-            let z = if is_parallel { high } else { -1.0 / high };
-            let key = view.depths.of(z) << CLASS_BITS | classes[lane];
-            own[lane] = if (high >= low) & (high < f64::INFINITY) {
-                key
-            } else {
-                EMPTY
-            };
-        }
-        for (key, own) in keys.iter_mut().zip(own) {
-            *key = (*key).min(own);
-        }
     }
 }
 

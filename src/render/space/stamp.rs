@@ -10,7 +10,8 @@ use super::buffer::{Buffer, CLASS_BITS, MARGIN, STEPS, STRIDE};
 use super::descent::Roots;
 use super::forms::Form;
 use super::lit::Classes;
-use super::solid::{Planes, View, faces};
+use super::planes::Planes;
+use super::solid::{View, faces};
 
 /// Positions along a side of a sample in which there are stamps.
 pub(super) const PHASES: usize = 4;

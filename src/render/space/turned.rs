@@ -14,8 +14,9 @@ use super::camera::{Placement, Projection};
 use super::descent::Roots;
 use super::forms::{Form, Forms, MAX_FORMS};
 use super::lit::Classes;
+use super::planes::{Planes, draw_row};
 use super::scene::{Child, ClassBy, End, Part, ends};
-use super::solid::{Depths, Planes, View, draw_row, faces};
+use super::solid::{Depths, View, faces};
 use super::stamp::{PIECE, WIDTH};
 
 /// Longest side of the box of an instance that is a copy, in samples.
@@ -413,8 +414,7 @@ mod tests {
                 count += 1.0;
             }
         }
-        assert!(farthest < AWAY, "{farthest}");
-        assert!(sum / count < 1.5, "{}", sum / count);
+        assert!(farthest < AWAY && sum < 1.5 * count, "{farthest}, {sum}");
     }
 
     fn drawn(graph: &Graph<Frame3>, is_turned: bool) -> (Buffer, f64) {
