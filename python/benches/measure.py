@@ -1,21 +1,32 @@
 """Measures the package, beside numba where it is installed, and prints a table.
 
-    pip install . numba && python benches/measure.py
+    pip install . numba && pip install --group engines && python benches/measure.py
 
-All times are of one core, the best of some rounds. The package is to be built in release mode, as `pip install` does.
+All times are of one core, the best of some rounds; those of engines and of tiles are of one run. The package is to be built in
+release mode, as `pip install` does. Where KFRAC names the program, a part of a giant picture is drawn too.
 """
 
 from __future__ import annotations
 
+import importlib.util
+import os
+import resource
+import runpy
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import kfrac
-from kfrac.data import Batches, Dataset
+from kfrac.data import Batches, Dataset, write_parquet
+
+HERE = Path(__file__).parent
 
 SPEC = """
 kind: dataset
@@ -124,7 +135,71 @@ def workers() -> None:
     row("torch's DataLoader with 2 workers beside none", f"{times[0] / times[2]:.2f} times as fast")
 
 
+ENGINES = {"dask": "distributed", "ray": "ray", "spark": "pyspark"}
+
+
+def on_engine(name: str, count: int) -> float:
+    """Returns the time in which workers write a data set of 6,000 pictures, in seconds, after a smaller one."""
+    cluster = runpy.run_path(str(HERE.parent / "tests" / "cluster.py"), run_name="cluster")
+    recipe = runpy.run_path(str(HERE.parent / "examples" / f"on_{name}.py"), run_name="recipe")
+    spec = SPEC.replace("SIZE", "256").replace("POINTS", "100k").replace("MODE", "hits") + "instances: {count: 20}\n"
+    made, parts = Dataset.parse(spec), 24
+
+    def written(part: int) -> int:
+        with tempfile.TemporaryDirectory() as folder:
+            write_parquet(made, Path(folder) / "part.parquet", shard=(part % parts + 1, parts))
+        return part
+
+    with cluster["CLUSTERS"][name](count):
+        recipe["mapped"](written, range(4), 4)
+        start = time.perf_counter()
+        recipe["mapped"](written, range(parts), parts)
+        return time.perf_counter() - start
+
+
+def engines() -> None:
+    for name, module in ENGINES.items():
+        if importlib.util.find_spec(module) is None:
+            row(name, f"{module} is not installed")
+            continue
+        if name == "spark" and shutil.which("java") is None:
+            row(name, "there is no java")
+            continue
+        times: list[float] = []
+        for count in [1, 2]:
+            done = subprocess.run(
+                [sys.executable, __file__, name, str(count)],
+                env=os.environ | {"PYSPARK_PYTHON": sys.executable},
+                stdout=subprocess.PIPE,
+                text=True,
+                check=True,
+            )
+            times.append(float(done.stdout.split()[-1]))
+        row(f"{name}: a data set by 2 workers beside 1", f"{times[0] / times[1]:.2f} times as fast ({times[0]:.1f} s and {times[1]:.1f} s)")
+
+
+def giant() -> None:
+    """Draws a part of a pyramid of 2^17 pixels a side."""
+    program = os.environ.get("KFRAC")
+    if program is None:
+        row("a pyramid of 2^17 pixels", "KFRAC does not name the program")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        options = "--detail 1 --size 131072 --shard 1/64 --threads 1 --quiet".split()
+        start = time.perf_counter()
+        subprocess.run([program, "grow", "dragon", *options, "--tiles", folder], check=True, stdout=subprocess.DEVNULL)
+        taken = time.perf_counter() - start
+        count = len(list(Path(folder).rglob("*.png")))
+    memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    row("1/64 of a pyramid of the dragon, 2^17 pixels a side", f"{taken:.0f} s, {count:,} tiles, {memory:.0f} MiB at most")
+
+
 if __name__ == "__main__":
+    if len(sys.argv) == 3:
+        print(on_engine(sys.argv[1], int(sys.argv[2])))
+        sys.exit()
+    giant()  # First: the memory is the largest of all programs that have ended.
     pictures()
     elements()
     workers()
+    engines()

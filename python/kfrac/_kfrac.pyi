@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ._results import Bounds, Diagnostic, Dimension, Distance, Entry, Fit, Forecast
 
 Size = int | tuple[int, int]
+View = tuple[float, float, float, float]
 
 class KfracError(ValueError):
     """Mistake in a file or an argument."""
@@ -58,6 +59,7 @@ class Fractal:
         *,
         size: Size = 1024,
         detail: float | None = None,
+        view: View | None = None,
         seed: int = 0,
         max_elements: int = 50_000_000,
         threads: int | None = None,
@@ -68,6 +70,7 @@ class Fractal:
         *,
         size: Size = 1024,
         detail: float | None = None,
+        view: View | None = None,
         seed: int = 0,
         max_elements: int = 50_000_000,
         threads: int | None = None,
@@ -78,6 +81,7 @@ class Fractal:
         *,
         size: Size = 512,
         detail: float | None = None,
+        view: View | None = None,
         seed: int = 0,
         max_elements: int = 50_000_000,
         threads: int | None = None,
@@ -89,6 +93,7 @@ class Fractal:
         *,
         size: Size = 1024,
         detail: float | None = None,
+        view: View | None = None,
         seed: int = 0,
         max_elements: int = 50_000_000,
         threads: int | None = None,

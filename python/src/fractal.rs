@@ -9,7 +9,8 @@ use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Setting;
 use kfrac::measure::Precision;
-use kfrac::render::ZoomTarget;
+use kfrac::render::{Size, ZoomTarget};
+use kfrac::style::View;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -39,6 +40,10 @@ const NOTEBOOK: f64 = 300_000.0;
 ///     Long side of a picture in pixels, or width and height.
 /// detail : float, optional
 ///     Length in pixels below which elements are not replaced. Without `steps`, it decides their number.
+/// view : (float, float, float, float), optional
+///     Part of the plane that a picture shows, without a margin: x and y of the lower left corner, width and height, in the
+///     file's units. A picture of another shape shows more of the plane around it. By default, the window of the file, or else
+///     all that is drawn, with a margin. Not for sets in space, nor together with `zoom`.
 /// max_elements : int
 ///     Largest number of elements that are grown.
 /// threads : int, optional
@@ -212,21 +217,55 @@ impl Fractal {
     }
 }
 
-/// Sets the detail of pictures, if there is one.
-fn to_detail(fractal: kfrac::Fractal, detail: Option<f64>) -> kfrac::Fractal {
-    match detail {
-        Some(pixels) => fractal.detail(pixels),
-        None => fractal,
-    }
+/// Options of pictures that methods share.
+struct Drawing {
+    size: Size,
+    detail: Option<f64>,
+    view: Option<View>,
 }
 
-/// Refuses a detail that is no length.
-fn check_detail(detail: Option<f64>) -> PyResult<()> {
-    match detail {
-        Some(pixels) if !(pixels > 0.0 && pixels.is_finite()) => {
-            Err(PyValueError::new_err("a detail is a length above 0 pixels"))
+impl Drawing {
+    /// Checks the options: a detail is a length, and a view a rectangle of the plane, in place of a zoom.
+    fn new(
+        fractal: &Fractal,
+        size: &SizeArgument,
+        detail: Option<f64>,
+        view: Option<[f64; 4]>,
+    ) -> PyResult<Self> {
+        if detail.is_some_and(|pixels| !(pixels > 0.0 && pixels.is_finite())) {
+            return Err(PyValueError::new_err("a detail is a length above 0 pixels"));
         }
-        _ => Ok(()),
+        if view.is_some() && fractal.zoom.is_some() {
+            let message = "a view and a zoom each select what is shown";
+            return Err(PyValueError::new_err(message));
+        }
+        let is_rectangle = |[x, y, width, height]: [f64; 4]| {
+            [x, y, width, height].iter().all(|it| it.is_finite()) && width > 0.0 && height > 0.0
+        };
+        if view.is_some_and(|window| !is_rectangle(window)) {
+            let message = "a view is (x, y, width, height), with sides above 0";
+            return Err(PyValueError::new_err(message));
+        }
+        Ok(Self {
+            size: size.size()?,
+            detail,
+            view: view.map(|window| View {
+                window: Some(window),
+                margin: Some(0.0),
+            }),
+        })
+    }
+
+    /// Returns a fractal with these options.
+    fn apply(&self, fractal: kfrac::Fractal) -> kfrac::Fractal {
+        let mut fractal = fractal.size(self.size);
+        if let Some(pixels) = self.detail {
+            fractal = fractal.detail(pixels);
+        }
+        if let Some(view) = self.view {
+            fractal = fractal.view(view);
+        }
+        fractal
     }
 }
 
@@ -341,7 +380,7 @@ impl Fractal {
     }
 
     /// Returns the approximant as SVG; in space, its visible faces.
-    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(1024), detail=None, seed=0, max_elements=MOST, threads=None))]
+    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(1024), detail=None, view=None, seed=0, max_elements=MOST, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn svg(
         &self,
@@ -349,25 +388,23 @@ impl Fractal {
         steps: Option<u32>,
         size: SizeArgument,
         detail: Option<f64>,
+        view: Option<[f64; 4]>,
         seed: u64,
         max_elements: u64,
         threads: Option<NonZero<usize>>,
     ) -> PyResult<String> {
-        check_detail(detail)?;
-        let size = size.size()?;
+        let drawing = Drawing::new(self, &size, detail, view)?;
         let growing = Growing {
             steps,
             seed,
             max_elements,
             threads,
         };
-        self.grown(py, &growing, |fractal| {
-            to_detail(fractal.size(size), detail).svg()
-        })
+        self.grown(py, &growing, |fractal| drawing.apply(fractal).svg())
     }
 
     /// Returns the approximant as the bytes of a PNG.
-    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(1024), detail=None, seed=0, max_elements=MOST, threads=None))]
+    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(1024), detail=None, view=None, seed=0, max_elements=MOST, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn png<'py>(
         &self,
@@ -375,19 +412,21 @@ impl Fractal {
         steps: Option<u32>,
         size: SizeArgument,
         detail: Option<f64>,
+        view: Option<[f64; 4]>,
         seed: u64,
         max_elements: u64,
         threads: Option<NonZero<usize>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        check_detail(detail)?;
-        let size = size.size()?;
+        let drawing = Drawing::new(self, &size, detail, view)?;
         let growing = Growing {
             steps,
             seed,
             max_elements,
             threads,
         };
-        let png = self.grown(py, &growing, |fractal| to_detail(fractal, detail).png(size))?;
+        let png = self.grown(py, &growing, |fractal| {
+            drawing.apply(fractal).png(drawing.size)
+        })?;
         Ok(PyBytes::new(py, &png))
     }
 
@@ -397,7 +436,7 @@ impl Fractal {
     /// -------
     /// array of uint8, shape (height, width, 4)
     ///     Rows from the top: red, green, blue (sRGB) and opacity, which the colours are not multiplied by.
-    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(512), detail=None, seed=0, max_elements=MOST, threads=None))]
+    #[pyo3(signature = (steps=None, *, size=SizeArgument::Long(512), detail=None, view=None, seed=0, max_elements=MOST, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn pixels<'py>(
         &self,
@@ -405,12 +444,12 @@ impl Fractal {
         steps: Option<u32>,
         size: SizeArgument,
         detail: Option<f64>,
+        view: Option<[f64; 4]>,
         seed: u64,
         max_elements: u64,
         threads: Option<NonZero<usize>>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        check_detail(detail)?;
-        let size = size.size()?;
+        let drawing = Drawing::new(self, &size, detail, view)?;
         let growing = Growing {
             steps,
             seed,
@@ -418,7 +457,7 @@ impl Fractal {
             threads,
         };
         let (pixels, [width, height]) = self.grown(py, &growing, |fractal| {
-            let pixels = to_detail(fractal, detail).pixels(size)?;
+            let pixels = drawing.apply(fractal).pixels(drawing.size)?;
             let size = pixels.size();
             Ok((pixels.into_straight(), size))
         })?;
@@ -429,7 +468,7 @@ impl Fractal {
     /// Writes a picture (.svg, .png, .pdf, .dxf) or a table of elements (.csv, .json, .jsonl, .ndjson), by the extension of
     /// the file; in space also a mesh (.stl, .obj, .ply) or nested instances (.usda, .glb, .3mf, .pov). An existing file is
     /// replaced once the new one is complete.
-    #[pyo3(signature = (path, steps=None, *, size=SizeArgument::Long(1024), detail=None, seed=0, max_elements=MOST, threads=None))]
+    #[pyo3(signature = (path, steps=None, *, size=SizeArgument::Long(1024), detail=None, view=None, seed=0, max_elements=MOST, threads=None))]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn write(
         &self,
@@ -438,21 +477,19 @@ impl Fractal {
         steps: Option<u32>,
         size: SizeArgument,
         detail: Option<f64>,
+        view: Option<[f64; 4]>,
         seed: u64,
         max_elements: u64,
         threads: Option<NonZero<usize>>,
     ) -> PyResult<()> {
-        check_detail(detail)?;
-        let size = size.size()?;
+        let drawing = Drawing::new(self, &size, detail, view)?;
         let growing = Growing {
             steps,
             seed,
             max_elements,
             threads,
         };
-        self.grown(py, &growing, |fractal| {
-            to_detail(fractal.size(size), detail).write(path)
-        })
+        self.grown(py, &growing, |fractal| drawing.apply(fractal).write(path))
     }
 
     /// Counts the points of random iteration (the chaos game) in the pixels of the attractor's box, or of the window of the

@@ -34,9 +34,9 @@ PARTS = 6
 GASKET = "{kind: ifs, vertices: {points: [[0, 0], [1, 0], [0.5, 0.8]], shrink: 1/2}}"
 
 
-def recipe(engine: str) -> SimpleNamespace:
-    """Loads the example of an engine, without running its last block."""
-    path = Path(__file__).parent.parent / "examples" / f"on_{engine}.py"
+def recipe(name: str) -> SimpleNamespace:
+    """Loads an example without running its last block."""
+    path = Path(__file__).parent.parent / "examples" / f"{name}.py"
     return SimpleNamespace(**runpy.run_path(str(path), run_name="recipe"))
 
 
@@ -137,6 +137,8 @@ def same(engine: SimpleNamespace, folder: Path) -> None:
     check_kill(folder, "tree")
     assert pictures == [tree.png(7, size=100) for tree in family]
 
+    large(engine, folder)
+
     def wrong(number: int) -> kfrac.Fractal:
         return kfrac.parse("kind: ifs\nvertces: []\n" if number == 4 else GASKET)
 
@@ -148,6 +150,29 @@ def same(engine: SimpleNamespace, folder: Path) -> None:
         assert diagnostic.hint is not None and "did you mean 'vertices'" in diagnostic.hint, diagnostic
     else:
         raise AssertionError("the mistake is not reported")
+
+
+def large(engine: SimpleNamespace, folder: Path) -> None:
+    """Boxes, points and tiles of a large picture."""
+    giant = recipe("giant")
+
+    def here(function: Callable[[Any], Any], values: Any, parts: int) -> list[Any]:
+        return [function(value) for value in values]
+
+    koch, fern = kfrac.load("koch"), kfrac.load("barnsley-fern")
+    found, expected = (giant.boxes(mapped, koch, 512, 64, PARTS) for mapped in (engine.mapped, here))
+    assert np.array_equal(found, expected), (found, expected)
+    # The slope of the counts between boxes of 4 and of 32 pixels is about the dimension.
+    assert abs(np.log2(found[2] / found[5]) / 3 - np.log(4) / np.log(3)) < 0.1, found
+    found, expected = (giant.cloud(mapped, fern, 100_003, 64, PARTS) for mapped in (engine.mapped, here))
+    assert np.array_equal(found, expected) and found.sum() == 100_003
+
+    if program := os.environ.get("KFRAC"):
+        pyramids = [folder / "shared", folder / "alone"]
+        giant.tiles(engine.mapped, "koch", 1024, str(pyramids[0]), PARTS, program)
+        giant.tiles(here, "koch", 1024, str(pyramids[1]), 1, program)
+        files = [{path.relative_to(it): path.read_bytes() for path in it.rglob("*") if path.is_file()} for it in pyramids]
+        assert len(files[0]) > 20 and files[0] == files[1]
 
 
 def interrupted(engine: SimpleNamespace, folder: Path) -> None:
@@ -177,5 +202,5 @@ if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)
     name, folder, scenario = sys.argv[1], Path(sys.argv[2]), sys.argv[3]
     with CLUSTERS[name](2):
-        {"same": same, "interrupted": interrupted}[scenario](recipe(name), folder)
+        {"same": same, "interrupted": interrupted}[scenario](recipe(f"on_{name}"), folder)
     print("done", flush=True)

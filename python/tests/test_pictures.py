@@ -32,6 +32,21 @@ def test_pictures_have_their_sizes(pythagoras: kfrac.Fractal) -> None:
         pythagoras.png(detail=-1)
 
 
+def test_views_are_parts_of_the_whole() -> None:
+    koch = kfrac.load("koch")
+    whole = koch.pixels(5, size=(128, 128), view=(0, -0.25, 1, 1)).astype(int)
+    part = koch.pixels(5, size=(64, 64), view=(0.5, -0.25, 0.5, 0.5)).astype(int)
+    assert np.abs(whole[64:, 64:] - part).max() <= 2 and 0 < (part[..., 3] > 0).mean() < 1
+    assert size_of(koch.png(5, size=60, view=(0, 0, 0.5, 0.25))) == (60, 30)
+    for view in [(0, 0, 0, 1), (0, 0, 1, float("nan"))]:
+        with pytest.raises(ValueError, match="a view is"):
+            koch.png(view=view)
+    with pytest.raises(ValueError, match="each select"):
+        koch.zoom(10, "0.(1)").png(view=(0, 0, 1, 1))
+    with pytest.raises(kfrac.KfracError, match="window"):
+        kfrac.load("menger").png(2, size=20, view=(0, 0, 1, 1))
+
+
 def test_results_do_not_depend_on_threads(pythagoras: kfrac.Fractal, fern: kfrac.Fractal) -> None:
     assert pythagoras.png(8, threads=1) == pythagoras.png(8, threads=3)
     one, three = (fern.histogram(500_000, 64, threads=threads) for threads in (1, 3))
