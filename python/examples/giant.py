@@ -15,8 +15,8 @@ Mapped = Callable[[Callable[[Any], Any], Sequence[Any], int], list[Any]]
 def windows(fractal: kfrac.Fractal, size: int, tile: int) -> list[tuple[float, float, float, float]]:
     """Returns the parts of the plane that the tiles of a square picture show. `tile` divides `size`."""
     info = fractal.info()
-    boxes = np.array([box for box in (info["bounds"], info["limit_bounds"]) if box])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    known = np.array([box for box in (info["bounds"], info["limit_bounds"]) if box])
+    low, high = known[:, 0].min(axis=0), known[:, 1].max(axis=0)
     side = (high - low).max()
     corner, own = (low + high - side) / 2, side * tile / size
     numbers = range(size // tile)

@@ -20,7 +20,7 @@ const MAX_STATES: usize = 20_000;
 /// Limit of the number of states at all levels together.
 const MAX_WORK: usize = 1_000_000;
 
-/// Limit of the number of states that are looked at.
+/// Limit of the number of states that are looked at, those that are dropped at once included.
 const MAX_LOOKED: usize = 32 * MAX_WORK;
 
 /// Limit of the number of levels.
