@@ -84,6 +84,10 @@ pub(crate) fn parts<E: Edge>(size: usize, edges: &[E]) -> (Vec<usize>, Vec<Part<
         parts[part].0 - 1
     };
     let numbers: Vec<usize> = component.iter().map(number).collect();
+    // A single part has all edges.
+    if let [(_, all)] = &mut parts[..] {
+        all.reserve_exact(edges.len());
+    }
     for edge in edges {
         let ends = edge.ends();
         let [from, to] = ends.map(|vertex| component[vertex]);

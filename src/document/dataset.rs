@@ -226,9 +226,12 @@ impl DatasetDocument {
     pub fn read(source: &Arc<Source>) -> Result<Self, Diagnostics> {
         let mut found = Diagnostics::default();
         let node = Node::parse_with(source, &mut found);
-        let mut reader = Reader::after(&found);
-        let document = node.and_then(|node| Self::from_node(&mut reader, &node));
-        found.extend(reader.diagnostics);
+        let document = node.and_then(|node| {
+            let mut reader = Reader::after(&found, &node);
+            let document = Self::from_node(&mut reader, &node);
+            found.extend(reader.diagnostics);
+            document
+        });
         match document {
             Some(document) if !found.has_errors() => Ok(document),
             _ => Err(found.without_repeats()),

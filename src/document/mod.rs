@@ -111,7 +111,7 @@ macro_rules! documents {
                 node: &Node,
                 complete: bool,
             ) -> Option<Self> {
-                let mut reader = Reader::after(found);
+                let mut reader = Reader::after(found, node);
                 let read = Self::read(&mut reader, kind, node, complete);
                 found.extend(reader.diagnostics);
                 read

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Severity, Source, did_you_mean};
-use crate::expression::{Expression, UNIT, is_name};
+use crate::expression::{Expression, ExpressionError, UNIT, is_name};
 use crate::style::Named;
 
 use super::node::{Key, Node, Value};
 use super::shape::{Form, Member, Shape};
+use super::yaml::{MAX_VALUES, Size};
 use super::{Written, WrittenNumber, WrittenPoint};
 
 /// A reader of values, which collects diagnostics.
@@ -25,6 +26,10 @@ pub(super) struct Reader {
     mended: HashSet<(*const Source, usize, usize)>,
     /// Places of the errors that precede reading.
     errors: Arc<[Place]>,
+    /// Number of values of the file, and of operations of the formulas that have been read.
+    values: usize,
+    /// Whether it has been reported that these are too many.
+    is_full: bool,
 }
 
 /// The value of a key and the place of the key.
@@ -95,14 +100,15 @@ impl<'n> Fields<'n> {
 }
 
 impl Reader {
-    /// Creates a reader that takes the diagnostics of preceding stages into account.
-    pub(super) fn after(diagnostics: &Diagnostics) -> Self {
+    /// Creates a reader of a file that takes the diagnostics of preceding stages into account.
+    pub(super) fn after(diagnostics: &Diagnostics, file: &Node) -> Self {
         let places = diagnostics.iter().filter_map(Diagnostic::place);
         let is_error = |found: &&Diagnostic| found.severity() == Severity::Error;
         let errors = diagnostics.iter().filter(is_error);
         Self {
             mended: places.map(identity).collect(),
             errors: errors.filter_map(Diagnostic::place).cloned().collect(),
+            values: Size::of(file).values,
             ..Self::default()
         }
     }
@@ -112,8 +118,16 @@ impl Reader {
         Self {
             mended: self.mended.clone(),
             errors: Arc::clone(&self.errors),
+            values: self.values,
+            is_full: self.is_full,
             ..Self::default()
         }
+    }
+
+    /// Takes over the diagnostics of a reader of a nested file, and the number of values that it has counted.
+    pub(super) fn take(&mut self, inside: Self) {
+        self.diagnostics.extend(inside.diagnostics);
+        (self.values, self.is_full) = (inside.values, inside.is_full);
     }
 
     /// Returns whether neither this reader nor a preceding stage has found an error in a node.
@@ -226,7 +240,7 @@ impl Reader {
     pub(super) fn number(&mut self, node: &Node) -> WrittenNumber {
         let expression = match &node.value {
             Value::Number(value) => Expression::number(*value),
-            Value::Text(text) => Expression::parse(text).unwrap_or_else(|error| {
+            Value::Text(text) => self.formula(text, &node.place).unwrap_or_else(|error| {
                 if self.is_mended(node) {
                     return Expression::unknown();
                 }
@@ -261,6 +275,30 @@ impl Reader {
             value: expression,
             place: node.place.clone(),
         }
+    }
+
+    /// Parses a formula at a place. Operations of formulas count as values of the file: where these are too many, which is
+    /// reported once, formulas are not parsed.
+    pub(super) fn formula(
+        &mut self,
+        text: &str,
+        place: &Place,
+    ) -> Result<Expression, ExpressionError> {
+        if self.values <= MAX_VALUES {
+            let formula = Expression::parse(text)?;
+            self.values += formula.operations();
+            if self.values <= MAX_VALUES {
+                return Ok(formula);
+            }
+        }
+        if !std::mem::replace(&mut self.is_full, true) {
+            self.error_with_hint(
+                place,
+                "with the operations of its formulas, the file holds more than 250,000 values",
+                "write numbers in place of formulas, as in 0.25 for 1/4",
+            );
+        }
+        Ok(Expression::unknown())
     }
 
     /// Reads a list of exactly two numbers; in space, of two or three.
@@ -328,7 +366,7 @@ impl Reader {
             return Some(WrittenPoint::named(text, &node.place));
         }
         let place = node.place.clone();
-        let parts = Expression::parse(text)
+        let parts = { self.formula(text, &place) }
             .map_err(|error| error.hint("a point is written [x, y], or as a formula, (1 + i)/2"))
             .and_then(|formula| formula.complex_parts());
         let parts = match parts {

@@ -10,7 +10,7 @@ mod scalar;
 mod trouble;
 mod write;
 
-pub(super) use limits::{Budget, Size};
+pub(super) use limits::{Budget, MAX_VALUES, Size};
 pub(super) use read::read;
 pub(super) use scalar::number;
 pub(super) use write::{scalar_text, write};

@@ -237,6 +237,22 @@ impl Expression {
         names
     }
 
+    /// Returns the number of operations and of calls of functions.
+    pub(crate) fn operations(&self) -> usize {
+        let mut operations = 0;
+        self.visit(&mut |expression| {
+            operations += match expression.node {
+                Node::Prefix(..) | Node::Infix(..) | Node::Call(..) => 1,
+                Node::Number(_)
+                | Node::Truth(_)
+                | Node::Name(_)
+                | Node::Part(..)
+                | Node::Unknown => 0,
+            }
+        });
+        operations
+    }
+
     /// Returns warnings of trigonometric functions whose arguments contain `pi` and hence are probably
     /// in radians.
     #[must_use]

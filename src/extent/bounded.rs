@@ -63,6 +63,17 @@ pub trait Hulls<F: Frame> {
     /// Returns points whose convex hull approximates the subtree of an object.
     fn corners(&self, object: usize) -> &[F::Point];
 
+    /// Returns the numbers of those of the instances in the place of an object that may reach farthest along a vector in the
+    /// limit; `None` if they are not known. The hulls must be those of the limit.
+    fn contenders(
+        &self,
+        _object: usize,
+        _instances: &[Instance<F>],
+        _vector: F::Point,
+    ) -> Option<&[u32]> {
+        None
+    }
+
     /// Returns the length by which a box of instances may fall short.
     fn spared(&self, instances: &[Instance<F>], fineness: Fineness) -> f64;
 }

@@ -6,14 +6,12 @@
 //! is kept, and states that cannot exceed the best one are dropped; the number of states stays small
 //! (where rotations are rational, directions are finitely many).
 
-use std::collections::hash_map::Entry;
-
-use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
-use crate::graph::{Graph, Instance, Object};
+use super::terms::{SupportTerm, child, merged};
+use crate::graph::{Graph, Object, Successor};
 
 /// Limit of the number of states at one level.
 const MAX_STATES: usize = 20_000;
@@ -21,7 +19,10 @@ const MAX_STATES: usize = 20_000;
 const MAX_WORK: usize = 1_000_000;
 
 /// Limit of the number of states that are looked at, those that are dropped at once included.
-const MAX_LOOKED: usize = 32 * MAX_WORK;
+const MAX_LOOKED: usize = 8 * MAX_WORK;
+
+/// Limit of that number where polygons may find what ratios do not.
+const MAX_LOOKED_BY_RATIOS: usize = 2 * MAX_WORK;
 
 /// Limit of the number of levels.
 const MAX_LEVELS: u32 = 20_000;
@@ -32,14 +33,6 @@ const NEGLIGIBLE: f64 = 1e-17;
 /// Relative size of terms that are neglected where polygons bound the subtrees: maps may be affine there,
 /// and vectors of equal states differ by rounding, so fewer states merge.
 const ROUNDING: f64 = 1e-15;
-
-struct SupportTerm<F: Frame> {
-    object: usize,
-    vector: F::Point,
-    offset: f64,
-    /// Accumulated rounding error of the offset.
-    lost: f64,
-}
 
 /// Bounds on the subtrees of objects, on which the search relies.
 struct Reach<F: Frame> {
@@ -83,6 +76,15 @@ impl<F: Frame> Reach<F> {
         let hulls = self.hulls.as_ref()?;
         let [farthest, surely] = hulls.along(state.object, state.vector);
         (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
+    }
+
+    /// Returns the numbers of those instances in the place of a state's object that may reach farthest in the limit; `None` if
+    /// they are not known.
+    fn contenders(&self, state: &SupportTerm<F>, successor: &Successor<F>) -> Option<&[u32]> {
+        let hulls = self.hulls.as_ref()?;
+        let instances = &successor.body.instances;
+        let has_seeds = !successor.seeds.is_empty();
+        (!has_seeds).then(|| hulls.contenders(state.object, instances, state.vector))?
     }
 
     /// Returns a bound on the distance, along the vector of a state, of all that it draws from its
@@ -162,13 +164,23 @@ impl<F: Bounded> Graph<F> {
         if self.depth.is_some() || !self.contracts() {
             return None;
         }
-        let finenesses = [Fineness::COARSE, Fineness::FINE].into_iter();
-        let mut found =
-            finenesses.map(|fineness| self.boxes_within(true, fineness, |_| 0.0)?.of(None));
+        // Ratios need no polygons, but bound flat sets loosely.
+        let (by_ratios, by_hulls) = (None, [Fineness::COARSE, Fineness::FINE].map(Some));
+        let attempts = match self.needs_hulls() {
+            true => [by_hulls[0], by_hulls[1], by_ratios],
+            false => [by_ratios, by_hulls[0], by_hulls[1]],
+        };
+        let mut found = (attempts.into_iter())
+            .map(|fineness| self.boxes_within(true, fineness, |_| 0.0)?.of(None));
         found.find_map(|bounds| bounds).or_else(|| {
             self.has_balls_only()
                 .then(|| self.limit_bounds_by_balls())?
         })
+    }
+
+    /// Returns whether ratios of lengths do not bound subtrees, or only loosely.
+    fn needs_hulls(&self) -> bool {
+        self.affine || self.longest_ratio() >= 1.0
     }
 
     /// Returns whether the graph has limits, for which frames of its kind have no hulls.
@@ -186,14 +198,17 @@ impl<F: Bounded> Graph<F> {
         limit: bool,
         pad: impl Fn(&Object<F>) -> f64,
     ) -> Option<ApproximantBounds<'_, F>> {
-        self.boxes_within(limit, Fineness::COARSE, pad)
+        let by_hulls = self.needs_hulls().then_some(Fineness::COARSE);
+        let boxes = by_hulls.and_then(|fineness| self.boxes_within(limit, Some(fineness), &pad));
+        boxes.or_else(|| self.boxes_within(limit, None, &pad))
     }
 
-    /// Returns the boxes of approximants, or of the limit, with polygons of the given fineness.
+    /// Returns the boxes of approximants, or of the limit, by polygons of a fineness, or else by ratios; `None` if these bound
+    /// nothing.
     fn boxes_within(
         &self,
         limit: bool,
-        fineness: Fineness,
+        fineness: Option<Fineness>,
         pad: impl Fn(&Object<F>) -> f64,
     ) -> Option<ApproximantBounds<'_, F>> {
         let resets = self
@@ -204,17 +219,22 @@ impl<F: Bounded> Graph<F> {
         }
         let (spread, ratio) = (self.spread(&pad), self.longest_ratio());
         let alive = self.alive(limit);
-        let needs_hulls = self.affine || ratio >= 1.0;
         let pads: Vec<f64> = self.objects.iter().map(&pad).collect();
         let own = Own::Outlines(&pads);
         let drawn = limit.then_some(&alive[..]);
-        let hulls = needs_hulls.then(|| F::hulls(self, &own, drawn, fineness));
-        let hulls = hulls.flatten();
-        let spared = { hulls.as_ref() }.map(|it| it.spared(&self.initiator(0).instances, fineness));
+        let (hulls, spared) = match fineness {
+            Some(fineness) => {
+                let hulls = F::hulls(self, &own, drawn, fineness)?;
+                let spared = hulls.spared(&self.initiator(0).instances, fineness);
+                (Some(hulls), spared)
+            }
+            None if limit && ratio >= 1.0 => return None,
+            None => (None, 0.0),
+        };
         let reach = Reach {
             spread,
             ratio,
-            spared: spared.unwrap_or_default(),
+            spared,
             hulls,
             alive,
             pads,
@@ -279,11 +299,15 @@ impl<F: Bounded> Graph<F> {
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         let (mut work, mut looked) = (0, 0);
+        let max_looked = match (steps, &reach.hulls) {
+            (None, None) => MAX_LOOKED_BY_RATIOS,
+            _ => MAX_LOOKED,
+        };
         for level in 0..=MAX_LEVELS {
             let last = steps == Some(level);
             let levels = steps.map(|steps| steps - level);
-            let mut next = Vec::new();
             let mut certain = best;
+            let mut spans = Vec::with_capacity(states.len());
             for state in &states {
                 let object = &self.objects[state.object];
                 let kept = object.is_kept();
@@ -293,21 +317,30 @@ impl<F: Bounded> Graph<F> {
                     let reached = base_element.support(state.vector) + state.lost + pad;
                     best = best.max(state.offset + reached);
                 }
+                let span @ [_, surely] = reach.span(state, levels);
                 if reach.alive[state.object] {
-                    let [_, surely] = reach.span(state, levels);
                     certain = certain.max(surely);
                 }
+                spans.push(span);
             }
             if last {
                 return best.is_finite().then_some(best);
             }
             certain = certain.max(best);
-            let certain = certain - reach.slack() * (1.0 + certain.abs());
+            // Rounding drops no state that reaches as far as the farthest one.
+            let with_slack = |certain: f64| certain - reach.slack() * (1.0 + certain.abs());
+            let mut certain = with_slack(certain);
             // No comparison holds where nothing is certain yet.
-            let is_hopeless =
-                |state: &SupportTerm<F>, levels| reach.span(state, levels)[0] < certain;
-            for state in states {
-                let hopeless = is_hopeless(&state, levels);
+            let is_hopeless = |most: f64, certain: f64| most < certain;
+            let left = levels.map(|levels| levels - 1);
+            // The farthest states are looked at first: their children drop most of the others.
+            let mut order: Vec<usize> = (0..states.len()).collect();
+            order.sort_by(|a, b| spans[*b][0].total_cmp(&spans[*a][0]));
+            let mut next = Vec::new();
+            let mut room = MAX_STATES;
+            for number in order {
+                let state = &states[number];
+                let hopeless = is_hopeless(spans[number][0], certain);
                 let dead = steps.is_none() && !reach.alive[state.object];
                 if hopeless || dead {
                     continue;
@@ -318,9 +351,9 @@ impl<F: Bounded> Graph<F> {
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
                     let negligible = negligible.max(reach.spared);
                     let rest = if steps.is_none() && reach.hulls.is_some() {
-                        reach.rest(&state, negligible)
+                        reach.rest(state, negligible)
                     } else {
-                        (reach.size(&state, levels) <= negligible).then_some(0.0)
+                        (reach.size(state, levels) <= negligible).then_some(0.0)
                     };
                     if let Some(rest) = rest.filter(|_| known) {
                         if reach.alive[state.object] {
@@ -328,15 +361,31 @@ impl<F: Bounded> Graph<F> {
                         }
                         continue;
                     }
-                    let all = successor.placed_instances().map(|(_, instance)| {
-                        child(instance, state.vector, state.offset, state.lost)
-                    });
-                    let left = levels.map(|levels| levels - 1);
-                    next.extend(all.filter(|it| {
+                    let mut look = |instance| {
                         looked += 1;
-                        !is_hopeless(it, left)
-                    }));
-                    if next.len() > MAX_WORK || looked > MAX_LOOKED {
+                        let child = child(instance, state.vector, state.offset, state.lost);
+                        let [most, surely] = reach.span(&child, left);
+                        if reach.alive[child.object] {
+                            certain = certain.max(with_slack(surely));
+                        }
+                        if !is_hopeless(most, certain) {
+                            next.push((number, most, child));
+                        }
+                    };
+                    let is_limit = steps.is_none();
+                    let contenders = is_limit.then(|| reach.contenders(state, successor));
+                    match contenders.flatten() {
+                        Some(numbers) => {
+                            let instances = &successor.body.instances;
+                            numbers.iter().for_each(|it| look(&instances[*it as usize]));
+                        }
+                        None => { successor.placed_instances() }.for_each(|(_, it)| look(it)),
+                    }
+                    if next.len() > room {
+                        next.retain(|(_, most, _)| !is_hopeless(*most, certain));
+                        room = MAX_STATES.max(2 * next.len());
+                    }
+                    if next.len() > MAX_WORK || looked > max_looked {
                         return None;
                     }
                 }
@@ -344,7 +393,9 @@ impl<F: Bounded> Graph<F> {
             if next.is_empty() {
                 return best.is_finite().then_some(best);
             }
-            states = merged(next.into_iter());
+            next.retain(|(_, most, _)| !is_hopeless(*most, certain));
+            next.sort_by_key(|(number, ..)| *number);
+            states = merged(next.into_iter().map(|(.., state)| state));
             work += states.len();
             if states.len() > MAX_STATES || work > MAX_WORK {
                 return None;
@@ -387,73 +438,6 @@ pub(crate) fn settled(mut set: Vec<bool>, next: impl Fn(&[bool]) -> Vec<bool>) -
         }
         set = next;
     }
-}
-
-fn child<F: Frame>(
-    instance: &Instance<F>,
-    vector: F::Point,
-    offset: f64,
-    lost: f64,
-) -> SupportTerm<F> {
-    let shift = vector.dot(instance.frame.origin());
-    // Knuth's exact sum of two doubles (TwoSum) keeps the errors of many levels from accumulating.
-    let sum = offset + shift;
-    let rounded = sum - offset;
-    let error = (offset - (sum - rounded)) + (shift - rounded);
-    SupportTerm {
-        object: instance.object,
-        vector: instance.frame.pullback(vector),
-        offset: sum,
-        lost: lost + error,
-    }
-}
-
-/// Keeps the farthest of the states that are equal but for the offset.
-fn merged<F: Frame>(states: impl Iterator<Item = SupportTerm<F>>) -> Vec<SupportTerm<F>> {
-    let mut kept: Vec<SupportTerm<F>> = Vec::new();
-    let mut numbers = FastMap::default();
-    for state in states {
-        match numbers.entry((state.object, key(state.vector))) {
-            Entry::Occupied(number) => {
-                let known: &mut SupportTerm<F> = &mut kept[*number.get()];
-                if (known.offset, known.lost) < (state.offset, state.lost) {
-                    (known.offset, known.lost) = (state.offset, state.lost);
-                }
-            }
-            Entry::Vacant(free) => {
-                free.insert(kept.len());
-                kept.push(state);
-            }
-        }
-    }
-    kept
-}
-
-/// Returns a key that is equal for vectors that differ by rounding: the direction to ten decimals, and
-/// the length to as many digits.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "casts from floats saturate"
-)]
-fn key<P: Point>(vector: P) -> ([i64; 3], u64) {
-    /// Number of low bits of a double that are dropped, by rounding: truncation would separate the
-    /// neighbours of powers of two.
-    const ROUNDED: u32 = 19;
-    let (unit, length) = match vector.length() {
-        length if length > 0.0 && length.is_finite() => (vector / length, length),
-        // Squares of large and of small numbers leave the range of doubles.
-        _ => {
-            let unit = (vector / vector.abs().max_element()).normalize_or_zero();
-            (unit, vector.dot(unit))
-        }
-    };
-    let direction = unit
-        .coordinates()
-        .map(|value| (value * 1e10).round() as i64);
-    (
-        direction,
-        (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
-    )
 }
 
 #[cfg(test)]

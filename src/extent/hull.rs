@@ -1,6 +1,8 @@
 //! Convex polygons that contain the subtrees of objects: tight even where maps contract little, or only
 //! in products.
 
+use std::cell::OnceCell;
+
 use crate::digraph::components;
 use crate::geometry::{
     Bounds, DAffine2, DMat2, DVec2, Frame2, convex_hull, hausdorff_distance, thinned,
@@ -10,12 +12,13 @@ use crate::ifs::Shrinking;
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::contract::Products;
 use super::policy::{farthest, followed, rightmost};
+use super::sectors::Sectors;
 use crate::graph::{Graph, Instance};
 
 /// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-14;
 
-/// Number of rounds that are taken regardless of the number of corners that are mapped.
+/// Number of rounds before which the limit of the number of mapped corners is twice as high.
 const MIN_ROUNDS: usize = 4;
 /// Factor by which the error of polygons exceeds the one for which they are thinned.
 const FAR: f64 = 64.0;
@@ -33,6 +36,8 @@ struct Polygons {
     /// Error of each polygon: the distance within which it contains the subtree; in the limit, the
     /// Hausdorff distance from the hull.
     within: Vec<f64>,
+    /// Instances of the behaviours that reach farthest, as far as they were asked for; `None` where they are few.
+    sectors: Vec<OnceCell<Option<Sectors>>>,
 }
 
 impl Hulls<Frame2> for Polygons {
@@ -50,6 +55,14 @@ impl Hulls<Frame2> for Polygons {
 
     fn corners(&self, object: usize) -> &[DVec2] {
         &self.corners[self.of[object]]
+    }
+
+    fn contenders(&self, object: usize, instances: &[Instance], vector: DVec2) -> Option<&[u32]> {
+        let behaviour = self.of[object];
+        let within = self.within[behaviour];
+        let sectors = self.sectors.get(behaviour)?;
+        let sectors = sectors.get_or_init(|| Sectors::of(self, object, within, instances));
+        sectors.as_ref()?.along(vector)
     }
 
     fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
@@ -194,7 +207,8 @@ impl Graph {
                 thinned(&convex_hull(points, 0.0), tolerance)
             });
             let next: Vec<Vec<DVec2>> = next.collect();
-            let ends = work > fineness.max_work && round >= MIN_ROUNDS;
+            let ends =
+                work > fineness.max_work && round >= MIN_ROUNDS || work > 2 * fineness.max_work;
             if next
                 .iter()
                 .any(|corners| corners.len() > fineness.max_corners)
@@ -260,6 +274,7 @@ impl Graph {
             corners: vec![Vec::new(); behaviours],
             rightmost: Vec::new(),
             within: vec![f64::INFINITY; behaviours],
+            sectors: (0..behaviours).map(|_| OnceCell::new()).collect(),
         };
         for (number, object) in self.objects.iter().enumerate() {
             if self.is_replaced(number) {

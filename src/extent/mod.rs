@@ -19,6 +19,8 @@ mod policy;
 mod probable_reach;
 mod reach;
 mod search;
+mod sectors;
+mod terms;
 
 pub use bounded::{Bounded, Fineness, Hulls, LinearOf, Own};
 pub use bounding_box::bounding_box;

@@ -8,6 +8,9 @@ use glam::DVec2;
 /// A point within `tolerance` of its predecessor in the order of x is dropped, and so is a corner within
 /// `tolerance` of the line through its neighbours.
 pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
+    if points.len() >= MANY {
+        drop_inner(&mut points, tolerance);
+    }
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup_by(|a, b| a.distance(*b) <= tolerance);
     if points.len() < 3 {
@@ -32,6 +35,54 @@ pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> 
     let mut corners = half(&mut points.iter().copied());
     corners.extend(half(&mut points.iter().rev().copied()));
     corners
+}
+
+/// Number of points from which those that are well inside are dropped before the others are sorted.
+const MANY: usize = 128;
+
+/// Drops points inside an octagon of extreme points (Akl & Toussaint 1978), farther than `tolerance` from its sides.
+fn drop_inner(points: &mut Vec<DVec2>, tolerance: f64) {
+    const DIRECTIONS: [[f64; 2]; 8] = [
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [0.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, 0.0],
+        [-1.0, -1.0],
+        [0.0, -1.0],
+        [1.0, -1.0],
+    ];
+    /// Rounding error of distances, relative to the size.
+    const ROUNDING: f64 = 1e-14;
+    let extreme = DIRECTIONS.map(|direction| {
+        let direction = DVec2::from_array(direction);
+        let farther = |far: DVec2, point: &DVec2| {
+            if point.dot(direction) > far.dot(direction) {
+                *point
+            } else {
+                far
+            }
+        };
+        points.iter().fold(points[0], farther)
+    });
+    let size = extreme.iter().map(|point| point.abs().max_element());
+    let margin = tolerance + ROUNDING * size.fold(0.0, f64::max);
+    let next = extreme.iter().cycle().skip(1);
+    let sides = extreme.iter().zip(next).filter(|(from, to)| from != to);
+    let sides = sides.map(|(from, to)| (*from, (to - from).normalize_or_zero()));
+    let sides: Vec<_> = sides.collect();
+    // Sides that are too long or too short for a direction do not close.
+    if sides.iter().any(|(_, along)| *along == DVec2::ZERO) {
+        return;
+    }
+    // An octagon without sides is a point, and has nothing inside. Coordinates that are not numbers are kept.
+    let is_inner = |point: &DVec2| {
+        let mut distances = (sides.iter()).map(|(from, along)| along.perp_dot(point - from));
+        distances.all(|distance| distance > margin)
+    };
+    if !sides.is_empty() {
+        points.retain(|point| !is_inner(point));
+    }
 }
 
 /// Drops corners of a polygon that are no farther than `tolerance` from the sides that replace them.
@@ -156,5 +207,27 @@ mod tests {
             let found = hausdorff_distance(&a, &b);
             prop_assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
         }
+    }
+
+    /// Few points are not sorted out before; the hull of hulls is that of all.
+    #[test]
+    fn hulls_of_many_points_are_those_of_their_parts() {
+        let point = |number: u32| {
+            let place = DVec2::new(0.754_877_666, 0.569_840_291) * f64::from(number);
+            (place - place.floor()) * DVec2::new(3.0, 1.0) + 1000.0
+        };
+        for count in [200, 1000, 5000] {
+            let points: Vec<DVec2> = (0..count).map(point).collect();
+            let mut parts = Vec::new();
+            for part in points.chunks(MANY / 2) {
+                parts.extend(convex_hull(part.to_vec(), 0.0));
+                parts = convex_hull(parts, 0.0);
+                assert!(parts.len() < MANY / 2);
+            }
+            assert_eq!(convex_hull(points, 0.0), parts);
+        }
+        // An octagon of points that overflow has no sides.
+        let far: Vec<DVec2> = (0..1000).map(|it| point(it) * 1e200).collect();
+        assert!(convex_hull(far, 0.0).len() > 2);
     }
 }

@@ -252,6 +252,7 @@ impl<F: RuleFrame> Successor<F> {
             let instances = seed
                 .as_mut()
                 .map_or(&mut self.body.instances, |seed| &mut seed.chain.instances);
+            instances.reserve(part.elements.len());
             for element in &part.elements {
                 let (from, to) = (points[element.from], points[element.to]);
                 let frame = F::placed(element, points);

@@ -1,4 +1,4 @@
-//! Moments of the invariant measure that random iteration draws, by linear equations.
+//! Moments of the invariant measure that random iteration draws: by linear equations, or by iteration for many states.
 
 use super::linear::Equations;
 use super::moments::square;
@@ -25,6 +25,18 @@ pub struct Measure {
     pub by_map: Vec<MapMeasure>,
 }
 
+/// Number of states of a walk from which its moments are iterated, not solved for: that takes the third power of it.
+const MANY: usize = 200;
+
+/// Largest number of states for which equations are solved where iteration does not converge.
+const MOST: usize = 400;
+
+/// Largest number of choices of a map that are taken into account together, where moments are iterated.
+const MAX_STEPS: usize = 10_000_000;
+
+/// Relative change of moments that counts as none.
+const STILL: f64 = 1e-15;
+
 /// Relative excess of a correlation over 1 that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -34,8 +46,8 @@ impl Ifs {
     ///
     /// Returns `None` if [there is no unique measure](super::Walk::stationary), if a condensation set has no
     /// moments, or if the second moments are infinite. They are finite where the system contracts, and
-    /// wherever the expected square of a product of maps goes to zero. The work grows with the third power of
-    /// the number of states of the [walk](Ifs::walk).
+    /// wherever the expected square of a product of maps goes to zero. Where the [walk](Ifs::walk) has many states, also `None`
+    /// if the moments of its steps hardly converge.
     #[must_use]
     pub fn measure(&self) -> Option<Measure> {
         let walk = self.walk();
@@ -47,10 +59,9 @@ impl Ifs {
             stationary: walk.stationary()?,
         };
         // Moments about the mean: those of distant attractors about the origin would lose digits.
-        let centre: DVec2 = flow.first_moments()?.iter().sum();
+        let centre: DVec2 = flow.moments()?.0.iter().sum();
         flow.centre(centre);
-        let first = flow.first_moments()?;
-        let second = flow.second_moments(&first)?;
+        let (first, second) = flow.moments()?;
         let mean: DVec2 = first.iter().sum();
         let moments = Moments {
             mean: mean + centre,
@@ -87,6 +98,55 @@ impl Flow<'_> {
         for moments in &mut self.drawn {
             moments.mean -= centre;
         }
+    }
+
+    /// Returns the first and the second moments of all states; `None` if they are infinite, or not found.
+    fn moments(&self) -> Option<(Vec<DVec2>, Vec<DMat2>)> {
+        if self.states.len() > MANY {
+            let settled = self.settled();
+            if settled.is_some() || self.states.len() > MOST {
+                return settled;
+            }
+        }
+        let first = self.first_moments()?;
+        let second = self.second_moments(&first)?;
+        Some((first, second))
+    }
+
+    /// Returns the moments to which those of a walk from the origin converge, step by step.
+    fn settled(&self) -> Option<(Vec<DVec2>, Vec<DMat2>)> {
+        let origin = vec![(DVec2::ZERO, DMat2::ZERO); self.states.len()];
+        let mut known = origin.clone();
+        for _ in 0..MAX_STEPS / self.steps().count().max(1) {
+            let mut next = origin.clone();
+            for (from, step) in self.steps() {
+                let (first, second) = known[from];
+                let moved = self.moved(step, self.stationary[from], first, second);
+                let all = &mut next[step.to];
+                all.0 += moved.0;
+                all.1 += moved.1;
+            }
+            let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
+            let changes = known.iter().zip(&next);
+            let changes = [
+                largest(&mut changes.clone().map(|(a, b)| (a.0 - b.0).length())),
+                largest(&mut changes.map(|(a, b)| size(&(a.1 - b.1)))),
+            ];
+            let sizes = [
+                largest(&mut next.iter().map(|it| it.0.length())),
+                largest(&mut next.iter().map(|it| size(&it.1))),
+            ];
+            known = next;
+            let is_finite = |it: &(DVec2, DMat2)| it.0.is_finite() && it.1.is_finite();
+            if !known.iter().all(is_finite) {
+                return None;
+            }
+            let mut pairs = changes.iter().zip(sizes);
+            if pairs.all(|(change, size)| *change <= STILL * size) {
+                return Some(known.into_iter().unzip());
+            }
+        }
+        None
     }
 
     /// Returns the first moments of all states; `None` if the equations are singular.
@@ -219,7 +279,74 @@ fn add_constant(equations: &mut Equations, state: usize, side: usize, matrix: DM
     }
 }
 
+/// Returns the largest entry of a matrix, regardless of signs.
+fn size(matrix: &DMat2) -> f64 {
+    matrix.x_axis.abs().max(matrix.y_axis.abs()).max_element()
+}
+
 /// Returns the matrix v wᵀ.
 fn outer(v: DVec2, w: DVec2) -> DMat2 {
     DMat2::from_cols(v * w.x, v * w.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ifs::{Definition, Edge, Map};
+
+    /// A system of maps each of which may be followed by two others, so that the walk has a state for each.
+    fn branching(count: usize) -> Ifs {
+        let maps = (0..count).map(|number| {
+            let turn = 0.7 * number as f64;
+            let shift = DVec2::new(libm::cos(turn), libm::sin(2.0 * turn));
+            let scale = DVec2::new(0.6, 0.9);
+            let map = DAffine2::from_scale_angle_translation(scale, turn, 100.0 + shift);
+            Map::new(map).weighing(1.0 + turn)
+        });
+        let edge = |from: usize, to: usize| Edge {
+            from,
+            to: to % count,
+            weight: None,
+        };
+        let edges =
+            (0..count).flat_map(|from| [edge(from, 2 * from + 1), edge(from, 2 * from + 2)]);
+        let definition = Definition {
+            maps: maps.collect(),
+            edges: Some(edges.collect()),
+            ..Definition::default()
+        };
+        Ifs::new(definition).unwrap()
+    }
+
+    #[test]
+    fn iterated_moments_are_those_of_the_equations() {
+        let system = branching(7);
+        let walk = system.walk();
+        let stationary = walk.stationary().unwrap();
+        let settled = walk.settled(&[true; 7]).unwrap();
+        for (a, b) in stationary.iter().zip(&settled) {
+            assert!((a - b).abs() < 1e-13, "{stationary:?} {settled:?}");
+        }
+        let flow = Flow {
+            maps: system.maps().iter().map(|map| map.affine).collect(),
+            drawn: Vec::new(),
+            states: walk.states(),
+            stationary,
+        };
+        let (first, second) = flow.moments().unwrap();
+        let (iterated_first, iterated_second) = flow.settled().unwrap();
+        for state in 0..7 {
+            let [a, b] = [first[state], iterated_first[state]];
+            assert!((a - b).length() < 1e-11 * a.length(), "{a} {b}");
+            let [a, b] = [second[state], iterated_second[state]];
+            assert!(size(&(a - b)) < 1e-11 * size(&a), "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn moments_of_many_states_are_found() {
+        let measure = branching(1200).measure().unwrap();
+        let weights: f64 = measure.by_map.iter().map(|part| part.weight).sum();
+        assert!((weights - 1.0).abs() < 1e-12, "{weights}");
+    }
 }

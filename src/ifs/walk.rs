@@ -3,6 +3,19 @@
 use super::linear::Equations;
 use super::{AffineMap, Ifs, shares};
 use crate::digraph::components;
+use crate::saturating::real;
+
+/// Number of states from which stationary weights are iterated first: equations take the third power of it.
+const MANY: usize = 300;
+
+/// Largest number of states for which equations are solved.
+const MOST: usize = 1500;
+
+/// Largest number of steps of the walk that are taken into account together, where weights are iterated.
+const MAX_STEPS: usize = 20_000_000;
+
+/// Sum of the changes of weights that counts as none.
+const STILL: f64 = 1e-15;
 
 /// Move of the point in a step of the walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,12 +109,18 @@ impl Walk {
     /// Returns the stationary weights: the share of its time that a long walk spends in every state.
     ///
     /// The weights of states that the walk leaves for ever are 0. Returns `None` if there are several parts
-    /// of the digraph that the walk cannot leave: its end then depends on its start. The work grows with the
-    /// third power of the number of states.
+    /// of the digraph that the walk cannot leave: its end then depends on its start. Also `None` for more than 1500 states if the
+    /// weights of a walk hardly converge.
     #[must_use]
     pub fn stationary(&self) -> Option<Vec<f64>> {
         let size = self.states.len();
         let final_states = self.final_states()?;
+        if size > MANY {
+            let settled = self.settled(&final_states);
+            if settled.is_some() || size > MOST {
+                return settled;
+            }
+        }
         let mut equations = Equations::new(size, 1);
         for (state, steps) in self.states.iter().enumerate() {
             equations.add(state, state, 1.0);
@@ -121,6 +140,34 @@ impl Walk {
             *weight = if last { weight.max(0.0) } else { 0.0 };
         }
         Some(weights)
+    }
+
+    /// Returns the weights to which those of the walk converge that starts anywhere in the final states and rests in every
+    /// other step on average; `None` if they hardly do.
+    pub(super) fn settled(&self, final_states: &[bool]) -> Option<Vec<f64>> {
+        let steps: usize = self.states.iter().map(Vec::len).sum();
+        let count = final_states.iter().filter(|&&last| last).count();
+        let start = 1.0 / real(count);
+        let start = final_states
+            .iter()
+            .map(|&last| if last { start } else { 0.0 });
+        let mut weights: Vec<f64> = start.collect();
+        for _ in 0..MAX_STEPS / steps.max(1) {
+            let mut next: Vec<f64> = weights.iter().map(|weight| weight / 2.0).collect();
+            for (steps, weight) in self.states.iter().zip(&weights) {
+                for step in steps {
+                    next[step.to] += step.probability * weight / 2.0;
+                }
+            }
+            let changes = weights.iter().zip(&next);
+            let change: f64 = changes.map(|(a, b)| (a - b).abs()).sum();
+            weights = next;
+            if change <= STILL {
+                let sum: f64 = weights.iter().sum();
+                return Some(weights.iter().map(|weight| weight / sum).collect());
+            }
+        }
+        None
     }
 
     /// Returns for each state whether it belongs to the part that cannot be left; `None` if there are several

@@ -14,19 +14,29 @@ pub(super) struct Perron {
 /// Maximum number of iterations.
 const MAX_ROUNDS: usize = 100_000;
 
+/// Maximum number of entries that all iterations together multiply.
+const MAX_WORK: usize = 1_000_000_000;
+
+/// Number of iterations without a narrower enclosure after which only rounding is left.
+const PATIENCE: usize = 50;
+
 /// Relative width at which an enclosure counts as a value.
 const NARROW: f64 = 4e-16;
+
+/// Relative width of an enclosure that rounding may cause.
+const ROUNDING: f64 = 1e-11;
 
 /// Computes the spectral radius of a strongly connected matrix, by power iteration on the matrix plus the
 /// identity, which has one dominant eigenvalue even where the matrix is periodic. The quotients of successive
 /// vectors enclose it (Collatz 1942, Wielandt 1950).
 ///
-/// The enclosure is narrowed until `enough` returns `true` for its lower and upper bounds, or to the
-/// precision of a double.
+/// The enclosure is narrowed until `enough` returns `true` for its lower and upper bounds, as far as rounding allows, and
+/// as far as a limit of work does.
 pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -> bool) -> Perron {
     let mut vector = vec![1.0; size];
     let mut enclosed = [0.0, f64::INFINITY];
-    for _ in 0..MAX_ROUNDS {
+    let (mut narrowest, mut since) = (f64::INFINITY, 0);
+    for _ in 0..MAX_ROUNDS.min(MAX_WORK / entries.len().max(1)) {
         let mut next = vector.clone();
         for &(row, column, value) in entries {
             next[row] += value * vector[column];
@@ -41,7 +51,11 @@ pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -
         let largest = next.iter().copied().fold(0.0, f64::max);
         next.iter_mut().for_each(|entry| *entry /= largest);
         let [low, high] = enclosed;
-        if high - low <= NARROW * (1.0 + high) || enough(enclosed) {
+        let width = high - low;
+        since = if width < narrowest { 0 } else { since + 1 };
+        narrowest = narrowest.min(width);
+        let is_rounding = since >= PATIENCE && width <= ROUNDING * (1.0 + high);
+        if width <= NARROW * (1.0 + high) || is_rounding || enough(enclosed) {
             break;
         }
         vector = next;

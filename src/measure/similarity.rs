@@ -77,7 +77,7 @@ pub fn moran_dimension(ratios: &[f64]) -> f64 {
         (Some(least), Some(largest)) if least == largest => {
             -libm::log(real(ratios.len())) / libm::log(*largest)
         }
-        (Some(_), Some(_)) => dimension_between(|dimension| sum_of_powers(&ratios, dimension)),
+        (Some(_), Some(_)) => dimension_of_powers(&ratios),
         _ => 0.0,
     }
 }
@@ -85,6 +85,44 @@ pub fn moran_dimension(ratios: &[f64]) -> f64 {
 fn sum_of_powers(ratios: &[f64], dimension: f64) -> f64 {
     let powers = ratios.iter().map(|&ratio| libm::pow(ratio, dimension));
     powers.sum()
+}
+
+/// Returns the D with Σ ratioᴰ = 1, for at least two ratios: Newton's method finds it nearly, on the logarithm of the sum, which
+/// is convex, and bisection to the last digit.
+fn dimension_of_powers(ratios: &[f64]) -> f64 {
+    const MAX_ROUNDS: usize = 64;
+    let logarithms: Vec<f64> = ratios.iter().map(|&ratio| libm::log(ratio)).collect();
+    let mut near = 0.0;
+    for _ in 0..MAX_ROUNDS {
+        let (mut sum, mut slope) = (0.0, 0.0);
+        for logarithm in &logarithms {
+            let power = libm::exp(near * logarithm);
+            sum += power;
+            slope += power * logarithm;
+        }
+        let next = near - sum * libm::log(sum) / slope;
+        if next > near && next.is_finite() {
+            near = next;
+        } else {
+            break;
+        }
+    }
+    dimension_near(near, |dimension| sum_of_powers(ratios, dimension))
+}
+
+/// Returns the dimension at which a falling function crosses 1, which is probably near a known one.
+fn dimension_near(near: f64, radius: impl Fn(f64) -> f64) -> f64 {
+    /// Relative distance within which the known one is trusted at first.
+    const NEAR: f64 = 4.0 * f64::EPSILON;
+    let mut apart = NEAR;
+    while apart < 1.0 && near > 0.0 {
+        let [low, high] = [1.0 - apart, 1.0 + apart].map(|factor| near * factor);
+        if radius(low) > 1.0 && radius(high) <= 1.0 {
+            return crossing(high, low, radius);
+        }
+        apart *= 16.0;
+    }
+    dimension_between(radius)
 }
 
 /// Returns the dimension at which a falling function crosses 1.
@@ -227,16 +265,14 @@ impl Component {
 
     /// Returns the D for which the part's matrix has spectral radius 1.
     fn dimension(&self) -> f64 {
-        let moran = self.moran_ratios();
-        let radius = |dimension: f64| match &moran {
-            Some(ratios) => sum_of_powers(ratios, dimension),
-            None => self.spectral_radius(dimension),
-        };
         // The limit set of a cycle without branches is a point.
         if self.edges.len() == self.size {
             return 0.0;
         }
-        dimension_between(radius)
+        match self.moran_ratios() {
+            Some(ratios) => dimension_of_powers(&ratios),
+            None => self.dimension_of_spectrum(),
+        }
     }
 
     /// Returns the ratios of Moran's equation, if all objects have the same ones.
@@ -255,10 +291,34 @@ impl Component {
             .then_some(first)
     }
 
-    /// Returns the spectral radius of the matrix of Σ ratio^D.
-    fn spectral_radius(&self, dimension: f64) -> f64 {
+    /// Returns the D for which the part's matrix has spectral radius 1: the secant method finds it nearly, on the logarithm of
+    /// the radius, which is convex, and bisection to the last digit.
+    fn dimension_of_spectrum(&self) -> f64 {
+        const MAX_ROUNDS: usize = 32;
+        let logarithm = |dimension| libm::log(self.spectral_radius(dimension, |_| false));
+        let mut last = (0.0, logarithm(0.0));
+        let mut near = (1.0, logarithm(1.0));
+        for _ in 0..MAX_ROUNDS {
+            let next = near.0 - near.1 * (near.0 - last.0) / (near.1 - last.1);
+            // Neither a quotient of zeros nor a number below 0 is a dimension.
+            if !(next.is_finite() && next > 0.0) {
+                break;
+            }
+            let is_still = (next - near.0).abs() <= 2.0 * f64::EPSILON * next;
+            (last, near) = (near, (next, logarithm(next)));
+            if is_still {
+                break;
+            }
+        }
+        dimension_near(near.0, |dimension| {
+            self.spectral_radius(dimension, beside_one)
+        })
+    }
+
+    /// Returns the spectral radius of the matrix of Σ ratio^D; `enough` is that of [`perron`].
+    fn spectral_radius(&self, dimension: f64, enough: impl Fn([f64; 2]) -> bool) -> f64 {
         let edges = self.edges.iter();
         let entries = edges.map(|edge| (edge.from, edge.to, libm::pow(edge.ratio, dimension)));
-        perron(self.size, &entries.collect::<Vec<_>>(), beside_one).radius
+        perron(self.size, &entries.collect::<Vec<_>>(), enough).radius
     }
 }

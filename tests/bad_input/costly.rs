@@ -80,11 +80,16 @@ fn what_is_too_much_to_resolve_is_counted() {
 
 #[test]
 fn extents_of_many_elements_and_maps_are_bounded() {
-    let elements: String = (0..75_000)
-        .map(|i| format!("  - [sin(30)*{}/100, cos(30 + {})/100]\n", i % 7, i % 13))
-        .collect();
-    let text = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{elements}  - [1, 0]\n");
-    accepted(&text, &INFO);
+    let many = |count: usize, element: &dyn Fn(usize) -> String| {
+        let elements: String = (0..count).map(element).collect();
+        format!("initiator: segment\ngenerator:\n  - [0, 0]\n{elements}  - [1, 0]\n")
+    };
+    let numbers = |i| format!("  - [0.0{}, 0.00{}]\n", i % 7, i % 13);
+    accepted(&many(75_000, &numbers), &INFO);
+    let formulas = |i| format!("  - [sin(30)*{}/100, cos(30 + {})/100]\n", i % 7, i % 13);
+    accepted(&many(15_000, &formulas), &INFO);
+    let message = "with the operations of its formulas, the file holds more than 250,000 values";
+    refused(many(75_000, &formulas).as_bytes(), message);
     let maps: String = (0..600)
         .map(|i| {
             let (axis, turn, x, y) = (i % 5, i % 360, i % 97, i % 89);
@@ -101,6 +106,31 @@ fn extents_of_many_elements_and_maps_are_bounded() {
         })
         .collect();
     accepted(&format!("kind: ifs\nmaps:\n{maps}"), &["dim", "many.yaml"]);
+    accepted(&format!("kind: ifs\nmaps:\n{maps}"), &INFO);
+}
+
+#[test]
+fn measures_of_many_states_are_found() {
+    let maps: String = (0..900)
+        .map(|i| {
+            let (turn, x, y) = (i * 77 % 360, i % 17, i % 13);
+            format!("  - {{scale: 0.01, rotate: {turn}, translate: [{x}, {y}]}}\n")
+        })
+        .collect();
+    let edges = (1..=900).map(|from| {
+        let targets = (0..40).map(|step| ((from * 7 + step * 61) % 900 + 1).to_string());
+        format!("  {from}: [{}]\n", targets.collect::<Vec<_>>().join(", "))
+    });
+    let text = format!(
+        "kind: ifs\nmaps:\n{maps}edges:\n{}",
+        edges.collect::<String>()
+    );
+    accepted(&text, &INFO);
+    let system = kfrac::Fractal::parse(&text).unwrap();
+    let kfrac::model::Model::Ifs(system) = system.model() else {
+        panic!("it is a system of the plane");
+    };
+    assert!(system.ifs().measure().is_some());
 }
 
 #[test]
@@ -283,7 +313,7 @@ fn fractals_of_fractals_are_counted() {
 /// The depth of brackets exceeds that of the call stack.
 #[test]
 fn brackets_may_be_nested_deeply() {
-    const DEPTH: usize = 100_000;
+    const DEPTH: usize = 45_000;
     let (open, close) = ("[".repeat(DEPTH), "]".repeat(DEPTH));
     let text =
         |axiom: String| format!("kind: lsystem\naxiom: '{axiom}'\nproductions: {{F: F+F}}\n");
@@ -303,7 +333,15 @@ fn brackets_may_be_nested_deeply() {
     refused(context.as_bytes(), "nested");
     let arguments = format!("F{}", "(".repeat(DEPTH));
     refused(text(arguments).as_bytes(), "not closed");
-    refused(text("F".repeat(300_000)).as_bytes(), "250000 modules");
+    refused(text("F".repeat(300_000)).as_bytes(), "100,000 modules");
+    let mut state = 1_u32;
+    let module = |_| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        ["F", "+", "-", "F"][(state >> 30) as usize]
+    };
+    let word: String = (0..90_000).map(module).collect();
+    let text = format!("kind: lsystem\nangle: 60\naxiom: F\nproductions:\n  F: {word}\n");
+    accepted(&text, &INFO);
 }
 
 /// Returns a rule whose generator has a number of points on a sine curve.

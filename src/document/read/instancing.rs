@@ -347,7 +347,7 @@ impl Reader {
     /// Parses an expression that is part of a text; a mistake is reported and a placeholder is
     /// returned.
     fn expression(&mut self, text: &str, place: &Place) -> WrittenNumber {
-        let value = Expression::parse(text).unwrap_or_else(|mut error| {
+        let value = self.formula(text, place).unwrap_or_else(|mut error| {
             error.hint.get_or_insert_with(|| "A(n - 1), A(0)".into());
             self.diagnostics.push(error.at(place));
             Expression::unknown()

@@ -86,7 +86,7 @@ pub(in crate::document) fn check_description(node: &Node, diagnostics: &mut Diag
         alternatives: &[],
         hint: "title: Koch curve",
     };
-    let mut reader = Reader::after(diagnostics);
+    let mut reader = Reader::after(diagnostics, node);
     if let Some(fields) = reader.fields(node, &DESCRIBED) {
         read_description(&mut reader, &fields);
     }

@@ -301,7 +301,7 @@ impl FromNode for FractalFile {
         let mut inside = reader.inside();
         let file = KindDocument::read(&mut inside, kind, node, true);
         let is_sound = inside.is_sound(node);
-        reader.diagnostics.extend(inside.diagnostics);
+        reader.take(inside);
         Some(Self {
             file: file?,
             is_sound,

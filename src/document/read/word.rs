@@ -10,7 +10,7 @@ use crate::document::{Written, WrittenNumber};
 use crate::expression::Expression;
 
 /// Maximum number of modules in all words of a file.
-const MAX_MODULES: usize = 250_000;
+const MAX_MODULES: usize = 100_000;
 
 /// Number of mistakes in a word after which it is not read further.
 const MAX_MISTAKES: usize = 20;
@@ -141,7 +141,7 @@ impl<'r> WordReader<'r> {
             let end = start + character.len_utf8();
             let place = text.at(start..end);
             if self.modules == MAX_MODULES {
-                let message = format!("the words hold more than {MAX_MODULES} modules");
+                let message = "the words hold more than 100,000 modules";
                 self.error(&place, message, "a few more steps make long words");
                 return (modules, false);
             }
@@ -216,16 +216,15 @@ impl<'r> WordReader<'r> {
         let part = text.trimmed(part);
         // An empty expression is shown at the parenthesis or comma that follows it.
         let shown = part.start..part.end.max(part.start + 1);
-        let value = Expression::parse(&text.text[part.clone()]).unwrap_or_else(|error| {
+        let place = text.at(part.clone());
+        let formula = self.reader.formula(&text.text[part.clone()], &place);
+        let value = formula.unwrap_or_else(|error| {
             let range = part.start + error.range.start..part.start + error.range.end;
             let place = text.at(if part.is_empty() { shown } else { range });
             self.reader.diagnostics.push(error.at(&place));
             Expression::unknown()
         });
-        Written {
-            value,
-            place: text.at(part),
-        }
+        Written { value, place }
     }
 
     /// Reads the part before the arrow: contexts, the strict predecessor and a condition.

@@ -5,15 +5,15 @@ use crate::document::node::{Node, Value};
 
 /// Maximum nesting depth of lists and mappings, since nodes are visited recursively.
 pub(super) const MAX_DEPTH: usize = 64;
-/// Maximum number of values, including the copies that aliases and components make.
-const MAX_VALUES: usize = 250_000;
+/// Maximum number of values, including the copies that aliases and components make, and the operations of formulas.
+pub(in crate::document) const MAX_VALUES: usize = 250_000;
 /// Maximum number of bytes of text in copies that aliases and components make.
 const MAX_COPIED: usize = 16 << 20;
 
 /// Size of a node.
 #[derive(Clone, Copy, Default)]
 pub(in crate::document) struct Size {
-    values: usize,
+    pub(in crate::document) values: usize,
     bytes: usize,
     depth: usize,
 }

@@ -236,13 +236,11 @@ impl Reader<'_> {
         let value = if collection.mapping {
             Value::Mapping(repair::entries(collection.items, self.found))
         } else {
-            Value::Sequence(
-                collection
-                    .items
-                    .into_iter()
-                    .map(|item| item.value)
-                    .collect(),
-            )
+            let items = collection.items.into_iter().map(|item| item.value);
+            let mut items: Vec<Node> = items.collect();
+            // The list takes over the memory of larger items.
+            items.shrink_to_fit();
+            Value::Sequence(items)
         };
         let node = Node { place, value };
         self.anchor(collection.anchor, &node)?;

@@ -187,7 +187,7 @@ pub fn dimensions(system: &GraphDirectedSystem) -> Option<Dimensions> {
 /// Computes the dimensions of the sets of a system, as [`dimensions`] does, within an effort.
 #[must_use]
 pub fn dimensions_within(system: &GraphDirectedSystem, effort: Effort) -> Option<Dimensions> {
-    let system = &system.in_own_units();
+    let system = &*system.in_own_units();
     let (component, components) = system.components();
     let parts = components.iter().filter(|part| !part.copies.is_empty());
     let parts: Vec<&GraphDirectedSystem> = parts.collect();

@@ -23,6 +23,9 @@ const MAX_COMPARED: usize = 100_000_000;
 /// Distance, in a system of size 1, up to which a point counts as on a side of the hull.
 const STILL: f64 = 1e-13;
 
+/// Least cost of the comparison of two hulls.
+const LEAST: usize = 4;
+
 /// Overlap, in a system of size 1, up to which hulls count as touching.
 const SLACK: f64 = 1e-10;
 
@@ -30,6 +33,10 @@ const SLACK: f64 = 1e-10;
 /// set overlap in sides only. Returns `false` otherwise, or if there are too many copies or corners.
 pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
     if flat.dimension == 0 || flat.dimension > 2 {
+        return false;
+    }
+    let most = effort.of(MAX_COMPARED);
+    if pairs(flat) > most / LEAST {
         return false;
     }
     let Some(hulls) = hulls(flat, effort) else {
@@ -40,17 +47,26 @@ pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
         .iter()
         .map(|copy| (copy.from, moved(&copy.map, &hulls[copy.to])))
         .collect();
-    let most = effort.of(MAX_COMPARED);
     let mut compared = 0;
     copies.iter().enumerate().all(|(number, (from, a))| {
         compared += number;
         let others = copies[..number].iter().filter(|(other, _)| other == from);
         others.into_iter().all(|(_, b)| {
             let corners = a.len() + b.len();
-            compared += corners * corners;
+            compared += (corners * corners).max(LEAST);
             compared <= most && separated(a, b)
         })
     })
+}
+
+/// Returns the number of pairs of copies in the same set.
+fn pairs(flat: &Flat) -> usize {
+    let mut copies = vec![0_usize; flat.size];
+    flat.copies.iter().for_each(|copy| copies[copy.from] += 1);
+    let pairs = copies
+        .iter()
+        .map(|count| count * count.saturating_sub(1) / 2);
+    pairs.sum()
 }
 
 fn moved(map: &DAffine3, points: &[DVec2]) -> Vec<DVec2> {
@@ -148,6 +164,11 @@ impl Piece {
 /// until the balls around pieces are disjoint. Returns `false` where pieces are closer than numbers resolve,
 /// or where the search is given up.
 pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
+    let mut balls_left = effort.of(MAX_BALLS);
+    match balls_left.checked_sub(pairs(flat)) {
+        Some(left) => balls_left = left,
+        None => return false,
+    }
     let mut copies = vec![Vec::new(); flat.size];
     for copy in &flat.copies {
         copies[copy.from].push((copy.to, copy.map));
@@ -159,14 +180,8 @@ pub(super) fn copies_are_apart(flat: &Flat, effort: Effort) -> bool {
         centre: map.transform_point3(balls.centres[set]),
         radius: ratio(map.matrix3) * balls.radii[set],
     };
-    let mut balls_left = effort.of(MAX_BALLS);
     let mut open = Vec::new();
     for copies in &copies {
-        let pairs = copies.len() * copies.len().saturating_sub(1) / 2;
-        match balls_left.checked_sub(pairs) {
-            Some(left) => balls_left = left,
-            None => return false,
-        }
         let pieces: Vec<Piece> = copies.iter().map(|(set, map)| piece(*set, *map)).collect();
         for (number, a) in pieces.iter().enumerate() {
             let pairs = pieces[..number].iter().map(|b| (*a, *b));

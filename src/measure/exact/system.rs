@@ -1,5 +1,7 @@
 //! Systems of sets that are made of smaller copies of each other, from which dimensions are computed.
 
+use std::borrow::Cow;
+
 use crate::digraph::{Edge, parts};
 use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::Graph;
@@ -109,15 +111,15 @@ impl GraphDirectedSystem {
 
     /// Returns the sets, each in a unit of its own, in which all maps contract if the products along all
     /// cycles do. Dimensions are unchanged. Systems of maps that are not similarities are returned unchanged.
-    pub(super) fn in_own_units(&self) -> Self {
+    pub(super) fn in_own_units(&self) -> Cow<'_, Self> {
         // Minimum contraction of every map, as a logarithm; the largest one that the cycles permit is used.
         const LEAST: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
         if !self.is_similar() || self.shrinks() {
-            return self.clone();
+            return Cow::Borrowed(self);
         }
         let units = LEAST.into_iter().find_map(|least| self.units(least));
         let Some(units) = units else {
-            return self.clone();
+            return Cow::Borrowed(self);
         };
         let copies = self.copies.iter().map(|copy| {
             let [outer, inner] = [copy.from, copy.to].map(|set| libm::exp(units[set]));
@@ -127,10 +129,10 @@ impl GraphDirectedSystem {
             };
             Copy { map, ..*copy }
         });
-        Self {
+        Cow::Owned(Self {
             copies: copies.collect(),
             ..*self
-        }
+        })
     }
 
     /// Returns units for all sets, as logarithms: the lengths of the longest paths of copies (Bellman 1958),

@@ -29,7 +29,8 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
         points: &mut Vec<WrittenPoint>,
         initiator: bool,
     ) -> Vec<ListedElement> {
-        let mut elements: Vec<ListedElement> = Vec::new();
+        let mut elements: Vec<ListedElement> = Vec::with_capacity(entries.len());
+        points.reserve(entries.len());
         let mut first: Option<ListedPoint> = None;
         let mut last: Option<ListedPoint> = None;
         let add = |points: &mut Vec<WrittenPoint>, point: &WrittenPoint| {

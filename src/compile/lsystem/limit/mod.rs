@@ -37,14 +37,21 @@ use super::kinds::{Kinds, MAX_CLOSED};
 /// Additional bits of the numbers in which growth is decided.
 const BITS: usize = 1024;
 
-/// Checks that modules are replaced, and read by the turtle, regardless of all others.
+/// Largest number of modules of all successors together: each takes some hundred operations with long numbers.
+const MAX_MODULES: usize = 5000;
+
+/// Checks that modules are replaced, and read by the turtle, regardless of all others, and that they are not too many.
 fn check(system: &LSystem) -> Result<(), NoGrowth> {
+    let successors = system.productions.iter().map(|it| it.successor.len());
+    let modules: usize = successors.sum();
     if !system.is_deterministic() {
         Err(NoGrowth::Draws)
     } else if !system.is_context_free() {
         Err(NoGrowth::Contexts)
     } else if system.depends_on_the_way() {
         Err(NoGrowth::Actions)
+    } else if modules > MAX_MODULES {
+        Err(NoGrowth::Size)
     } else {
         Ok(())
     }
