@@ -1,6 +1,6 @@
 //! The walks of a chaos game, divided into waves for threads.
 
-use crate::geometry::Point;
+use crate::geometry::{Linear, Point};
 use crate::ifs::PointOf;
 
 use super::alias::AliasTable;
@@ -18,10 +18,16 @@ const STEPS: u64 = 1 << 15;
 pub(super) const WARM_UP: u32 = 256;
 
 /// Steps of the walk that estimates rounding errors.
-const PILOT: u32 = 10_000;
+const PILOT: usize = 1024;
+
+/// Number of steps of that walk between the points whose errors are estimated: a prime, for walks that recur.
+const EVERY: usize = 13;
 
 /// Rounding error, in pixels, up to which single precision is used.
 const FINE: f64 = 1.0 / 64.0;
+
+/// Unit roundoff of single precision.
+const UNIT: f64 = f32::EPSILON as f64 / 2.0;
 
 /// All walks of a game, in the coordinates of a window. A *wave* consists of [`LANES`] walkers side by side; it has its own random
 /// numbers, and waves can be walked in any order.
@@ -70,7 +76,9 @@ impl<'a, M: Walked> Course<'a, M> {
             points: game.points,
             is_double: false,
         };
-        course.is_double = course.rounding() * scale > FINE;
+        let is_fine = |rounding: f64| rounding * scale <= FINE;
+        let bound = course.bound_of_rounding();
+        course.is_double = !(bound.is_some_and(is_fine) || is_fine(course.rounding()));
         course
     }
 
@@ -111,40 +119,93 @@ impl<'a, M: Walked> Course<'a, M> {
         (self.to_window.apply(point), last)
     }
 
-    /// Returns a bound of the error of a point by single precision, in the window, estimated along a walk.
+    /// Returns a bound of the error of a point by single precision, in the window; `None` if a map does not contract.
+    ///
+    /// Maps that shorten all vectors by a factor s keep the walk in a ball and shorten errors by s, to which a step adds its
+    /// own: together no more than that of one step, divided by 1 − s.
+    fn bound_of_rounding(&self) -> Option<f64> {
+        let maps: Vec<M> = self.maps.iter().copied().collect::<Option<_>>()?;
+        let rest = 1.0 - largest(maps.iter().map(|map| map.linear().stretch()));
+        if !(rest > 0.0 && matches!(self.start, Start::Attractor)) {
+            return None;
+        }
+        let start = self.to_window.apply(self.system.start().point);
+        let moved = maps.iter().map(|map| (map.apply(start) - start).length());
+        let radius = largest(moved) / rest;
+        let farthest = start.abs() + PointOf::<M>::splat(radius);
+        let terms = maps.iter().map(|map| map.abs().apply(farthest).length());
+        let step = largest(terms) * (M::ROUNDINGS * UNIT);
+        Some(step / rest)
+    }
+
+    /// Returns a bound of the error of a point by single precision, in the window, estimated for some points of a walk: what
+    /// each step before has added, taken along by the product of the maps since.
     fn rounding(&self) -> f64 {
-        let unit = f64::from(f32::EPSILON) / 2.0;
         let mut random = Scalar::new(0, 0);
         let start = self.system.start();
         let mut last = start.last;
         let mut point = self.to_window.apply(start.point);
-        let mut error = PointOf::<M>::ZERO;
+        // The maps of the walk, none for a condensation set, and the error that a step adds.
+        let mut steps: Vec<(Option<M>, PointOf<M>)> = Vec::with_capacity(PILOT);
         let mut worst = 0.0f64;
-        for _ in 0..PILOT {
+        for number in 1..=PILOT {
             last = self
                 .choice
                 .choose(self.system.state_after(last), random.word());
-            match (&self.maps[last], &self.system.maps()[last]) {
+            let map = self.maps[last];
+            let added = match (map, &self.system.maps()[last]) {
                 (Some(map), _) => {
-                    let spread = map.abs();
                     // Products, sums, and the rounding of the coefficients.
-                    let terms = spread.apply(point.abs());
-                    error = spread.apply_vector(error) + terms * (M::ROUNDINGS * unit);
+                    let terms = map.abs().apply(point.abs());
                     point = map.apply(point);
+                    terms * (M::ROUNDINGS * UNIT)
                 }
                 (None, Map::Condensation(shape)) => {
                     point = self.to_window.apply(shape.sample(&mut random));
-                    error = point.abs() * unit;
+                    point.abs() * UNIT
                 }
                 (None, Map::Affine(_)) => unreachable!("affine maps have one of the window"),
-            }
-            worst = worst.max(error.max_element());
+            };
+            steps.push((map, added));
+            let error = match number % EVERY {
+                0 => accumulated(&steps),
+                _ => added,
+            };
+            worst = largest([worst].into_iter().chain(error.coordinates()));
         }
-        // NaN counts as the largest error.
-        if error.is_finite() {
-            worst
-        } else {
+        worst
+    }
+}
+
+/// Returns the largest of numbers that are not negative; NaN counts as infinite.
+fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+    let numbers = numbers.map(|number| {
+        if number.is_nan() {
             f64::INFINITY
+        } else {
+            number
+        }
+    });
+    numbers.fold(0.0, f64::max)
+}
+
+/// Returns the error at the end of a walk, with the error that each step has added.
+fn accumulated<M: Walked>(steps: &[(Option<M>, PointOf<M>)]) -> PointOf<M> {
+    /// Part of the sum that what came before may have.
+    const NEGLIGIBLE: f64 = 1e-3;
+    let mut sum = PointOf::<M>::ZERO;
+    let mut since = M::IDENTITY;
+    for (map, added) in steps.iter().rev() {
+        let own = since.abs().apply_vector(*added);
+        sum = sum + own;
+        match map {
+            Some(map) => since = since * *map,
+            // A point that is drawn has no error of those before.
+            None => break,
+        }
+        if since.linear().stretch() < NEGLIGIBLE {
+            break;
         }
     }
+    sum
 }

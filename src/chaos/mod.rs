@@ -9,8 +9,8 @@
 //!
 //! Walkers walk side by side, in waves that each have their own random numbers. The result therefore depends
 //! neither on the order of waves nor on the number of threads, and is the same on every machine. Walks are
-//! computed in single precision as long as that displaces no point by more than 1/64 pixel, which is
-//! estimated along a walk; otherwise in double precision.
+//! computed in single precision as long as that displaces no point by more than 1/64 pixel, by a bound for maps
+//! that contract or else by an estimate along a walk; otherwise in double precision.
 
 mod alias;
 mod course;
@@ -308,7 +308,7 @@ pub fn points_of_text(text: &str) -> Result<u64, String> {
 mod tests {
     use super::*;
     use crate::geometry::DMat2;
-    use crate::ifs::{Definition, Ifs, Map};
+    use crate::ifs::{Definition, Edge, Ifs, Map};
 
     /// The fern: steep, slow to contract, and with maps of all kinds.
     fn fern() -> WeightedMaps {
@@ -388,6 +388,28 @@ mod tests {
             let course_is_double = Course::new(&fern(), window.to_pixels, 1.0, &game).is_double;
             assert_eq!(course_is_double, is_double, "{side}");
         }
+    }
+
+    /// Maps that alternate, of which only one enlarges the error.
+    #[test]
+    fn errors_of_every_other_step_are_seen() {
+        let map = |scale: f64, shift: f64| {
+            let matrix = DMat2::from_diagonal(DVec2::splat(scale));
+            Map::new(DAffine2::from_mat2_translation(matrix, DVec2::splat(shift)))
+        };
+        let edge = |from, to| Edge {
+            from,
+            to,
+            weight: None,
+        };
+        let definition = Definition {
+            maps: vec![map(1e4, 300.0), map(1e-5, 500.0)],
+            edges: Some(vec![edge(0, 1), edge(1, 0)]),
+            ..Definition::default()
+        };
+        let system = WeightedMaps::of(&Ifs::new(definition).unwrap()).unwrap();
+        let game = Game::default();
+        assert!(Course::new(&system, DAffine2::IDENTITY, 1.0, &game).is_double);
     }
 
     /// Applying all maps and selecting one gives the same measure as looking maps up.
