@@ -204,11 +204,11 @@ impl Fractal {
     }
 
     /// Grows or draws for a long time.
-    fn grown<T: Send>(
+    fn grown<T: Send + 'static>(
         &self,
         py: Python<'_>,
         growing: &Growing,
-        work: impl FnOnce(kfrac::Fractal) -> Result<T, kfrac::Error> + Send,
+        work: impl FnOnce(kfrac::Fractal) -> Result<T, kfrac::Error> + Send + 'static,
     ) -> PyResult<T> {
         let fractal = growing.apply(&self.fractal);
         long(py, move |cancel: Arc<AtomicBool>| {

@@ -34,6 +34,28 @@ def test_an_interrupt_ends_work(fern: kfrac.Fractal) -> None:
     assert fern.histogram(1000, 16).sum() == 1000
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are those of Unix")
+def test_a_handler_of_signals_may_work_itself(fern: kfrac.Fractal) -> None:
+    forecasts: list[int] = []
+
+    def handle(*_: object) -> None:
+        forecast = kfrac.load("koch").forecast(len(forecasts))
+        assert forecast is not None
+        forecasts.append(forecast.elements)
+        if len(forecasts) == 3:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, handle)
+    signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            fern.histogram(ENDLESS, 64)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert forecasts == [1, 4, 16]
+
+
 def test_threads_share_fractals(fern: kfrac.Fractal) -> None:
     expected = [fern.histogram(50_000, 64, seed=seed) for seed in range(8)]
     with ThreadPoolExecutor(4) as pool:
