@@ -919,9 +919,14 @@ impl Drop for Ended {
     }
 }
 
-/// Ends a program as Ctrl-C does.
+/// Ends a program as Ctrl-C does; by force where programs inherit from the tests that it is ignored.
 #[cfg(unix)]
 fn interrupt(program: &mut std::process::Child) {
+    #[cfg(target_os = "linux")]
+    if crate::terminal::signals::are_ignored() {
+        program.kill().unwrap();
+        return;
+    }
     let interrupt = Command::new("kill")
         .args(["-INT", &program.id().to_string()])
         .status();

@@ -1,7 +1,7 @@
 //! The program on a terminal.
 
 #![cfg(target_os = "linux")]
-mod signals;
+pub(crate) mod signals;
 
 use std::ffi::OsString;
 use std::fs::{self, File};

@@ -33,7 +33,7 @@ fn mask(process: &str, of: &str) -> u64 {
 }
 
 /// Returns whether the tests themselves ignore signals, which their child processes inherit.
-fn are_ignored() -> bool {
+pub(crate) fn are_ignored() -> bool {
     let bit = |signal: Signal| 1 << (signal.as_raw() - 1);
     mask("self", "SigIgn:") & (bit(Signal::INT) | bit(Signal::TERM) | bit(Signal::HUP)) != 0
 }

@@ -57,7 +57,7 @@ pub(super) fn draw(
             light(&surface, view, first, (lit, *bits), (row, seen.clone()));
         }
         for (x, key) in keys.iter_mut().enumerate().take(seen.end).skip(seen.start) {
-            if row.depths[x] > *key {
+            if row.depths[x] == EMPTY {
                 continue;
             }
             let class = match classes {
