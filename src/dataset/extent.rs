@@ -20,12 +20,11 @@ const TOLERANCE: f64 = 1e-5;
 const ROUNDING: f64 = 1e-14;
 
 /// Returns the bounding box of the attractor of affine maps, each of which contracts in the Euclidean norm; `None` if one
-/// does not. The box lies in coordinates to which `seen` rotates.
+/// does not, or contracts so little that the search takes too long. The box lies in coordinates to which `seen` rotates.
 ///
 /// Each side is found by branch and bound: the maximum of a linear functional over the attractor is that over its images, whose
 /// maxima are bounded by [directions](Directions). All points of the attractor lie in the box, whose sides are exact to 10⁻⁵ of
-/// half of the longest one. Where maps contract so little that the search for a side takes too long, it lies at the farthest
-/// point that is found.
+/// half of the longest one.
 pub(super) fn attractor_box<M: Drawable>(maps: &[M], seen: &M::Linear) -> Option<Bounds<M::Point>> {
     let directions = Directions::of(maps)?;
     let sides = M::Point::AXES.iter();
@@ -38,7 +37,7 @@ pub(super) fn attractor_box<M: Drawable>(maps: &[M], seen: &M::Linear) -> Option
     let tolerance = TOLERANCE * half + ROUNDING * (directions.centre.length() + half);
     let mut corners = [M::Point::ZERO; 2];
     for (number, (axis, side)) in M::Point::AXES.iter().zip(sides).enumerate() {
-        let farthest = farthest(maps, &directions, side, tolerance);
+        let farthest = farthest(maps, &directions, side, tolerance)?;
         let corner = &mut corners[(number + 1) % 2];
         *corner = *corner + *axis * farthest;
     }
@@ -46,13 +45,13 @@ pub(super) fn attractor_box<M: Drawable>(maps: &[M], seen: &M::Linear) -> Option
     Some(Bounds::new(min, max))
 }
 
-/// Returns the maximum of a functional over the attractor, or more by no more than a tolerance; less if the search ends early.
+/// Returns the maximum of a functional over the attractor, or more by no more than a tolerance.
 fn farthest<M: Drawable>(
     maps: &[M],
     directions: &Directions<M::Point>,
     direction: M::Point,
     tolerance: f64,
-) -> f64 {
+) -> Option<f64> {
     let node = |vector: M::Point, offset: f64, outer: f64| Keyed {
         key: outer.min(offset + directions.most(vector)),
         item: (vector, offset),
@@ -67,11 +66,11 @@ fn farthest<M: Drawable>(
             item: (vector, offset),
         }) = heap.pop()
         else {
-            return left;
+            return Some(left);
         };
         found = found.max(offset + directions.least(vector));
         if key <= found + tolerance {
-            return key.max(left);
+            return Some(key.max(left));
         }
         for map in maps {
             let inner = map.linear().transposed(vector);
@@ -83,7 +82,7 @@ fn farthest<M: Drawable>(
             }
         }
     }
-    found
+    None
 }
 
 /// Number of vectors of space whose coordinates are −2, −1, 0, 1 or 2.
@@ -311,6 +310,7 @@ mod tests {
             let Some(own) = attractor_box(&maps, &DMat2::IDENTITY) else {
                 continue;
             };
+            found += 1;
             let entry = |map: &DAffine2| {
                 let [a, c, b, d, e, f] = map.to_cols_array();
                 format!("\n  - {{matrix: [[{a}, {b}], [{c}, {d}]], shift: [{e}, {f}]}}")
@@ -323,11 +323,11 @@ mod tests {
             let sides = apart
                 .into_iter()
                 .chain([own.max().x - max[0], own.max().y - max[1]]);
-            let farthest = sides.map(f64::abs).fold(0.0, f64::max);
-            assert!(farthest < 1e-2 * size, "{own:?} {min:?} {max:?}");
-            found += usize::from(farthest < 1e-5 * size);
+            for side in sides {
+                assert!(side.abs() < 1e-5 * size, "{own:?} {min:?} {max:?}");
+            }
         }
-        assert!(found >= 50, "{found}");
+        assert!(found >= 45, "{found}");
     }
 
     #[test]
@@ -365,17 +365,19 @@ mod tests {
                 }
             });
             let lifted: Vec<DAffine3> = lifted.collect();
-            let space = attractor_box(&lifted, &DMat3::IDENTITY).unwrap();
+            let Some(space) = attractor_box(&lifted, &DMat3::IDENTITY) else {
+                continue;
+            };
+            found += 1;
             let high = 2.0 * f64::from(2 + round % 4);
             let size = plane.size().max_element().max(high);
             let expected = [plane.min().extend(2.0), plane.max().extend(high)];
             for (corner, expected) in [space.min(), space.max()].into_iter().zip(expected) {
                 let apart = (corner - expected).abs().max_element();
-                assert!(apart < 1e-2 * size, "{space:?} {plane:?}");
-                found += usize::from(apart < 2e-5 * size);
+                assert!(apart < 2e-5 * size, "{space:?} {plane:?}");
             }
         }
-        assert!(found >= 40, "{found}");
+        assert!(found >= 10, "{found}");
     }
 
     #[test]

