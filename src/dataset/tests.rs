@@ -3,11 +3,12 @@
 use std::num::NonZero;
 
 use crate::chaos::Game;
-use crate::geometry::{DAffine2, DAffine3, DMat3, DVec3};
+use crate::geometry::{DAffine2, DAffine3, DMat2, DMat3, DVec3};
 use crate::measure::exact::Hausdorff;
 use crate::random::Pcg;
 use crate::style::Camera;
 
+use super::extent::attractor_box;
 use super::maps::{Attractor, weighted};
 use super::random::anderson;
 use super::{Dataset, DatasetError, Fit, WeightedMap, Weights};
@@ -231,6 +232,8 @@ fn views_in_space_are_those_of_the_plane() {
             points: 100_000,
             ..Game::default()
         };
+        let maps: Vec<DAffine2> = flat.iter().map(|it| it.map).collect();
+        let is_found = attractor_box(&maps, &DMat2::IDENTITY).is_some();
         let expected = Attractor::of(&flat, DAffine2::IDENTITY).unwrap();
         let expected = expected.hits(size, fit, &game).unwrap();
         let camera = Camera::default().from([50.0, -20.0]);
@@ -243,6 +246,11 @@ fn views_in_space_are_those_of_the_plane() {
                 WeightedMap::new(seen.inverse() * map * seen, it.weight)
             };
             let deep: Vec<_> = flat.iter().map(deep).collect();
+            let maps: Vec<DAffine3> = deep.iter().map(|it| it.map).collect();
+            // Boxes that points estimate are smaller than those that are found.
+            if attractor_box(&maps, &seen.matrix3).is_some() != is_found {
+                continue;
+            }
             let game = Game {
                 points: 100_000,
                 ..Game::default()
@@ -258,12 +266,11 @@ fn views_in_space_are_those_of_the_plane() {
             };
             let alike = product(&expected, &hits)
                 / (product(&expected, &expected) * product(&hits, &hits)).sqrt();
-            // Boxes that points estimate are a little smaller than those that are found.
-            assert!(alike > 0.95, "{count}: {alike}");
+            assert!(alike > 0.98, "{count}: {alike}");
             compared += 1;
         }
     }
-    assert_eq!(compared, 12);
+    assert!(compared >= 6, "{compared}");
 }
 
 #[test]
