@@ -375,7 +375,7 @@ impl Fractal {
             max_elements,
             threads,
         };
-        let columns = self.grown(py, &growing, |fractal| fractal.columns())?;
+        let columns = self.grown(py, &growing, move |fractal| fractal.columns())?;
         Ok(Table::new(columns))
     }
 
@@ -400,7 +400,7 @@ impl Fractal {
             max_elements,
             threads,
         };
-        self.grown(py, &growing, |fractal| drawing.apply(fractal).svg())
+        self.grown(py, &growing, move |fractal| drawing.apply(fractal).svg())
     }
 
     /// Returns the approximant as the bytes of a PNG.
@@ -424,7 +424,7 @@ impl Fractal {
             max_elements,
             threads,
         };
-        let png = self.grown(py, &growing, |fractal| {
+        let png = self.grown(py, &growing, move |fractal| {
             drawing.apply(fractal).png(drawing.size)
         })?;
         Ok(PyBytes::new(py, &png))
@@ -456,7 +456,7 @@ impl Fractal {
             max_elements,
             threads,
         };
-        let (pixels, [width, height]) = self.grown(py, &growing, |fractal| {
+        let (pixels, [width, height]) = self.grown(py, &growing, move |fractal| {
             let pixels = drawing.apply(fractal).pixels(drawing.size)?;
             let size = pixels.size();
             Ok((pixels.into_straight(), size))
@@ -489,7 +489,9 @@ impl Fractal {
             max_elements,
             threads,
         };
-        self.grown(py, &growing, |fractal| drawing.apply(fractal).write(path))
+        self.grown(py, &growing, move |fractal| {
+            drawing.apply(fractal).write(path)
+        })
     }
 
     /// Counts the points of random iteration (the chaos game) in the pixels of the attractor's box, or of the window of the
@@ -515,7 +517,7 @@ impl Fractal {
             max_elements: MOST,
             threads,
         };
-        let counted = self.grown(py, &growing, |fractal| fractal.histogram(points, size))?;
+        let counted = self.grown(py, &growing, move |fractal| fractal.histogram(points, size))?;
         let [width, height] = counted.size();
         let counts = PyArray1::from_slice(py, counted.counts(0));
         counts.reshape([height as usize, width as usize])
@@ -538,7 +540,7 @@ impl Fractal {
         seed: u64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let growing = Growing::steps(steps, seed);
-        let info = self.grown(py, &growing, |fractal| fractal.info())?;
+        let info = self.grown(py, &growing, move |fractal| fractal.info())?;
         let all = PyDict::new(py);
         all.set_item("name", &self.name)?;
         all.set_item("kind", self.kind())?;
@@ -597,7 +599,7 @@ impl Fractal {
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         let growing = Growing::steps(steps, seed);
         let is_in_space = self.fractal.model().is_in_space();
-        let level = self.grown(py, &growing, |fractal| {
+        let level = self.grown(py, &growing, move |fractal| {
             Ok(match is_in_space {
                 true => fractal.forecast_in_space()?.map(|it| it.level()),
                 false => fractal.forecast()?.map(|it| it.level()),
@@ -616,7 +618,7 @@ impl Fractal {
     /// `closed_form` (None if there is none). An exact one is the Hausdorff dimension, a measured one the box dimension.
     fn dimension<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let growing = Growing::steps(None, 0);
-        let found = self.grown(py, &growing, |fractal| fractal.dimension())?;
+        let found = self.grown(py, &growing, move |fractal| fractal.dimension())?;
         named(
             py,
             "Dimension",
@@ -635,7 +637,7 @@ impl Fractal {
     ) -> PyResult<Bound<'py, PyAny>> {
         let growing = Growing::steps(steps, seed);
         let is_in_space = self.fractal.model().is_in_space();
-        let corners = self.grown(py, &growing, |fractal| {
+        let corners = self.grown(py, &growing, move |fractal| {
             Ok(match is_in_space {
                 true => {
                     let found = fractal.bounds_in_space()?;
@@ -695,8 +697,9 @@ impl Fractal {
             tolerance,
             ..Precision::default()
         };
-        let found = self.grown(py, &Growing::steps(None, 0), |fractal| {
-            fractal.compare(&other.fractal, steps, &precision)
+        let other = other.fractal.clone();
+        let found = self.grown(py, &Growing::steps(None, 0), move |fractal| {
+            fractal.compare(&other, steps, &precision)
         })?;
         let values = (
             found.value(),
@@ -733,7 +736,7 @@ impl Fractal {
         const SIZE: u32 = 512;
         let growing = Growing::steps(None, 0);
         let is_zoomed = self.zoom.is_some();
-        let (svg, png) = self.grown(py, &growing, |fractal| {
+        let (svg, png) = self.grown(py, &growing, move |fractal| {
             let fractal = fractal.size(SIZE);
             let estimate = if is_zoomed { None } else { fractal.estimate()? };
             Ok(match estimate.is_some_and(|it| it.svg_bytes < NOTEBOOK) {
