@@ -35,8 +35,12 @@ picture: {size: SIZE, points: POINTS, mode: MODE}
 """
 
 
+def spec(size: int = 256, points: str = "100k", mode: str = "hits") -> str:
+    return SPEC.replace("SIZE", str(size)).replace("POINTS", points).replace("MODE", mode)
+
+
 def dataset(size: int = 256, points: str = "100k", mode: str = "hits") -> Dataset:
-    return Dataset.parse(SPEC.replace("SIZE", str(size)).replace("POINTS", points).replace("MODE", mode))
+    return Dataset.parse(spec(size, points, mode))
 
 
 def best(work: Callable[[], object], rounds: int = 3) -> float:
@@ -126,7 +130,9 @@ def workers() -> None:
     except ImportError:
         row("torch's DataLoader", "torch is not installed")
         return
-    batches = Batches(dataset(), 50)
+    made = Dataset.parse(spec() + "instances: {count: 40}\n")
+    made.render(0, len(made), threads=2)  # Draws the systems.
+    batches = Batches(made, 250)
     loaders: dict[int, Any] = {
         workers: DataLoader(batches, batch_size=None, num_workers=workers)  # pyright: ignore
         for workers in (0, 2)
@@ -142,8 +148,7 @@ def on_engine(name: str, count: int) -> float:
     """Returns the time in which workers write a data set of 6,000 pictures, in seconds, after a smaller one."""
     cluster = runpy.run_path(str(HERE.parent / "tests" / "cluster.py"), run_name="cluster")
     recipe = runpy.run_path(str(HERE.parent / "examples" / f"on_{name}.py"), run_name="recipe")
-    spec = SPEC.replace("SIZE", "256").replace("POINTS", "100k").replace("MODE", "hits") + "instances: {count: 20}\n"
-    made, parts = Dataset.parse(spec), 24
+    made, parts = Dataset.parse(spec() + "instances: {count: 20}\n"), 24
 
     def written(part: int) -> int:
         with tempfile.TemporaryDirectory() as folder:
