@@ -37,25 +37,26 @@ pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> 
     corners
 }
 
+/// Vectors along the axes and the diagonals, counter-clockwise from the x axis.
+pub(crate) const EIGHT_WAYS: [DVec2; 8] = [
+    DVec2::new(1.0, 0.0),
+    DVec2::new(1.0, 1.0),
+    DVec2::new(0.0, 1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::new(-1.0, 0.0),
+    DVec2::new(-1.0, -1.0),
+    DVec2::new(0.0, -1.0),
+    DVec2::new(1.0, -1.0),
+];
+
 /// Number of points from which those that are well inside are dropped before the others are sorted.
 const MANY: usize = 128;
 
 /// Drops points inside an octagon of extreme points (Akl & Toussaint 1978), farther than `tolerance` from its sides.
 fn drop_inner(points: &mut Vec<DVec2>, tolerance: f64) {
-    const DIRECTIONS: [[f64; 2]; 8] = [
-        [1.0, 0.0],
-        [1.0, 1.0],
-        [0.0, 1.0],
-        [-1.0, 1.0],
-        [-1.0, 0.0],
-        [-1.0, -1.0],
-        [0.0, -1.0],
-        [1.0, -1.0],
-    ];
     /// Rounding error of distances, relative to the size.
     const ROUNDING: f64 = 1e-14;
-    let extreme = DIRECTIONS.map(|direction| {
-        let direction = DVec2::from_array(direction);
+    let extreme = EIGHT_WAYS.map(|direction| {
         let farther = |far: DVec2, point: &DVec2| {
             if point.dot(direction) > far.dot(direction) {
                 *point

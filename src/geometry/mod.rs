@@ -48,5 +48,5 @@ pub use solid::{HalfSpace, MAX_HULL_POINTS, Side, Solid};
 pub(crate) use clip::clip;
 pub(crate) use frame2::stretch;
 pub(crate) use homothety::exponent_of;
-pub(crate) use hull::{convex_hull, distance_to_segment, hausdorff_distance, thinned};
+pub(crate) use hull::{EIGHT_WAYS, convex_hull, distance_to_segment, hausdorff_distance, thinned};
 pub(crate) use polygon::triangulated;

@@ -59,7 +59,11 @@ impl Ifs {
             stationary: walk.stationary()?,
         };
         // Moments about the mean: those of distant attractors about the origin would lose digits.
-        let centre: DVec2 = flow.moments()?.0.iter().sum();
+        let first = match flow.states.len() > MANY {
+            true => flow.moments()?.0,
+            false => flow.first_moments()?,
+        };
+        let centre: DVec2 = first.iter().sum();
         flow.centre(centre);
         let (first, second) = flow.moments()?;
         let mean: DVec2 = first.iter().sum();

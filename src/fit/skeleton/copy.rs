@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::Bits;
-use crate::geometry::{DAffine2, DMat2, DVec2};
+use crate::geometry::{DAffine2, DMat2, DVec2, EIGHT_WAYS};
 use crate::morphology::{DiskFamily, Operation, Sequence, Skeleton, SkeletonNode};
 use crate::random::Pcg;
 use crate::saturating::{real, whole};
@@ -379,18 +379,8 @@ fn affine_steps(copy: &ShapeCopy, size: f64) -> Vec<ShapeCopy> {
 }
 
 fn moved(copy: &ShapeCopy, size: f64) -> Vec<ShapeCopy> {
-    const DIAGONAL: [[f64; 2]; 8] = [
-        [1.0, 0.0],
-        [1.0, 1.0],
-        [0.0, 1.0],
-        [-1.0, 1.0],
-        [-1.0, 0.0],
-        [-1.0, -1.0],
-        [0.0, -1.0],
-        [1.0, -1.0],
-    ];
-    let places = DIAGONAL.map(|step| ShapeCopy {
-        to: copy.to + size * DVec2::from(step),
+    let places = EIGHT_WAYS.map(|step| ShapeCopy {
+        to: copy.to + size * step,
         ..*copy
     });
     let turned = [-1.0, 1.0].map(|sign| ShapeCopy {
