@@ -41,7 +41,7 @@ pub(crate) use complex::UNIT;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision, leading};
-pub(crate) use program::{Arithmetic, Doubles, Evaluation, Symbols, gcd};
+pub(crate) use program::{Arithmetic, Doubles, Evaluation, Folding, Symbols, gcd};
 pub use program::{Dependence, Program};
 pub use scope::{Scope, is_reserved};
 

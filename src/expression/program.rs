@@ -167,6 +167,31 @@ impl Arithmetic for Symbols {
     }
 }
 
+/// Arithmetic of programs that computes with constants in doubles, for numbers that are never evaluated as long ones.
+pub(crate) struct Folding;
+
+impl Arithmetic for Folding {
+    type Number = Program;
+
+    fn decimal(&mut self, value: f64) -> Program {
+        Program::constant(value)
+    }
+
+    fn one(&mut self, operation: One, x: &Program) -> Program {
+        match x.as_constant() {
+            Some(x) => Program::constant(operation.apply(x)),
+            None => Symbols.one(operation, x),
+        }
+    }
+
+    fn two(&mut self, operation: Two, a: &Program, b: &Program) -> Program {
+        match (a.as_constant(), b.as_constant()) {
+            (Some(a), Some(b)) => Program::constant(operation.apply(a, b)),
+            _ => Symbols.two(operation, a, b),
+        }
+    }
+}
+
 /// Dependence of the value of a [`Program`] on a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dependence {

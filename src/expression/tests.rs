@@ -1,6 +1,9 @@
 //! Tests of the values of expressions and of compiled programs.
 
-use super::{Dependence, Expression, ExpressionError, Program, Scope, Type, is_reserved};
+use super::{
+    Arithmetic as _, Dependence, Expression, ExpressionError, Folding, Program, Scope, Symbols,
+    Type, is_reserved,
+};
 
 mod errors;
 mod laws;
@@ -31,6 +34,19 @@ fn eval(text: &str) -> f64 {
     compile(text)
         .unwrap_or_else(|error| panic!("{text}: {error:?}"))
         .eval(&SLOTS)
+}
+
+#[test]
+fn folding_gives_the_values_of_symbols() {
+    let constants = [0.1, 3.0, -0.0, 0.5].map(Program::constant);
+    let slot = compile("age * 2").unwrap();
+    for a in constants.iter().chain([&slot]) {
+        assert_eq!(Folding.turn(a), Symbols.turn(a));
+        for b in constants.iter().chain([&slot]) {
+            assert_eq!(Folding.add(a, b), Symbols.add(a, b));
+            assert_eq!(Folding.multiply(a, b), Symbols.multiply(a, b));
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Resolution of affine maps of the plane and of space.
 
 use crate::document::{InterpolationDocument, LinearDocument, MapDocument, WrittenPoint};
-use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
+use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3};
 use crate::ifs::PointOf;
 
@@ -143,7 +143,7 @@ impl WrittenMap<3> for DAffine3 {
                 // The document has rows, the map has columns.
                 let columns =
                     [0, 1, 2].map(|column: usize| rows.each_ref().map(|row| row[column].clone()));
-                Some(Affine::linear(&mut Symbols, columns))
+                Some(Affine::linear(&mut Folding, columns))
             }
             LinearDocument::AxesInSpace { scale, turns } => {
                 let scale = scale.each_ref();
@@ -154,9 +154,9 @@ impl WrittenMap<3> for DAffine3 {
                     .collect();
                 let known = scale.iter().all(|it| it.as_constant().is_some());
                 let turns = turns.into_iter().collect::<Option<Vec<_>>>()?;
-                let scaling = known.then(|| Affine::scaling(&mut Symbols, scale))?;
+                let scaling = known.then(|| Affine::scaling(&mut Folding, scale))?;
                 let turned = |map: Affine<Program, 3>, turn: &Affine<Program, 3>| {
-                    turn.after(&mut Symbols, &map)
+                    turn.after(&mut Folding, &map)
                 };
                 Some(turns.iter().fold(scaling, turned))
             }

@@ -6,7 +6,7 @@ use crate::document::{
     EllipseDocument, FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument,
     TurnDocument, WrittenNumber, WrittenPoint,
 };
-use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols, degrees};
+use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, degrees};
 use crate::geometry::{
     Bounds, DAffine3, DMat3, DVec3, MAX_POINTS, PolygonError, Round, Solid, polygon,
 };
@@ -75,8 +75,8 @@ impl<K> Resolver<K> {
             return None;
         };
         let axis = unit.to_array().map(Program::constant);
-        let turn = Symbols.turn(angle);
-        Some(Affine::rotation_about(&mut Symbols, &axis, &turn))
+        let turn = Folding.turn(angle);
+        Some(Affine::rotation_about(&mut Folding, &axis, &turn))
     }
 
     /// Resolves a set in space. Reports mistakes and returns `None`.

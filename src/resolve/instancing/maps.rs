@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::document::{ShapeDocument, TransformDocument, WrittenNumber};
-use crate::expression::{Affine, Arithmetic, Program, Scope, Symbols};
+use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3, DVec3, Round, Solid};
 use crate::ifs::{AffineMap, Shape};
 use crate::resolve::Resolver;
@@ -96,7 +96,7 @@ impl StructureMap for DAffine3 {
         document: &TransformDocument,
         scope: &Scope,
     ) -> Option<Affine<Program, 3>> {
-        let of = &mut Symbols;
+        let of = &mut Folding;
         Some(match document {
             TransformDocument::ScaleInSpace(factors) => {
                 let factors = factors.each_ref().map(|it| resolver.program(it, scope));
