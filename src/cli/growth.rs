@@ -350,12 +350,15 @@ pub(super) fn png_estimate(
 /// Returns the bounding box of an approximant: from the graph, or else by a walk that is not too long.
 pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
     const MAX_ELEMENTS: u64 = 1_000_000;
+    /// Number of choices that take as long as the rest of an element.
+    const CHOICES: u64 = 8;
+    let max_elements = MAX_ELEMENTS / (graph.choices() / CHOICES).max(1);
     let growth = Growth {
-        max_elements: MAX_ELEMENTS,
+        max_elements,
         ..Growth::steps(steps)
     };
     let walked = || {
-        let small = !graph.draws() && graph.check_size(steps, MAX_ELEMENTS).is_ok();
+        let small = !graph.draws() && graph.check_size(steps, max_elements).is_ok();
         let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
     };

@@ -209,9 +209,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         };
         (info, graph.place().ratio())
     } else {
-        let steps = steps::choose(arguments.steps, &loaded)?;
+        let (steps, known) = steps::choose_with_graph(arguments.steps, &loaded)?;
         check_steps(steps)?;
-        let graph = loaded.compile(steps)?;
+        let graph = known.map_or_else(|| loaded.compile(steps), Ok)?;
         let limit = loaded.other_limit(steps)?;
         let info = in_plane(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
         (info, graph.place().ratio())

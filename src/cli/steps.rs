@@ -1,8 +1,11 @@
 //! Numbers of steps on the command line.
 
+use std::cell::RefCell;
+
 use crate::fractal::{Goal, proposed_steps, steps_of_graph};
 use crate::geometry::Frame3;
 use crate::graph::Graph;
+use crate::model::Model;
 
 use super::rule::Loaded;
 use super::{Failure, number};
@@ -25,11 +28,28 @@ pub(super) fn parse_several(text: &str) -> Result<Several, String> {
 
 /// Returns the number of steps that was given, or else the [proposed one](proposed_steps).
 pub(super) fn choose(asked: Option<u32>, loaded: &Loaded) -> Result<u32, Failure> {
-    match asked {
-        Some(steps) => Ok(steps),
-        None => proposed_steps(&loaded.model, |steps| loaded.graph(steps))
-            .map_err(|error| loaded.failure(&error)),
-    }
+    Ok(choose_with_graph(asked, loaded)?.0)
+}
+
+/// Returns the number of steps as [`choose`] does, with the graph for it if that was compiled for the choice.
+pub(super) fn choose_with_graph(
+    asked: Option<u32>,
+    loaded: &Loaded,
+) -> Result<(u32, Option<Graph>), Failure> {
+    let Some(steps) = asked else {
+        // The graph of a system or a structure is that of all numbers of steps.
+        let is_of_all = matches!(loaded.model, Model::Ifs(_) | Model::Instancing(_));
+        let compiled = RefCell::new(None);
+        let compile = |steps| {
+            let graph = loaded.graph(steps)?;
+            compiled.replace(is_of_all.then(|| graph.clone()));
+            Ok(graph)
+        };
+        let steps = proposed_steps(&loaded.model, compile);
+        let steps = steps.map_err(|error| loaded.failure(&error))?;
+        return Ok((steps, compiled.into_inner()));
+    };
+    Ok((steps, None))
 }
 
 /// Returns the number of steps of a set in space that was given, or else the proposed one.

@@ -194,8 +194,7 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
             replacement: Replacement::Fixed(Arc::new(whole)),
             ..self.object(INITIAL, None, None)
         }];
-        // Without a digraph and outlines, the set inside every map is replaced alike.
-        let is_alike = !self.ifs.is_recurrent() && self.outlines() == 0;
+        let is_alike = self.ifs.is_alike();
         for branch in 0..self.branches() {
             let last_map = self.by_last_map.then_some(branch);
             let mut known = None;

@@ -5,6 +5,8 @@ use crate::graph::{Graph, Instance};
 use crate::ifs::sum_of_products;
 use crate::rule::RuleFrame;
 
+use super::sectors::MANY;
+
 /// Precision of polygons as approximations of the convex hulls.
 #[derive(Clone, Copy)]
 pub struct Fineness {
@@ -12,8 +14,8 @@ pub struct Fineness {
     pub(super) tolerance: f64,
     /// Limit of the number of corners that are mapped.
     pub(super) max_work: usize,
-    /// Number of corners beyond which polygons are thinned more.
-    pub(super) max_corners: usize,
+    /// Number of corners beyond which polygons are thinned more, where there are many images and where there are few.
+    pub(super) max_corners: [usize; 2],
     /// Length by which a box may fall short, relative to its extent; rounding adds to it in any case.
     pub(super) spared: f64,
 }
@@ -23,23 +25,34 @@ impl Fineness {
     pub(crate) const ROUGH: Self = Self {
         tolerance: 1e-2,
         max_work: 1 << 16,
-        max_corners: 32,
+        max_corners: [32, 32],
         spared: 0.0,
     };
 
     pub(crate) const COARSE: Self = Self {
         tolerance: 1e-4,
         max_work: 1 << 20,
-        max_corners: 256,
+        max_corners: [256, 2048],
         spared: 0.0,
     };
 
     pub(super) const FINE: Self = Self {
         tolerance: 1e-8,
-        max_work: 1 << 22,
-        max_corners: 2048,
+        max_work: 1 << 21,
+        max_corners: [2048, 2048],
         spared: 1e-10,
     };
+
+    /// Returns the number of corners beyond which polygons are thinned more, given the images of which each consists.
+    pub(super) fn corners_of<I>(&self, images: &[Vec<I>]) -> usize {
+        /// Number of rounds for which the work should suffice.
+        const ROUNDS: usize = 16;
+        // Corners of the hull of many images are sought among few of them.
+        let mapped = images.iter().map(|images| images.len().min(MANY));
+        let affordable = self.max_work / ROUNDS / mapped.sum::<usize>().max(1);
+        let [least, most] = self.max_corners;
+        affordable.clamp(least, most)
+    }
 }
 
 /// Shapes of the objects themselves, for hulls of their subtrees.

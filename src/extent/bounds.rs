@@ -21,8 +21,10 @@ const MAX_WORK: usize = 1_000_000;
 /// Limit of the number of states that are looked at, those that are dropped at once included.
 const MAX_LOOKED: usize = 8 * MAX_WORK;
 
-/// Limit of that number where polygons may find what ratios do not.
-const MAX_LOOKED_BY_RATIOS: usize = 2 * MAX_WORK;
+/// Limit of that number where other bounds are tried afterwards, and of the states that are kept at one level before equal ones
+/// are merged.
+const MAX_LOOKED_AT_FIRST: usize = 2 * MAX_WORK;
+const MAX_NEXT_AT_FIRST: usize = MAX_WORK / 4;
 
 /// Limit of the number of levels.
 const MAX_LEVELS: u32 = 20_000;
@@ -46,6 +48,8 @@ struct Reach<F: Frame> {
     pads: Vec<f64>,
     /// Length by which the box may fall short.
     spared: f64,
+    /// Whether no other bounds are tried afterwards.
+    is_last: bool,
 }
 
 /// Bounding boxes of approximants, without stroke width: see [`Graph::bounds`].
@@ -170,8 +174,12 @@ impl<F: Bounded> Graph<F> {
             true => [by_hulls[0], by_hulls[1], by_ratios],
             false => [by_ratios, by_hulls[0], by_hulls[1]],
         };
-        let mut found = (attempts.into_iter())
-            .map(|fineness| self.boxes_within(true, fineness, |_| 0.0)?.of(None));
+        let mut found = (attempts.into_iter().enumerate()).map(|(number, fineness)| {
+            let mut boxes = self.boxes_within(true, fineness, |_| 0.0)?;
+            // In space balls may follow.
+            boxes.reach.is_last = number == 2 && F::Point::DIMENSION == 2;
+            boxes.of(None)
+        });
         found.find_map(|bounds| bounds).or_else(|| {
             self.has_balls_only()
                 .then(|| self.limit_bounds_by_balls())?
@@ -235,6 +243,7 @@ impl<F: Bounded> Graph<F> {
             spread,
             ratio,
             spared,
+            is_last: true,
             hulls,
             alive,
             pads,
@@ -299,9 +308,9 @@ impl<F: Bounded> Graph<F> {
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         let (mut work, mut looked) = (0, 0);
-        let max_looked = match (steps, &reach.hulls) {
-            (None, None) => MAX_LOOKED_BY_RATIOS,
-            _ => MAX_LOOKED,
+        let [max_looked, max_next] = match reach.is_last {
+            true => [MAX_LOOKED, MAX_WORK],
+            false => [MAX_LOOKED_AT_FIRST, MAX_NEXT_AT_FIRST],
         };
         for level in 0..=MAX_LEVELS {
             let last = steps == Some(level);
@@ -385,7 +394,7 @@ impl<F: Bounded> Graph<F> {
                         next.retain(|(_, most, _)| !is_hopeless(*most, certain));
                         room = MAX_STATES.max(2 * next.len());
                     }
-                    if next.len() > MAX_WORK || looked > max_looked {
+                    if next.len() > max_next || looked > max_looked {
                         return None;
                     }
                 }

@@ -153,6 +153,24 @@ impl<F: Frame> Graph<F> {
     }
 }
 
+/// Returns the numbers of instances without those that equal an earlier one in object and map, in rising order.
+pub(super) fn distinct<F: Frame>(instances: &[Instance<F>]) -> Vec<u32> {
+    let mut known: FastMap<u64, Vec<u32>> = FastMap::default();
+    let image = |instance: &Instance<F>| (*instance.frame.map(), instance.object);
+    let is_new = |number: &u32| {
+        let own = image(&instances[*number as usize]);
+        let alike = known.entry(hash(&own)).or_default();
+        let is_new = !alike
+            .iter()
+            .any(|other| image(&instances[*other as usize]) == own);
+        if is_new {
+            alike.push(*number);
+        }
+        is_new
+    };
+    (0..).take(instances.len()).filter(is_new).collect()
+}
+
 /// Returns a hash of an image: equal images have equal ones.
 fn hash<M: Affine>((map, inner): &(M, usize)) -> u64 {
     let mut hasher = FastHasher::default();

@@ -10,9 +10,10 @@ use crate::geometry::{
 use crate::ifs::Shrinking;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
-use super::contract::Products;
+use super::contract::{Products, distinct};
 use super::policy::{farthest, followed, rightmost};
-use super::sectors::Sectors;
+use super::sectors::{MANY, Sectors, Whole};
+use super::union::Union;
 use crate::graph::{Graph, Instance};
 
 /// Relative rounding error of coordinates.
@@ -22,6 +23,8 @@ const ROUNDING: f64 = 1e-14;
 const MIN_ROUNDS: usize = 4;
 /// Factor by which the error of polygons exceeds the one for which they are thinned.
 const FAR: f64 = 64.0;
+/// Factor by which the error of polygons must fall before images are dropped, and dropped again.
+const NEAR: f64 = 4.0;
 /// Number of rounds after which corners are followed to their limits.
 const FEW_ROUNDS: usize = 4;
 
@@ -36,15 +39,13 @@ struct Polygons {
     /// Error of each polygon: the distance within which it contains the subtree; in the limit, the
     /// Hausdorff distance from the hull.
     within: Vec<f64>,
-    /// Instances of the behaviours that reach farthest, as far as they were asked for; `None` where they are few.
-    sectors: Vec<OnceCell<Option<Sectors>>>,
+    /// Instances of the behaviours that reach farthest, as far as they were asked for.
+    sectors: Vec<OnceCell<Sectors>>,
 }
 
 impl Hulls<Frame2> for Polygons {
     fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
-        let along = self.farthest(object, vector);
-        let within = vector.length() * self.within[self.of[object]];
-        [along + within, along - within]
+        self.reach(self.of[object], vector)
     }
 
     fn radius(&self, object: usize, centre: DVec2) -> f64 {
@@ -58,11 +59,18 @@ impl Hulls<Frame2> for Polygons {
     }
 
     fn contenders(&self, object: usize, instances: &[Instance], vector: DVec2) -> Option<&[u32]> {
+        if instances.len() < MANY {
+            return None;
+        }
         let behaviour = self.of[object];
-        let within = self.within[behaviour];
+        let reach = |number: u32, vector| {
+            let Instance { object, frame, .. } = &instances[number as usize];
+            self.reach_of(frame.map(), self.of[*object], vector)
+        };
+        let whole = self.whole(behaviour, &reach);
         let sectors = self.sectors.get(behaviour)?;
-        let sectors = sectors.get_or_init(|| Sectors::of(self, object, within, instances));
-        sectors.as_ref()?.along(vector)
+        let sectors = sectors.get_or_init(|| Sectors::of(distinct(instances), &whole));
+        sectors.along(vector, &whole)
     }
 
     fn spared(&self, instances: &[Instance], fineness: Fineness) -> f64 {
@@ -79,12 +87,49 @@ impl Hulls<Frame2> for Polygons {
 }
 
 impl Polygons {
-    fn farthest(&self, object: usize, vector: DVec2) -> f64 {
-        let corners = self.corners(object);
-        let right = self.rightmost[self.of[object]];
-        match farthest(corners, right, vector) {
+    /// Returns an upper bound of x·u over what a polygon stands for, u being the vector, and a lower bound of its maximum in
+    /// the limit.
+    fn reach(&self, polygon: usize, vector: DVec2) -> [f64; 2] {
+        let corners = &self.corners[polygon];
+        let along = match farthest(corners, self.rightmost[polygon], vector) {
             Some(corner) => corners[corner].dot(vector),
             None => f64::NEG_INFINITY,
+        };
+        let within = vector.length() * self.within[polygon];
+        [along + within, along - within]
+    }
+
+    /// Returns the hull that a behaviour's polygon stands for.
+    fn whole<'a>(&'a self, behaviour: usize, reach: &'a dyn Fn(u32, DVec2) -> f64) -> Whole<'a> {
+        Whole {
+            corners: &self.corners[behaviour],
+            within: self.within[behaviour],
+            reach,
+        }
+    }
+
+    /// Returns an upper bound of x·u over the image of what a polygon stands for.
+    fn reach_of(&self, map: &DAffine2, polygon: usize, vector: DVec2) -> f64 {
+        let [most, _] = self.reach(polygon, map.matrix2.transpose() * vector);
+        vector.dot(map.translation) + most
+    }
+
+    /// Drops images that reach farthest along no direction: hulls are those of the others.
+    fn drop_inner(&self, images: &mut [Vec<(DAffine2, usize)>]) {
+        for (behaviour, images) in images.iter_mut().enumerate() {
+            if images.len() < MANY {
+                continue;
+            }
+            let contending = {
+                let reach = |number: u32, vector| {
+                    let (map, polygon) = &images[number as usize];
+                    self.reach_of(map, *polygon, vector)
+                };
+                let whole = self.whole(behaviour, &reach);
+                Sectors::of((0..).take(images.len()).collect(), &whole).anywhere(&whole)
+            };
+            let kept = { contending.into_iter() }.map(|number| images[number as usize]);
+            *images = kept.collect();
         }
     }
 
@@ -105,34 +150,39 @@ impl Polygons {
         let mut order: Vec<usize> = (0..images.len()).collect();
         order.sort_by_key(|behaviour| component[*behaviour]);
         let mut work = 0;
+        let mut rights: Vec<usize> = { self.corners.iter() }.map(|it| rightmost(it)).collect();
         for behaviour in order {
             let images = &images[behaviour];
             let leads_to_itself = || images.iter().any(|(_, inner)| *inner == behaviour);
             if sizes[component[behaviour]] > 1 || leads_to_itself() {
                 continue;
             }
-            let mut all = points[behaviour].clone();
-            for (map, inner) in images {
-                let corners = self.corners[*inner].iter();
-                all.extend(corners.map(|corner| map.transform_point2(*corner)));
-            }
-            work += all.len();
-            let mut corners = convex_hull(all, 0.0);
+            let union = Union {
+                points: &points[behaviour],
+                images,
+                polygons: &self.corners,
+                rightmost: &rights,
+            };
+            let hull = union.hull(0.0);
+            work += hull.work;
+            let mut corners = hull.corners;
             let mut bounds = Bounds::EMPTY;
             corners.iter().for_each(|corner| bounds.add(*corner));
             let mut tolerance = fineness.tolerance * bounds.size().max_element();
-            while corners.len() > fineness.max_corners {
+            let [max_corners, _] = fineness.max_corners;
+            while corners.len() > max_corners {
                 corners = thinned(&corners, tolerance);
                 tolerance *= 2.0;
             }
+            rights[behaviour] = rightmost(&corners);
             self.corners[behaviour] = corners;
         }
         work
     }
 
-    fn sorted(mut self) -> Self {
+    /// Finds the rightmost corners of all polygons.
+    fn find_rightmost(&mut self) {
         self.rightmost = { self.corners.iter() }.map(|it| rightmost(it)).collect();
-        self
     }
 }
 
@@ -165,9 +215,13 @@ impl Graph {
     /// states which objects are drawn there.
     ///
     /// The hulls K(o) = conv(own(o) ∪ ⋃ f(K(c))) over the instances c in the place of o are a fixed
-    /// point. Polygons that one round changes by ε are within ε times the sum of the stretches of
-    /// products of maps of that fixed point (Banach), regardless of how they were found: between rounds
-    /// corners are [followed] to their limits.
+    /// point. Let S be the sum, over all n, of the largest stretch of products of n maps. Polygons that one
+    /// round changes by ε are within S ε of the fixed point (Banach), regardless of how they were found, and
+    /// what they become is within (S − 1) ε: between rounds corners are [followed] to their limits. The hulls
+    /// of a round are known to within a distance that adds to ε.
+    ///
+    /// Images that are certain to fall short of the hull along all directions are dropped: those that are left
+    /// have the same fixed point.
     ///
     /// `None` if no products are found that contract, and for graphs that are not plain.
     fn polygons(
@@ -181,7 +235,7 @@ impl Graph {
         }
         let Products { sum, weights } = self.products()?;
         let is_drawn = |object: usize| drawn.is_none_or(|drawn| drawn[object]);
-        let images = self.images(is_drawn);
+        let mut images = self.images(is_drawn);
         let (mut hulls, points) = self.points_of_hulls(own, drawn, images.len());
         let mut behaviours = vec![1.0; images.len()];
         for (object, weight) in self.objects.iter().zip(weights) {
@@ -193,69 +247,85 @@ impl Graph {
             corners.extend((!is_empty).then_some(self.middle));
         }
         let mut work = hulls.start_from_below(&images, &points, fineness);
-        let mut asked = 0;
+        let (mut asked, mut dropped) = (0, f64::INFINITY);
         let (mut tolerance, mut coarse, mut is_fine) = (0.0, 0.25, false);
         for round in 0.. {
             let polygons = &hulls.corners[..images.len()];
+            let rights: Vec<usize> = polygons.iter().map(|it| rightmost(it)).collect();
+            let mut lost = tolerance;
             let next = points.iter().zip(&images).map(|(points, images)| {
-                let images = images.iter().flat_map(|(map, behaviour)| {
-                    let corners = polygons[*behaviour].iter();
-                    corners.map(|corner| map.transform_point2(*corner))
-                });
-                let points: Vec<DVec2> = points.iter().copied().chain(images).collect();
-                work += points.len();
-                thinned(&convex_hull(points, 0.0), tolerance)
+                let union = Union {
+                    points,
+                    images,
+                    polygons,
+                    rightmost: &rights,
+                };
+                let hull = union.hull(tolerance);
+                work += hull.work;
+                lost = lost.max(hull.lost);
+                hull.corners
             });
             let next: Vec<Vec<DVec2>> = next.collect();
             let ends =
                 work > fineness.max_work && round >= MIN_ROUNDS || work > 2 * fineness.max_work;
-            if next
-                .iter()
-                .any(|corners| corners.len() > fineness.max_corners)
-            {
+            let max_corners = fineness.corners_of(&images);
+            if next.iter().any(|corners| corners.len() > max_corners) {
                 coarse *= 1.5;
                 tolerance *= 1.5;
             }
-            if ends || round == asked {
+            let is_asked = ends || round == asked;
+            let changes = { next.iter().zip(polygons) }.map(|(a, b)| hausdorff_distance(a, b));
+            let changes: Vec<f64> = changes
+                .take(if is_asked { usize::MAX } else { 0 })
+                .collect();
+            hulls.corners.splice(..images.len(), next);
+            if is_asked {
                 asked += 1 + round / 4;
-                let changes: Vec<f64> = { next.iter().zip(polygons) }
-                    .map(|(a, b)| hausdorff_distance(a, b))
-                    .collect();
                 // The remaining change is that of thinning.
-                let settled = is_fine && changes.iter().all(|it| *it <= 2.0 * tolerance);
+                let settled = is_fine && changes.iter().all(|it| *it <= 2.0 * lost);
                 let change = changes.iter().zip(&behaviours);
-                let change = change.map(|(change, weight)| (change + tolerance) / weight);
-                let change = sum * change.fold(0.0, f64::max);
+                let change = change.map(|(change, weight)| (change + lost) / weight);
+                let change = change.fold(0.0, f64::max);
+                // Where nothing is known yet, nothing is known of images either.
+                let change = match change.is_finite() {
+                    true => (sum - 1.0) * change,
+                    false => change,
+                };
                 for (within, weight) in hulls.within.iter_mut().zip(&behaviours) {
-                    *within = change * weight;
+                    *within = change * weight + lost;
                 }
-                let corners = || next.iter().flatten();
+                let corners = || hulls.corners[..images.len()].iter().flatten();
                 let size = corners().map(|corner| corner.distance(self.middle));
                 let away = corners().map(|corner| corner.length());
                 let [size, away] = [size.fold(0.0, f64::max), away.fold(0.0, f64::max)];
                 let wanted = fineness.tolerance * size + ROUNDING * away;
                 let within = &hulls.within[..images.len()];
-                if ends || settled || within.iter().all(|within| *within <= wanted) {
-                    let is_known = within.iter().all(|it| it.is_finite());
-                    return is_known.then(|| hulls.sorted());
+                let error = within.iter().copied().fold(0.0, f64::max);
+                let is_known = within.iter().all(|it| it.is_finite());
+                let is_close = within.iter().all(|within| *within <= wanted);
+                hulls.find_rightmost();
+                if ends || settled || is_close {
+                    return is_known.then_some(hulls);
                 }
                 // Polygons far from the hulls need few corners.
-                let error = within.iter().copied().fold(0.0, f64::max) / FAR;
-                is_fine = error <= wanted;
-                tolerance = coarse * error.max(wanted) / sum;
+                is_fine = error / FAR <= wanted;
+                tolerance = coarse * (error / FAR).max(wanted) / sum;
+                if error <= size / NEAR && error <= dropped / NEAR {
+                    dropped = error;
+                    hulls.drop_inner(&mut images);
+                }
             }
-            let next = if round < FEW_ROUNDS {
-                next
-            } else {
-                let followed = followed(&next, &images, &points);
-                let joined = next.into_iter().zip(followed);
-                joined
-                    .map(|(corners, others)| {
-                        thinned(&convex_hull([corners, others].concat(), 0.0), tolerance)
-                    })
-                    .collect()
-            };
-            hulls.corners.splice(..images.len(), next);
+            if round >= FEW_ROUNDS {
+                let polygons = &hulls.corners[..images.len()];
+                work += followed_work(polygons, &images, &points);
+                let followed = followed(polygons, &images, &points).into_iter();
+                let joined = polygons.iter().zip(followed).map(|(corners, others)| {
+                    let all = [&corners[..], &others].concat();
+                    thinned(&convex_hull(all, 0.0), tolerance)
+                });
+                let joined: Vec<Vec<DVec2>> = joined.collect();
+                hulls.corners.splice(..images.len(), joined);
+            }
         }
         None
     }
@@ -321,6 +391,21 @@ impl Graph {
     }
 }
 
+/// Returns the number of points of hulls that take as long as following the corners of polygons.
+fn followed_work<I, P>(polygons: &[Vec<DVec2>], images: &[Vec<I>], points: &[Vec<P>]) -> usize {
+    /// Number of origins that take as long as a point.
+    const ORIGINS: usize = 4;
+    let origins = images
+        .iter()
+        .zip(points)
+        .map(|(images, points)| images.len() + points.len());
+    let works = polygons.iter().zip(origins);
+    works
+        .map(|(corners, origins)| corners.len() * origins)
+        .sum::<usize>()
+        / ORIGINS
+}
+
 /// Iterates over the corners of a polygon around a disc.
 fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
     const CORNERS: u32 = 32;
@@ -331,3 +416,6 @@ fn around(centre: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
         centre + far * DVec2::new(libm::cos(angle), libm::sin(angle))
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -21,6 +21,7 @@ mod reach;
 mod search;
 mod sectors;
 mod terms;
+mod union;
 
 pub use bounded::{Bounded, Fineness, Hulls, LinearOf, Own};
 pub use bounding_box::bounding_box;

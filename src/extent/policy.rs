@@ -2,6 +2,9 @@
 
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
+use super::sectors::MANY;
+use super::union::{Farthest, Union};
+
 /// Origin of a corner.
 #[derive(Clone, Copy)]
 enum Origin {
@@ -56,11 +59,32 @@ pub(super) fn followed(
         }
         best.1
     };
-    let kinds = polygons.iter().enumerate();
-    let origins: Vec<Option<Origin>> = kinds
-        .flat_map(|(kind, corners)| directions(corners).map(move |direction| (kind, direction)))
-        .map(|(kind, direction)| origin(kind, direction))
-        .collect();
+    let rights: Vec<usize> = polygons.iter().map(|it| rightmost(it)).collect();
+    let mut origins: Vec<Option<Origin>> = Vec::with_capacity(all.len());
+    for (kind, corners) in polygons.iter().enumerate() {
+        if images[kind].len() < MANY {
+            origins.extend(directions(corners).map(|direction| origin(kind, direction)));
+            continue;
+        }
+        let union = Union {
+            points: &points[kind],
+            images: &images[kind],
+            polygons,
+            rightmost: &rights,
+        };
+        let farthest = Farthest::of(&union);
+        origins.extend(directions(corners).map(|direction| {
+            let reached = farthest.along(direction)?;
+            Some(
+                reached
+                    .from
+                    .map_or(Origin::Point(reached.point), |(number, corner)| {
+                        let (map, inner) = images[kind][number as usize];
+                        Origin::Image(map, firsts[inner] + corner)
+                    }),
+            )
+        }));
+    }
     let mut ends = Ends {
         origins: &origins,
         states: vec![Followed::Not; all.len()],

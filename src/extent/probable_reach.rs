@@ -59,19 +59,22 @@ impl<F: Frame> Graph<F> {
         // Relative growth below which iteration stops.
         const TOLERANCE: f64 = 1e-3;
         let edges = self.edges(power);
-        let next = |norms: &[f64], object: usize| {
-            let inner = edges[object].iter().map(|edge| {
-                let far = edge.away + edge.length * norms[edge.object];
-                libm::pow(far, power)
+        let next = |norms: &[f64], object: usize, known: &mut [Option<f64>]| {
+            let inner = edges.shared(object, known, |edges| {
+                let inner = edges.iter().map(|edge| {
+                    let far = edge.away + edge.length * norms[edge.object];
+                    libm::pow(far, power)
+                });
+                inner.sum::<f64>()
             });
-            let sum = libm::pow(own[object], power) + inner.sum::<f64>();
-            libm::pow(sum, 1.0 / power)
+            libm::pow(libm::pow(own[object], power) + inner, 1.0 / power)
         };
+        let unknown = || vec![None; edges.lists()];
         let mut norms = own.to_vec();
         for _ in 0..MAX_SWEEPS {
-            let mut grows = false;
+            let (mut grows, mut known) = (false, unknown());
             for object in (0..own.len()).rev() {
-                let norm = next(&norms, object);
+                let norm = next(&norms, object, &mut known);
                 grows |= norm > norms[object] * (1.0 + TOLERANCE);
                 norms[object] = norms[object].max(norm);
             }
@@ -83,7 +86,9 @@ impl<F: Frame> Graph<F> {
                     .iter()
                     .map(|norm| norm * (1.0 + 20.0 * TOLERANCE))
                     .collect();
-                let holds = (0..own.len()).all(|object| next(&above, object) <= above[object]);
+                let mut known = unknown();
+                let holds =
+                    (0..own.len()).all(|object| next(&above, object, &mut known) <= above[object]);
                 return holds.then_some(above);
             }
         }

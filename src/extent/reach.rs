@@ -33,7 +33,7 @@ impl<F: Bounded> Graph<F> {
         let own: Vec<f64> = self.objects.iter().map(own).collect();
         let edges = self.edges(f64::INFINITY);
         let ratio = self.longest_edge(&edges);
-        let spread = edges.iter().flatten().map(|edge| {
+        let spread = edges.distinct().map(|edge| {
             if self.is_fertile(edge.object) {
                 edge.away
             } else {
@@ -57,22 +57,26 @@ impl<F: Bounded> Graph<F> {
             .collect();
         for _ in 0..MAX_SWEEPS {
             let mut change = 1.0;
+            let mut known = vec![None; edges.lists()];
             // Children have larger numbers than the objects that reach them first.
             for object in (0..own.len()).rev() {
                 if unknown[object] {
                     continue;
                 }
-                let reached = edges[object].iter().map(|edge| {
-                    // An instance of length 0 draws nothing, even if the radius of its object is
-                    // infinite.
-                    let own = if edge.length > 0.0 {
-                        edge.length * radii[edge.object]
-                    } else {
-                        0.0
-                    };
-                    edge.away + own
+                let reached = edges.shared(object, &mut known, |edges| {
+                    let reached = edges.iter().map(|edge| {
+                        // An instance of length 0 draws nothing, even if the radius of its object is
+                        // infinite.
+                        let own = if edge.length > 0.0 {
+                            edge.length * radii[edge.object]
+                        } else {
+                            0.0
+                        };
+                        edge.away + own
+                    });
+                    reached.fold(0.0, f64::max)
                 });
-                let radius = reached.fold(own[object], f64::max);
+                let radius = reached.max(own[object]);
                 if radius < radii[object] {
                     change = f64::min(change, radius / radii[object]);
                     radii[object] = radius;
@@ -173,8 +177,10 @@ impl<F: Frame> Graph<F> {
             return None;
         }
         let mut ratios = BTreeMap::new();
-        for (parent, edges) in self.edges(f64::INFINITY).iter().enumerate() {
-            for edge in edges.iter().filter(|edge| self.is_fertile(edge.object)) {
+        let edges = self.edges(f64::INFINITY);
+        for parent in 0..self.objects.len() {
+            let edges = edges.of(parent).iter();
+            for edge in edges.filter(|edge| self.is_fertile(edge.object)) {
                 let ratio = ratios.entry((parent, edge.object)).or_insert(0.0);
                 *ratio = edge.length.max(*ratio);
             }

@@ -1,98 +1,193 @@
-//! Instances that can reach farthest, found once for sectors of directions.
+//! Images that can reach farthest, for sectors of directions that are halved as far as they are asked for.
 
-use crate::geometry::{DVec2, Frame, Frame2};
-use crate::graph::Instance;
+use std::cell::{Cell, OnceCell};
 
-use super::bounded::Hulls;
+use crate::geometry::DVec2;
 
-/// Least and largest number of instances for which sectors are worth their cost: for fewer, all are looked at.
-const MANY: std::ops::RangeInclusive<usize> = 64..=4096;
+/// Least number of images for which sectors are worth their cost: for fewer, all are looked at.
+pub(super) const MANY: usize = 32;
 
-/// Maximum number of sectors.
-const MOST: usize = 256;
+/// Number of contenders up to which a sector is not halved.
+const FEW: usize = 8;
 
-/// Maximum number of support functions that are evaluated.
-const MAX_WORK: usize = 1 << 18;
+/// Maximum number of halvings of a sector.
+const MAX_HALVINGS: u32 = 24;
+
+/// Number of halvings of quarters after which images that contend nowhere are found.
+const HALVINGS: u32 = 3;
+
+/// Maximum number of support functions that are evaluated, for each image.
+const MAX_WORK: usize = 32;
+
+/// Number of contenders of both halves, relative to those of the whole, above which halves are not worth their cost.
+const WORTH: [usize; 2] = [3, 2];
 
 /// Distance by which the others must fall short, relative to the size, so that rounding drops none.
 const MARGIN: f64 = 1e-9;
 
-/// Instances in the place of an object that may reach farthest in the limit, for each of some equal sectors of directions.
+/// A convex set that is the hull of images, approximated by a polygon.
+pub(super) struct Whole<'a> {
+    /// Corners of the polygon.
+    pub(super) corners: &'a [DVec2],
+    /// Distance within which the set contains the corners.
+    pub(super) within: f64,
+    /// Upper bound of the support function of an image, by number and direction.
+    pub(super) reach: &'a dyn Fn(u32, DVec2) -> f64,
+}
+
+impl Whole<'_> {
+    /// Returns a corner that is farthest along a direction; `None` without corners.
+    fn farthest(&self, direction: DVec2) -> Option<DVec2> {
+        let farther = |a: &&DVec2, b: &&DVec2| a.dot(direction).total_cmp(&b.dot(direction));
+        self.corners.iter().max_by(farther).copied()
+    }
+}
+
+/// Images that may reach farthest, for the sectors between the axes and their parts.
 pub(super) struct Sectors {
-    /// Numbers of the instances, in rising order, for each sector from the x axis on, counter-clockwise.
-    contenders: Vec<Vec<u32>>,
+    quarters: [Sector; 4],
+    /// Distance by which an image must fall short of a corner along all directions so that it never reaches farthest.
+    lost: f64,
+    /// Number of support functions that may still be evaluated.
+    left: Cell<usize>,
+}
+
+/// Directions between two sides, which are unit vectors.
+struct Sector {
+    /// The sides, counter-clockwise.
+    sides: [DVec2; 2],
+    /// Numbers of the images that may reach farthest along a direction of the sector, in the order of the images.
+    contenders: Vec<u32>,
+    /// Support functions of the contenders along the sides.
+    reached: [Vec<f64>; 2],
+    /// The halves, as far as they were asked for; `None` where halving is not worth its cost.
+    halves: OnceCell<Option<Box<[Sector; 2]>>>,
 }
 
 impl Sectors {
-    /// Examines the instances in the place of an object; `None` if they are few or too many. `within` is the error of the
-    /// object's polygon.
-    ///
-    /// Support functions are convex: between two directions, that of an image lies below the plane through both values. An
-    /// image does not contend if at both directions it reaches less far than one point of the whole, less the error.
-    pub(super) fn of(
-        hulls: &impl Hulls<Frame2>,
-        object: usize,
-        within: f64,
-        instances: &[Instance],
-    ) -> Option<Self> {
-        if !MANY.contains(&instances.len()) {
-            return None;
-        }
-        let sectors = MOST.min(MAX_WORK / instances.len());
-        #[expect(clippy::cast_precision_loss, reason = "there are few sectors")]
-        let direction = |half: usize| {
-            let angle = std::f64::consts::PI * half as f64 / sectors as f64;
-            DVec2::new(libm::cos(angle), libm::sin(angle))
-        };
-        let corners = hulls.corners(object);
-        let along = |vector: DVec2| corners.iter().map(move |corner| corner.dot(vector));
-        let size = along(DVec2::X).chain(along(DVec2::Y));
-        let lost = within + MARGIN * size.map(f64::abs).fold(0.0, f64::max);
-        let reached: Vec<Vec<f64>> = (0..sectors)
-            .map(|sector| {
-                let vector = direction(2 * sector);
-                let reached = instances.iter().map(|instance| {
-                    let [most, _] = hulls.along(instance.object, instance.frame.pullback(vector));
-                    vector.dot(instance.frame.origin()) + most
-                });
-                reached.collect()
-            })
-            .collect();
-        let contenders = (0..sectors).map(|sector| {
-            let middle = direction(2 * sector + 1);
-            let farther = |a: &&DVec2, b: &&DVec2| a.dot(middle).total_cmp(&b.dot(middle));
-            let farthest = corners.iter().max_by(farther)?;
-            let sides = [sector, (sector + 1) % sectors];
-            let sides = sides.map(|side| {
-                let least = farthest.dot(direction(2 * side)) - lost;
-                (least, &reached[side])
-            });
-            let contends = |number: &usize| {
-                let mut sides = sides.iter();
-                // An image whose reach is not a number contends.
-                !sides.all(|(least, reached)| reached[*number] < *least)
-            };
-            let numbers = (0..instances.len()).filter(contends);
-            numbers.map(|number| u32::try_from(number).ok()).collect()
+    /// Examines images along the axes.
+    pub(super) fn of(images: Vec<u32>, whole: &Whole<'_>) -> Self {
+        let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+        let far = axes.map(|axis| whole.farthest(axis).map_or(0.0, |corner| corner.dot(axis)));
+        let lost = whole.within + MARGIN * far.map(f64::abs).into_iter().fold(0.0, f64::max);
+        let reached = axes.map(|axis| images.iter().map(|it| (whole.reach)(*it, axis)).collect());
+        let quarters = [0, 1, 2, 3].map(|quarter| {
+            let sides = [quarter, (quarter + 1) % 4];
+            let ends = sides.map(|side: usize| -> &Vec<f64> { &reached[side] });
+            Sector::of(&images, sides.map(|side| axes[side]), ends, lost, whole)
         });
-        let contenders = contenders.collect::<Option<_>>()?;
-        Some(Self { contenders })
+        Self {
+            quarters,
+            lost,
+            left: Cell::new(MAX_WORK * images.len()),
+        }
     }
 
-    /// Returns the numbers of the instances that may reach farthest along a vector; `None` if its coordinates are not finite.
-    pub(super) fn along(&self, vector: DVec2) -> Option<&[u32]> {
+    /// Returns the numbers of the images that may reach farthest along a vector; `None` if its coordinates are not finite.
+    pub(super) fn along(&self, vector: DVec2, whole: &Whole<'_>) -> Option<&[u32]> {
         if !vector.is_finite() {
             return None;
         }
-        let turns = libm::atan2(vector.y, vector.x) / std::f64::consts::TAU;
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "there are few sectors"
-        )]
-        let sector = (turns.rem_euclid(1.0) * self.contenders.len() as f64) as usize;
-        let sector = sector.min(self.contenders.len() - 1);
-        Some(&self.contenders[sector])
+        let quarter = match (vector.x > 0.0, vector.y >= 0.0) {
+            (true, true) => 0,
+            (false, true) if vector.y > 0.0 => 1,
+            (false, _) => 2,
+            (true, false) => 3,
+        };
+        let mut sector = &self.quarters[quarter];
+        for _ in 0..MAX_HALVINGS {
+            let Some(halves) = self.halves(sector, whole) else {
+                break;
+            };
+            let is_second = halves[1].sides[0].perp_dot(vector) >= 0.0;
+            sector = &halves[usize::from(is_second)];
+        }
+        Some(&sector.contenders)
+    }
+
+    /// Returns the numbers of the images that may reach farthest along any direction, in rising order.
+    pub(super) fn anywhere(&self, whole: &Whole<'_>) -> Vec<u32> {
+        let mut sectors: Vec<&Sector> = self.quarters.iter().collect();
+        for _ in 0..HALVINGS {
+            let parts = sectors.into_iter().flat_map(|sector| {
+                let halves = self.halves(sector, whole);
+                halves.map_or_else(|| vec![sector], |halves| halves.iter().collect())
+            });
+            sectors = parts.collect();
+        }
+        let all = sectors.iter().flat_map(|sector| &sector.contenders);
+        let mut all: Vec<u32> = all.copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Returns the halves of a sector; `None` where its contenders are few, or the work is used up.
+    fn halves<'s>(&self, sector: &'s Sector, whole: &Whole<'_>) -> Option<&'s [Sector; 2]> {
+        let halves = sector.halves.get_or_init(|| {
+            let count = sector.contenders.len();
+            let left = self.left.get().checked_sub(count)?;
+            if count <= FEW {
+                return None;
+            }
+            self.left.set(left);
+            let [first, last] = sector.sides;
+            let middle = (first + last).normalize_or_zero();
+            let between = sector.contenders.iter();
+            let between: Vec<f64> = between.map(|it| (whole.reach)(*it, middle)).collect();
+            let half = |sides, ends| Sector::of(&sector.contenders, sides, ends, self.lost, whole);
+            let halves = [
+                half([first, middle], [&sector.reached[0], &between]),
+                half([middle, last], [&between, &sector.reached[1]]),
+            ];
+            let both = halves
+                .iter()
+                .map(|half| half.contenders.len())
+                .sum::<usize>();
+            (both * WORTH[1] <= count * WORTH[0]).then(|| Box::new(halves))
+        });
+        halves.as_deref()
     }
 }
+
+impl Sector {
+    /// Keeps those of some images that may reach farthest between two sides, along which their support functions are given.
+    ///
+    /// Support functions are convex and homogeneous: along a unit vector between the sides, that of an image is at most the
+    /// combination of those along the sides. An image does not contend if along both sides it falls short of one and the same
+    /// corner.
+    fn of(
+        images: &[u32],
+        sides: [DVec2; 2],
+        reached: [&Vec<f64>; 2],
+        lost: f64,
+        whole: &Whole<'_>,
+    ) -> Self {
+        let between = [sides[0], sides[0] + sides[1], sides[1]];
+        let least = between.map(|direction| {
+            let corner = whole.farthest(direction);
+            // Without corners, all contend.
+            sides.map(|side| corner.map_or(f64::NEG_INFINITY, |it| it.dot(side) - lost))
+        });
+        let mut sector = Self {
+            sides,
+            contenders: Vec::new(),
+            reached: [const { Vec::new() }; 2],
+            halves: OnceCell::new(),
+        };
+        for (place, number) in images.iter().enumerate() {
+            let ends = reached.map(|reached| reached[place]);
+            // An image whose reach is not a number contends.
+            let falls_short = |least: &[f64; 2]| ends[0] < least[0] && ends[1] < least[1];
+            if !least.iter().any(falls_short) {
+                sector.contenders.push(*number);
+                sector.reached[0].push(ends[0]);
+                sector.reached[1].push(ends[1]);
+            }
+        }
+        sector
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,8 +1,10 @@
 //! Edges of a graph: the objects that may take an object's place, and what follows from them alone.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::expression::Interval;
+use crate::fast_hash::FastMap;
 use crate::geometry::{Frame, Point};
 use crate::rule::Placement;
 
@@ -18,24 +20,58 @@ pub(crate) struct Edge {
     pub(crate) length: f64,
 }
 
+/// Edges of the objects of a graph. Objects that are replaced by one and the same successor share a list.
+pub(crate) struct Edges {
+    lists: Vec<Vec<Edge>>,
+    /// Number of the list of each object.
+    of: Vec<usize>,
+}
+
+impl Edges {
+    /// Returns the edges of an object.
+    pub(crate) fn of(&self, object: usize) -> &[Edge] {
+        &self.lists[self.of[object]]
+    }
+
+    /// Iterates over all edges, those of a shared list once.
+    pub(crate) fn distinct(&self) -> impl Iterator<Item = &Edge> {
+        self.lists.iter().flatten()
+    }
+
+    /// Returns a function of the list of an object, which `known` holds as far as it was computed before.
+    pub(crate) fn shared<T: Copy>(
+        &self,
+        object: usize,
+        known: &mut [Option<T>],
+        function: impl FnOnce(&[Edge]) -> T,
+    ) -> T {
+        let list = self.of[object];
+        *known[list].get_or_insert_with(|| function(&self.lists[list]))
+    }
+
+    /// Returns the number of lists.
+    pub(crate) fn lists(&self) -> usize {
+        self.lists.len()
+    }
+}
+
 impl<F: Frame> Graph<F> {
     /// Returns, for every object, the objects that may take its place or that it may seed, including all
     /// random alternatives, with upper bounds of their lengths as multiples of its length.
     pub(crate) fn ratios(&self) -> Vec<Vec<(usize, f64)>> {
-        let of = |edges: Vec<Edge>| {
-            edges
-                .iter()
-                .map(|edge| (edge.object, edge.length))
-                .collect()
+        let edges = self.edges(f64::INFINITY);
+        let of = |object| {
+            let edges = edges.of(object).iter();
+            edges.map(|edge| (edge.object, edge.length)).collect()
         };
-        self.edges(f64::INFINITY).into_iter().map(of).collect()
+        (0..self.objects.len()).map(of).collect()
     }
 
     /// Returns the edges to the possible children of every object: with upper bounds of distance and
     /// length or, for a finite power, with upper bounds of their power means (see `Generator::means`).
-    pub(crate) fn edges(&self, power: f64) -> Vec<Vec<Edge>> {
+    pub(crate) fn edges(&self, power: f64) -> Edges {
         let mut extents = BTreeMap::new();
-        let edges = |object: usize| {
+        let mut edges = |object: usize| {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
                 let edge = |(_, instance): (_, &Instance<F>)| Edge {
                     object: instance.object,
@@ -60,7 +96,24 @@ impl<F: Frame> Graph<F> {
             }
             edges
         };
-        (0..self.objects.len()).map(edges).collect()
+        let mut lists = Vec::new();
+        let mut known = FastMap::default();
+        let of = self.objects.iter().enumerate().map(|(number, object)| {
+            // Successors are shared by reference; objects without children share an empty list.
+            let key = match &object.replacement {
+                Replacement::Fixed(successor) => Arc::as_ptr(successor).addr(),
+                Replacement::Evaluated(alternatives) => Arc::as_ptr(alternatives).addr(),
+                Replacement::Kept | Replacement::Unresolved => 0,
+            };
+            *known.entry(key).or_insert_with(|| {
+                lists.push(edges(number));
+                lists.len() - 1
+            })
+        });
+        Edges {
+            of: of.collect(),
+            lists,
+        }
     }
 
     /// Returns the ranges of all values that expressions see of an element.
@@ -145,11 +198,8 @@ impl<F: Frame> Graph<F> {
     }
 
     /// Returns the largest ratio of edges to objects that may be fertile.
-    pub(crate) fn longest_edge(&self, edges: &[Vec<Edge>]) -> f64 {
-        let fertile = edges
-            .iter()
-            .flatten()
-            .filter(|edge| self.is_fertile(edge.object));
+    pub(crate) fn longest_edge(&self, edges: &Edges) -> f64 {
+        let fertile = edges.distinct().filter(|edge| self.is_fertile(edge.object));
         fertile.map(|edge| edge.length).fold(0.0, f64::max)
     }
 

@@ -154,6 +154,11 @@ impl<F: Frame> Graph<F> {
         &**source
     }
 
+    /// Returns the number of conditions, weights and generators that may be looked at to replace an element.
+    pub(crate) fn choices(&self) -> u64 {
+        self.source.as_ref().map_or(1, |source| source.choices())
+    }
+
     /// Returns the parts of an alternative; empty if all of its elements stay.
     pub(crate) fn parts(&self, alternative: &Alternative) -> &[Part] {
         self.source().parts(alternative.generator)

@@ -47,6 +47,11 @@ pub(crate) trait Source<F: Frame>: Debug + Send + Sync {
         Err("productions are drawn whose effects are not alike".into())
     }
 
+    /// Returns the number of conditions, weights and generators that may be looked at to replace an element.
+    fn choices(&self) -> u64 {
+        1
+    }
+
     /// Returns the weight of a generator, 1 if it is not drawn.
     fn weight(&self, _generator: usize) -> f64 {
         1.0
@@ -110,6 +115,10 @@ impl<F: RuleFrame> Source<F> for Rule<F> {
         _: F::Point,
     ) -> Vec<Extent> {
         self.generators()[generator].extents(power, moments)
+    }
+
+    fn choices(&self) -> u64 {
+        self.selection().choices() as u64
     }
 
     fn rule(&self) -> Option<&Rule<F>> {

@@ -221,11 +221,34 @@ impl<M: AffineMap> Ifs<M> {
     /// Estimates the number of instances in the system's graph: every map inside every map, and every outline
     /// inside these.
     pub(crate) fn size(&self) -> usize {
+        let maps = self.maps().len();
+        maps.saturating_mul(maps)
+            .saturating_mul(1 + self.outlines())
+    }
+
+    /// Returns the number of outlines of all sets.
+    fn outlines(&self) -> usize {
         let sets = self.condensation().iter().map(|set| &set.shape);
         let outlines = sets.chain(self.initial()).map(|set| M::outlines(set).len());
-        let outlines = outlines.sum::<usize>();
+        outlines.sum()
+    }
+
+    /// Returns the number of instances that the system's graph holds.
+    pub(crate) fn held(&self) -> usize {
         let maps = self.maps().len();
-        maps.saturating_mul(maps).saturating_mul(1 + outlines)
+        let inside = match &self.definition.edges {
+            Some(edges) => edges.len(),
+            None if self.is_alike() => maps,
+            None => maps.saturating_mul(maps),
+        };
+        inside.saturating_mul(1 + self.outlines())
+    }
+
+    /// Returns whether the set inside every map is replaced by the same objects of the system's graph. With a digraph they
+    /// depend on the map, and with an initial set beside condensation sets, whose objects are those inside the map.
+    pub(crate) fn is_alike(&self) -> bool {
+        let drawn_apart = !self.condensation().is_empty() && self.initial().is_some();
+        !self.is_recurrent() && !drawn_apart
     }
 
     /// Returns the composition of maps that are applied one after the other, the first of the list first.

@@ -82,21 +82,23 @@ pub fn moran_dimension(ratios: &[f64]) -> f64 {
     }
 }
 
-fn sum_of_powers(ratios: &[f64], dimension: f64) -> f64 {
-    let powers = ratios.iter().map(|&ratio| libm::pow(ratio, dimension));
-    powers.sum()
-}
-
-/// Returns the D with Σ ratioᴰ = 1, for at least two ratios: Newton's method finds it nearly, on the logarithm of the sum, which
-/// is convex, and bisection to the last digit.
+/// Returns the D with Σ ratioᴰ = 1, for at least two ratios in rising order: Newton's method finds it nearly, on the logarithm
+/// of the sum, which is convex, and bisection to the last digit.
 fn dimension_of_powers(ratios: &[f64]) -> f64 {
     const MAX_ROUNDS: usize = 64;
-    let logarithms: Vec<f64> = ratios.iter().map(|&ratio| libm::log(ratio)).collect();
+    let distinct = ratios.chunk_by(|a, b| a == b);
+    let distinct: Vec<(f64, f64)> = distinct
+        .map(|equal| (equal[0], real(equal.len())))
+        .collect();
+    let logarithms = distinct
+        .iter()
+        .map(|(ratio, count)| (libm::log(*ratio), count));
+    let logarithms: Vec<_> = logarithms.collect();
     let mut near = 0.0;
     for _ in 0..MAX_ROUNDS {
         let (mut sum, mut slope) = (0.0, 0.0);
-        for logarithm in &logarithms {
-            let power = libm::exp(near * logarithm);
+        for (logarithm, count) in &logarithms {
+            let power = *count * libm::exp(near * logarithm);
             sum += power;
             slope += power * logarithm;
         }
@@ -107,7 +109,12 @@ fn dimension_of_powers(ratios: &[f64]) -> f64 {
             break;
         }
     }
-    dimension_near(near, |dimension| sum_of_powers(ratios, dimension))
+    dimension_near(near, |dimension| {
+        let powers = distinct
+            .iter()
+            .map(|(ratio, count)| count * libm::pow(*ratio, dimension));
+        powers.sum()
+    })
 }
 
 /// Returns the dimension at which a falling function crosses 1, which is probably near a known one.

@@ -23,6 +23,9 @@ pub(super) use drawn::structure;
 /// Maximum size of a system, with all instances of sets and of maps in maps.
 const MAX_INSTANCES: usize = 2_000_000;
 
+/// Maximum number of these instances that its graph holds.
+const MAX_HELD: usize = 1_000_000;
+
 /// State that is specific to systems: none.
 #[derive(Default)]
 pub(super) struct OfIfs;
@@ -55,6 +58,13 @@ impl Resolver<OfIfs> {
         document: &IfsDocument,
         metadata: Metadata,
     ) -> Option<System<M>> {
+        // Too many are refused before they take memory.
+        if let Some(MapsDocument::Listed(maps)) = &document.maps
+            && maps.len().saturating_mul(maps.len()) > MAX_INSTANCES
+        {
+            self.refuse_size(document);
+            return None;
+        }
         let maps = document.maps.as_ref();
         let maps = maps.and_then(|maps| self.maps(maps));
         let parts = self.parts(document, maps);
@@ -129,12 +139,8 @@ impl Resolver<OfIfs> {
                 return None;
             }
         };
-        if ifs.size() > MAX_INSTANCES {
-            let message = "so many sets under so many maps are too much";
-            let hint = format!(
-                "of all sets and maps inside all maps there are no more than {MAX_INSTANCES}"
-            );
-            self.error_with_hint(&document.metadata.place.first_line(), message, hint);
+        if ifs.size() > MAX_INSTANCES || ifs.held() > MAX_HELD {
+            self.refuse_size(document);
             return None;
         }
         let contraction = ifs.contraction();
@@ -151,6 +157,13 @@ impl Resolver<OfIfs> {
             growing: None,
             contraction,
         })
+    }
+
+    fn refuse_size(&mut self, document: &IfsDocument) {
+        let message = "so many sets under so many maps are too much";
+        let hint =
+            format!("of all sets and maps inside all maps there are no more than {MAX_INSTANCES}");
+        self.error_with_hint(&document.metadata.place.first_line(), message, hint);
     }
 
     fn maps<M: WrittenMap<N>, const N: usize>(

@@ -1,6 +1,7 @@
 //! Selection of the generator for a fertile element: by index, by condition or by weight.
 
 use crate::expression::Program;
+use crate::fast_hash::FastSet;
 
 use super::generator::ElementContext;
 use crate::draws::{Path, pick_by_weight};
@@ -63,13 +64,19 @@ impl Selection {
                 .map(|(_, generator)| *generator)
                 .collect(),
         };
-        let mut seen = Vec::new();
-        all.retain(|generator| {
-            let new = !seen.contains(generator);
-            seen.push(*generator);
-            new
-        });
+        let mut seen = FastSet::default();
+        all.retain(|generator| seen.insert(*generator));
         all
+    }
+
+    /// Returns the number of generators among which it selects, repetitions included.
+    pub(crate) fn choices(&self) -> usize {
+        match self {
+            Self::Always(_) => 1,
+            Self::ByIndex(entries) => entries.len(),
+            Self::ByCondition { cases, .. } => cases.len() + 1,
+            Self::AtRandom(entries) => entries.len(),
+        }
     }
 
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {

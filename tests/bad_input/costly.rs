@@ -109,6 +109,64 @@ fn extents_of_many_elements_and_maps_are_bounded() {
     accepted(&format!("kind: ifs\nmaps:\n{maps}"), &INFO);
 }
 
+/// Returns a rule whose generator is a half circle of `count` chords.
+fn half_circle(count: u32) -> String {
+    let points = (0..=count).map(|number| {
+        let angle = std::f64::consts::PI * f64::from(number) / f64::from(count);
+        format!(
+            "  - [{:.9}, {:.9}]\n",
+            0.5 - 0.5 * angle.cos(),
+            0.5 * angle.sin()
+        )
+    });
+    let points: String = points.collect();
+    format!("initiator: segment\ngenerator:\n{points}")
+}
+
+#[test]
+fn limit_sets_of_many_copies_on_a_round_hull_have_boxes() {
+    let text = half_circle(20_000);
+    accepted(&text, &INFO);
+    let bounds = graph_of(&text, 2).limit_bounds().unwrap();
+    // The copies of the circle stand out by their height, which is half of a chord.
+    let chord = std::f64::consts::PI / 40_000.0;
+    let expected = [0.5 + 0.5 * chord, 1.0 + 0.5 * chord];
+    assert!((bounds.max().y - expected[0]).abs() < 1e-8, "{bounds:?}");
+    assert!((bounds.max().x - expected[1]).abs() < 1e-8, "{bounds:?}");
+    let slow: String = (0..30)
+        .map(|number| {
+            let (turn, x, y) = (f64::from(number) * 37.77, number % 97, number % 89);
+            format!("  - {{scale: 0.99, rotate: {turn}, translate: [{x}, {y}]}}\n")
+        })
+        .collect();
+    accepted(&format!("kind: ifs\nmaps:\n{slow}"), &INFO);
+}
+
+#[test]
+fn choices_of_many_generators_are_few() {
+    let generators: String = (0..6000)
+        .map(|number| format!("  g{number}: [[0, 0], [0.3, {}/10], [1, 0]]\n", number % 7))
+        .collect();
+    let names: Vec<String> = (0..6000).map(|number| format!("g{number}")).collect();
+    let names = names.join(", ");
+    let text =
+        format!("initiator: segment\ngenerators:\n{generators}select: {{by_index: [{names}]}}\n");
+    accepted(&text, &INFO);
+    let cases: String = (0..1500)
+        .map(|number| {
+            format!(
+                "  - {{when: step == {number} and i % {} == 1, use: b}}\n",
+                number + 2
+            )
+        })
+        .collect();
+    let text = format!(
+        "initiator: segment\ngenerators:\n  a: [[0, 0], [0.3, 0.2], [1, 0]]\n  b: [[0, 0], [0.5, 0.2], [1, 0]]\nselect:\n{cases}  \
+         - {{use: a}}\n"
+    );
+    accepted(&text, &["info", "many.yaml", "--steps", "16"]);
+}
+
 #[test]
 fn measures_of_many_states_are_found() {
     let maps: String = (0..900)

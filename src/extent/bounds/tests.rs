@@ -9,7 +9,7 @@ use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, convex_hull, thinned};
 use crate::graph::Graph;
 use crate::ifs::{Definition, Edge, Ifs, Map, System, Verdict};
 use crate::metadata::Metadata;
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
 /// Maps, and for each the maps that may follow it.
 struct Maps {
@@ -131,6 +131,28 @@ fn a_system_that_contracts_slowly_has_a_box() {
     maps.assert_box(&bounds, 4500);
     // The fixed point of the second map is the leftmost point.
     assert!((bounds.min().x + 0.27 / 0.07).abs() < 1e-9);
+}
+
+#[test]
+fn a_digraph_of_many_maps_has_a_box() {
+    let count = 60;
+    let map = |number: usize| {
+        let degrees = real(number * 77);
+        let shift = DVec2::new(real(number % 17), real(number % 13));
+        let ratio = 0.2 + real(number % 7) / 20.0;
+        DAffine2::from_scale_angle_translation(DVec2::splat(ratio), degrees.to_radians(), shift)
+    };
+    let mut maps = Maps::free((0..count).map(map).collect());
+    for (from, followers) in maps.followers.iter_mut().enumerate() {
+        *followers = (0..40)
+            .map(|step| (from * 7 + step * 61 + 1) % count)
+            .collect();
+        followers.sort_unstable();
+        followers.dedup();
+        assert_eq!(followers.len(), 40);
+    }
+    let bounds = Graph::of_system(&maps.system()).limit_bounds().unwrap();
+    maps.assert_box(&bounds, 60);
 }
 
 proptest! {
