@@ -9,7 +9,7 @@ use anyhow::anyhow;
 
 use super::readable::{counted, duration, grouped, rough_bytes};
 use crate::estimate::{Estimator, SizeEstimate};
-use crate::extent::bounding_box;
+use crate::extent::{ApproximantBounds, bounding_box};
 use crate::geometry::Bounds;
 use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Replacement, TooLarge};
@@ -308,7 +308,7 @@ fn estimate(graph: &Graph, steps: u32, options: &render::Options) -> Option<Size
     if !(0..steps).all(|_| forecast.advance()) {
         return None;
     }
-    let bounds = rough_bounds(graph, steps)?;
+    let bounds = Boxes::of(graph).roughly_at(steps)?;
     Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
@@ -324,7 +324,7 @@ pub(super) fn png_estimate(
         Goal::Steps(steps, _) => steps.min(MAX_STEPS),
         Goal::Detail(_) => MAX_STEPS.min(graph.depth().unwrap_or(MAX_STEPS)),
     };
-    let bounds = rough_bounds(graph, steps)?;
+    let bounds = Boxes::of(graph).roughly_at(steps)?;
     let window = options.view.window.map(|window| window[2].max(window[3]));
     let across = window.unwrap_or(bounds.size().max_element());
     let side = match options.size {
@@ -347,32 +347,54 @@ pub(super) fn png_estimate(
     Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
-/// Returns the bounding box of an approximant: from the graph, or else by a walk that is not too long.
-pub(super) fn bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
-    const MAX_ELEMENTS: u64 = 1_000_000;
-    /// Number of choices that take as long as the rest of an element.
-    const CHOICES: u64 = 8;
-    let max_elements = MAX_ELEMENTS / (graph.choices() / CHOICES).max(1);
-    let growth = Growth {
-        max_elements,
-        ..Growth::steps(steps)
-    };
-    let walked = || {
+/// Boxes of approximants: from the graph, or else by a walk that is not too long.
+pub(super) struct Boxes<'g> {
+    graph: &'g Graph,
+    known: Option<ApproximantBounds<'g>>,
+}
+
+impl<'g> Boxes<'g> {
+    pub(super) fn of(graph: &'g Graph) -> Self {
+        Self {
+            graph,
+            known: graph.boxes(),
+        }
+    }
+
+    /// Returns the bounding box of an approximant if the graph determines it.
+    pub(super) fn known(&self, steps: u32) -> Option<Bounds> {
+        self.known.as_ref()?.at(steps)
+    }
+
+    /// Returns the bounding box of an approximant.
+    pub(super) fn at(&self, steps: u32) -> Option<Bounds> {
+        self.known(steps).or_else(|| self.walked(steps))
+    }
+
+    /// Returns an approximate bounding box of an approximant: that of a smaller one, where the graph does not
+    /// determine it.
+    pub(super) fn roughly_at(&self, steps: u32) -> Option<Bounds> {
+        self.known(steps)
+            .or_else(|| match self.graph.check_size(steps, 20_000) {
+                Ok(_) => self.walked(steps),
+                Err(error) => self.at(error.deepest?),
+            })
+    }
+
+    fn walked(&self, steps: u32) -> Option<Bounds> {
+        const MAX_ELEMENTS: u64 = 1_000_000;
+        /// Number of choices that take as long as the rest of an element.
+        const CHOICES: u64 = 8;
+        let graph = self.graph;
+        let max_elements = MAX_ELEMENTS / (graph.choices() / CHOICES).max(1);
+        let growth = Growth {
+            max_elements,
+            ..Growth::steps(steps)
+        };
         let small = !graph.draws() && graph.check_size(steps, max_elements).is_ok();
         let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
-    };
-    graph.bounds(steps).or_else(walked)
-}
-
-/// Returns an approximate bounding box of an approximant: that of a smaller one, where the graph does not
-/// determine it.
-pub(super) fn rough_bounds(graph: &Graph, steps: u32) -> Option<Bounds> {
-    let walked = || match graph.check_size(steps, 20_000) {
-        Ok(_) => bounds(graph, steps),
-        Err(error) => bounds(graph, error.deepest?),
-    };
-    graph.bounds(steps).or_else(walked)
+    }
 }
 
 /// Returns whether all replacements shrink, so that elements fall below any size.

@@ -20,7 +20,7 @@ use crate::measure::similarity_dimension;
 use crate::render::Options;
 
 use super::dim::hausdorff;
-use super::growth::{bounds, rough_bounds};
+use super::growth::Boxes;
 use super::rule::{Loaded, RuleArguments};
 use super::structure::StructureInfo;
 use super::system::SystemInfo;
@@ -232,16 +232,16 @@ fn check_steps(steps: u32) -> Result<(), Failure> {
 fn in_plane<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) -> Info<'a> {
     /// Step after which bounding boxes change little.
     const SETTLED: u32 = 12;
-    let bounds = bounds(graph, steps);
-    let last = bounds.or_else(|| rough_bounds(graph, steps));
+    let boxes = Boxes::of(graph);
+    let bounds = boxes.at(steps);
+    let last = bounds.or_else(|| boxes.roughly_at(steps));
     let options = Options::of(loaded.model.metadata());
     let estimator = Estimator::new(graph, &options);
-    let boxes = graph.boxes();
     // Every estimate after one that exceeds the range of doubles exceeds it too.
     let mut may_be = true;
     let estimate = |step: u32, forecast: &Forecast<'_>| {
-        let own = boxes.as_ref().filter(|_| step < steps.min(SETTLED));
-        let bounds = own.and_then(|boxes| boxes.at(step)).or(last);
+        let own = Some(step).filter(|_| step < steps.min(SETTLED));
+        let bounds = own.and_then(|step| boxes.known(step)).or(last);
         let estimate = bounds.filter(|_| may_be);
         let estimate = estimate.and_then(|bounds| estimator.at(forecast, &bounds));
         may_be = estimate.is_some();

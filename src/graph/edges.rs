@@ -71,7 +71,7 @@ impl<F: Frame> Graph<F> {
     /// length or, for a finite power, with upper bounds of their power means (see `Generator::means`).
     pub(crate) fn edges(&self, power: f64) -> Edges {
         let mut extents = BTreeMap::new();
-        let mut edges = |object: usize| {
+        let edges = |object: usize| {
             let Replacement::Evaluated(alternatives) = &self.objects[object].replacement else {
                 let edge = |(_, instance): (_, &Instance<F>)| Edge {
                     object: instance.object,
@@ -96,24 +96,29 @@ impl<F: Frame> Graph<F> {
             }
             edges
         };
-        let mut lists = Vec::new();
-        let mut known = FastMap::default();
+        let (of, firsts) = self.replacements();
+        let lists = firsts.into_iter().map(edges).collect();
+        Edges { lists, of }
+    }
+
+    /// Returns the number of the replacement of each object, and the first object of each replacement: objects that are
+    /// replaced by one and the same successor have one.
+    fn replacements(&self) -> (Vec<usize>, Vec<usize>) {
+        let (mut known, mut firsts) = (FastMap::default(), Vec::new());
         let of = self.objects.iter().enumerate().map(|(number, object)| {
-            // Successors are shared by reference; objects without children share an empty list.
+            // Successors are shared by reference. Objects without children have keys that are no addresses.
             let key = match &object.replacement {
                 Replacement::Fixed(successor) => Arc::as_ptr(successor).addr(),
                 Replacement::Evaluated(alternatives) => Arc::as_ptr(alternatives).addr(),
-                Replacement::Kept | Replacement::Unresolved => 0,
+                Replacement::Kept => 0,
+                Replacement::Unresolved => 1,
             };
             *known.entry(key).or_insert_with(|| {
-                lists.push(edges(number));
-                lists.len() - 1
+                firsts.push(number);
+                firsts.len() - 1
             })
         });
-        Edges {
-            of: of.collect(),
-            lists,
-        }
+        (of.collect(), firsts)
     }
 
     /// Returns the ranges of all values that expressions see of an element.
@@ -128,7 +133,7 @@ impl<F: Frame> Graph<F> {
     /// of such an object does not shrink with the object.
     #[must_use]
     pub fn resets(&self) -> Vec<bool> {
-        self.leading_to(|object| {
+        self.leading_to_replacements(|object| {
             let mut placements = self.placements(object);
             placements.any(|placement| placement == Placement::SeedsAsInitiator)
         })
@@ -136,9 +141,17 @@ impl<F: Frame> Graph<F> {
 
     /// Returns, for every object, whether it leads to seeds.
     pub(crate) fn leads_to_seeds(&self) -> Vec<bool> {
-        self.leading_to(|object| {
+        self.leading_to_replacements(|object| {
             self.objects[object].is_unresolved() || self.placements(object).any(Placement::seeds)
         })
+    }
+
+    /// Returns, for every object, whether it is replaced in a way or may lead to an object that is. `is_so` is asked of one
+    /// object of each replacement.
+    fn leading_to_replacements(&self, is_so: impl Fn(usize) -> bool) -> Vec<bool> {
+        let (of, firsts) = self.replacements();
+        let are_so: Vec<bool> = firsts.into_iter().map(is_so).collect();
+        self.leading_to(|object| are_so[of[object]])
     }
 
     /// Iterates over the placements of the seeds, and of the parts of random successors, of an object.

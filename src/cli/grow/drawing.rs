@@ -294,7 +294,8 @@ impl<'a> Drawing<'a> {
         let view = &options.view;
         let canvas = match view.window {
             Some(window) => Canvas::of_window(window, view, options.size).ok(),
-            None => growth::rough_bounds(graph, self.goal.steps())
+            None => growth::Boxes::of(graph)
+                .roughly_at(self.goal.steps())
                 .and_then(|bounds| Canvas::fit(&bounds, options.size, view.pad()).ok()),
         };
         let Some([width, height]) = canvas.map(|canvas| canvas.size()) else {
