@@ -155,7 +155,8 @@ impl<F: Frame> Graph<F> {
     }
 
     /// Returns the number of conditions, weights and generators that may be looked at to replace an element.
-    pub(crate) fn choices(&self) -> u64 {
+    #[must_use]
+    pub fn choices(&self) -> u64 {
         self.source.as_ref().map_or(1, |source| source.choices())
     }
 
