@@ -11,7 +11,7 @@ use super::sectors::{MANY, Sectors, Whole};
 const MANY_POINTS: usize = 4096;
 
 /// Number of directions along which the farthest points are known before a hull is refined.
-const DIRECTIONS: u32 = 8;
+const DIRECTIONS: u32 = 16;
 
 /// Distance within which the first hull is known, relative to its size, where no other is given.
 const FIRST: f64 = 1e-6;
