@@ -354,6 +354,7 @@ pub(super) struct Boxes<'g> {
 }
 
 impl<'g> Boxes<'g> {
+    /// Prepares the boxes that the graph determines.
     pub(super) fn of(graph: &'g Graph) -> Self {
         Self {
             graph,
@@ -381,6 +382,7 @@ impl<'g> Boxes<'g> {
             })
     }
 
+    /// Returns the bounding box of an approximant by a walk, if it draws nothing at random and has few elements.
     fn walked(&self, steps: u32) -> Option<Bounds> {
         const MAX_ELEMENTS: u64 = 1_000_000;
         /// Number of choices that take as long as the rest of an element.

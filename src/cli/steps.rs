@@ -36,20 +36,19 @@ pub(super) fn choose_with_graph(
     asked: Option<u32>,
     loaded: &Loaded,
 ) -> Result<(u32, Option<Graph>), Failure> {
-    let Some(steps) = asked else {
-        // The graph of a system or a structure is that of all numbers of steps.
-        let is_of_all = matches!(loaded.model, Model::Ifs(_) | Model::Instancing(_));
-        let compiled = RefCell::new(None);
-        let compile = |steps| {
-            let graph = loaded.graph(steps)?;
-            compiled.replace(is_of_all.then(|| graph.clone()));
-            Ok(graph)
-        };
-        let steps = proposed_steps(&loaded.model, compile);
-        let steps = steps.map_err(|error| loaded.failure(&error))?;
-        return Ok((steps, compiled.into_inner()));
+    if let Some(steps) = asked {
+        return Ok((steps, None));
+    }
+    // The graph of a system or a structure is that of all numbers of steps.
+    let is_of_all = matches!(loaded.model, Model::Ifs(_) | Model::Instancing(_));
+    let compiled = RefCell::new(None);
+    let compile = |steps| {
+        let graph = loaded.graph(steps)?;
+        compiled.replace(is_of_all.then(|| graph.clone()));
+        Ok(graph)
     };
-    Ok((steps, None))
+    let steps = proposed_steps(&loaded.model, compile).map_err(|error| loaded.failure(&error))?;
+    Ok((steps, compiled.into_inner()))
 }
 
 /// Returns the number of steps of a set in space that was given, or else the proposed one.

@@ -21,9 +21,10 @@ const MAX_WORK: usize = 1_000_000;
 /// Limit of the number of states that are looked at, those that are dropped at once included.
 const MAX_LOOKED: usize = 8 * MAX_WORK;
 
-/// Limit of that number where other bounds are tried afterwards, and of the states that are kept at one level before equal ones
-/// are merged.
+/// Limit of that number where other bounds are tried afterwards.
 const MAX_LOOKED_AT_FIRST: usize = 2 * MAX_WORK;
+
+/// Limit of the number of states at one level before equal ones are merged, where other bounds are tried afterwards.
 const MAX_NEXT_AT_FIRST: usize = MAX_WORK / 4;
 
 /// Limit of the number of levels.
@@ -174,10 +175,11 @@ impl<F: Bounded> Graph<F> {
             true => [by_hulls[0], by_hulls[1], by_ratios],
             false => [by_ratios, by_hulls[0], by_hulls[1]],
         };
+        let last = attempts.len() - 1;
         let mut found = (attempts.into_iter().enumerate()).map(|(number, fineness)| {
             let mut boxes = self.boxes_within(true, fineness, |_| 0.0)?;
             // In space balls may follow.
-            boxes.reach.is_last = number == 2 && F::Point::DIMENSION == 2;
+            boxes.reach.is_last = number == last && F::Point::DIMENSION == 2;
             boxes.of(None)
         });
         found.find_map(|bounds| bounds).or_else(|| {

@@ -126,10 +126,9 @@ impl<F: Frame> Graph<F> {
     /// Returns, for each behaviour, the maps of its replaced children with the children's behaviours.
     pub(super) fn images(&self, counts: impl Fn(usize) -> bool) -> Vec<Vec<(F::Map, usize)>> {
         let mut images: Vec<Vec<_>> = vec![Vec::new(); self.behaviours().count()];
-        let mut known: FastMap<u64, Vec<usize>> = FastMap::default();
         for (number, object) in self.behaviours_by_number() {
             let images = &mut images[object.behaviour];
-            known.clear();
+            let mut met = Met::default();
             for (_, instance) in self.children(number) {
                 if !self.is_replaced(instance.object) || !counts(instance.object) {
                     continue;
@@ -138,9 +137,7 @@ impl<F: Frame> Graph<F> {
                     *instance.frame.map(),
                     self.objects[instance.object].behaviour,
                 );
-                let alike = known.entry(hash(&image)).or_default();
-                if !alike.iter().any(|place| images[*place] == image) {
-                    alike.push(images.len());
+                if met.is_new(&image) {
                     images.push(image);
                 }
             }
@@ -155,20 +152,33 @@ impl<F: Frame> Graph<F> {
 
 /// Returns the numbers of instances without those that equal an earlier one in object and map, in rising order.
 pub(super) fn distinct<F: Frame>(instances: &[Instance<F>]) -> Vec<u32> {
-    let mut known: FastMap<u64, Vec<u32>> = FastMap::default();
-    let image = |instance: &Instance<F>| (*instance.frame.map(), instance.object);
+    let mut met = Met::default();
     let is_new = |number: &u32| {
-        let own = image(&instances[*number as usize]);
-        let alike = known.entry(hash(&own)).or_default();
-        let is_new = !alike
-            .iter()
-            .any(|other| image(&instances[*other as usize]) == own);
-        if is_new {
-            alike.push(*number);
-        }
-        is_new
+        let instance = &instances[*number as usize];
+        met.is_new(&(*instance.frame.map(), instance.object))
     };
     (0..).take(instances.len()).filter(is_new).collect()
+}
+
+/// Images that were met: maps, with numbers of what they are applied to.
+struct Met<M>(FastMap<u64, Vec<(M, usize)>>);
+
+impl<M> Default for Met<M> {
+    fn default() -> Self {
+        Self(FastMap::default())
+    }
+}
+
+impl<M: Affine> Met<M> {
+    /// Returns whether no equal image was met before.
+    fn is_new(&mut self, image: &(M, usize)) -> bool {
+        let alike = self.0.entry(hash(image)).or_default();
+        let is_new = !alike.contains(image);
+        if is_new {
+            alike.push(*image);
+        }
+        is_new
+    }
 }
 
 /// Returns a hash of an image: equal images have equal ones.

@@ -75,14 +75,13 @@ pub(super) fn followed(
         let farthest = Farthest::of(&union);
         origins.extend(directions(corners).map(|direction| {
             let reached = farthest.along(direction)?;
-            Some(
-                reached
-                    .from
-                    .map_or(Origin::Point(reached.point), |(number, corner)| {
-                        let (map, inner) = images[kind][number as usize];
-                        Origin::Image(map, firsts[inner] + corner)
-                    }),
-            )
+            Some(match reached.from {
+                None => Origin::Point(reached.point),
+                Some((number, corner)) => {
+                    let (map, inner) = images[kind][number as usize];
+                    Origin::Image(map, firsts[inner] + corner)
+                }
+            })
         }));
     }
     let mut ends = Ends {

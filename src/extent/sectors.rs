@@ -19,9 +19,6 @@ const HALVINGS: u32 = 3;
 /// Maximum number of support functions that are evaluated, for each image.
 const MAX_WORK: usize = 32;
 
-/// Number of contenders of both halves, relative to those of the whole, above which halves are not worth their cost.
-const WORTH: [usize; 2] = [3, 2];
-
 /// Distance by which the others must fall short, relative to the size, so that rounding drops none.
 const MARGIN: f64 = 1e-9;
 
@@ -140,11 +137,9 @@ impl Sectors {
                 half([first, middle], [&sector.reached[0], &between]),
                 half([middle, last], [&between, &sector.reached[1]]),
             ];
-            let both = halves
-                .iter()
-                .map(|half| half.contenders.len())
-                .sum::<usize>();
-            (both * WORTH[1] <= count * WORTH[0]).then(|| Box::new(halves))
+            let both = halves.each_ref().map(|half| half.contenders.len());
+            // Halves that share most of their contenders are not worth their cost.
+            (2 * (both[0] + both[1]) <= 3 * count).then(|| Box::new(halves))
         });
         halves.as_deref()
     }

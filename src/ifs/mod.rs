@@ -244,8 +244,8 @@ impl<M: AffineMap> Ifs<M> {
         inside.saturating_mul(1 + self.outlines())
     }
 
-    /// Returns whether the set inside every map is replaced by the same objects of the system's graph. With a digraph they
-    /// depend on the map, and with an initial set beside condensation sets, whose objects are those inside the map.
+    /// Returns whether the set inside every map is replaced by the same objects of the system's graph. They depend on
+    /// the map with a digraph, and with condensation sets beside an initial set, whose objects are inside the map.
     pub(crate) fn is_alike(&self) -> bool {
         let drawn_apart = !self.condensation().is_empty() && self.initial().is_some();
         !self.is_recurrent() && !drawn_apart
