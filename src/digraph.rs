@@ -1,5 +1,9 @@
 //! Directed graphs whose vertices are numbers.
 
+mod ancestry;
+
+pub(crate) use ancestry::{Ancestry, on_infinite_paths};
+
 /// Returns the number of the strongly connected component of each vertex (Tarjan 1972); `targets` lists
 /// the vertices to which the edges of each vertex lead. No edge leads to a component of a higher number.
 pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
@@ -46,6 +50,70 @@ pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
         }
     }
     component
+}
+
+/// Returns the vertices in the order in which a depth-first search leaves them: every vertex after those to which it leads,
+/// except around loops.
+pub(crate) fn post_order(targets: &[Vec<usize>]) -> Vec<usize> {
+    let mut order = Vec::with_capacity(targets.len());
+    let mut is_met = vec![false; targets.len()];
+    for root in 0..targets.len() {
+        if std::mem::replace(&mut is_met[root], true) {
+            continue;
+        }
+        // Path from the root: each vertex with the number of its targets that have been taken.
+        let mut way = vec![(root, 0)];
+        while let Some((vertex, taken)) = way.last_mut() {
+            match targets[*vertex].get(*taken) {
+                Some(&target) => {
+                    *taken += 1;
+                    if !std::mem::replace(&mut is_met[target], true) {
+                        way.push((target, 0));
+                    }
+                }
+                None => {
+                    order.push(*vertex);
+                    way.pop();
+                }
+            }
+        }
+    }
+    order
+}
+
+/// Returns, for every vertex, the largest sum of lengths along a path from it, at least 0 (Bellman 1958). `edges` lists the
+/// vertices to which those of each vertex lead, with lengths, to each of which `more` is added. `None` if sums exceed `most`
+/// or grow along a loop, or if that takes too long to decide.
+pub(crate) fn longest_paths(edges: &[Vec<(usize, f64)>], more: f64, most: f64) -> Option<Vec<f64>> {
+    /// Limit of the number of vertices and edges that are looked at, in more than some rounds.
+    const MAX_WORK: usize = 1 << 20;
+    /// Number of rounds in any case.
+    const FEW: usize = 16;
+    let targets = edges
+        .iter()
+        .map(|edges| edges.iter().map(|(target, _)| *target).collect());
+    let order = post_order(&targets.collect::<Vec<_>>());
+    let work = edges.len() + edges.iter().map(Vec::len).sum::<usize>();
+    let rounds = (MAX_WORK / work.max(1)).max(FEW).min(edges.len());
+    let mut longest = vec![0.0f64; edges.len()];
+    for _ in 0..=rounds {
+        let mut has_changed = false;
+        for &vertex in &order {
+            let along = edges[vertex]
+                .iter()
+                .map(|(target, length)| length + more + longest[*target]);
+            let largest = along.fold(longest[vertex], f64::max);
+            has_changed |= largest > longest[vertex];
+            longest[vertex] = largest;
+        }
+        if !has_changed {
+            return Some(longest);
+        }
+        if longest.iter().any(|sum| *sum > most) {
+            return None;
+        }
+    }
+    None
 }
 
 /// Edge of a directed graph, of any kind.
@@ -128,4 +196,30 @@ pub(crate) fn all_loops_shrink(
         }
         has_settled
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn post_order_follows_targets(rows in vec(vec(any::<bool>(), 12), 1..12)) {
+            // Edges lead to larger numbers only, but for loops of a vertex, so that there are no other loops.
+            let edges = |from: usize, row: &Vec<bool>| (from..rows.len()).filter(|to| row[*to]).collect();
+            let targets: Vec<Vec<usize>> = rows.iter().enumerate().map(|(from, row)| edges(from, row)).collect();
+            let order = post_order(&targets);
+            let mut ranks = vec![usize::MAX; rows.len()];
+            for (rank, vertex) in order.iter().enumerate() {
+                prop_assert_eq!(std::mem::replace(&mut ranks[*vertex], rank), usize::MAX);
+            }
+            prop_assert_eq!(order.len(), rows.len());
+            for (from, targets) in targets.iter().enumerate() {
+                prop_assert!(targets.iter().all(|to| *to == from || ranks[*to] < ranks[from]));
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::extent::Bounded;
+use crate::extent::{Bounded, LimitBoxes};
 use crate::geometry::{Bounds, Frame};
 use crate::instancing::{self, Instancing, Master, Tint};
 
@@ -13,8 +13,36 @@ use crate::ifs::{AffineMap, OutlineOf, PointOf};
 /// Limit of the number of objects that are drawn as boxes of their own if nothing else is drawn.
 const MAX_BOXES: usize = 256;
 
-/// Limit of the number of instances that are visited for all boxes together.
-const MAX_LOOKS: usize = 250_000;
+/// Number of states looked at after which no further box is computed.
+const MAX_LOOKED: usize = 250_000;
+
+/// Bounding boxes of the subtrees of objects, as far as they are few and take little work.
+struct ObjectBoxes<'b, 'g, F: Frame> {
+    limits: &'b LimitBoxes<'g, F>,
+    /// Number of states that were looked at before.
+    looked: usize,
+    /// Number of boxes that were asked for.
+    asked: usize,
+}
+
+impl<'b, 'g, F: Bounded> ObjectBoxes<'b, 'g, F> {
+    fn of(limits: &'b LimitBoxes<'g, F>) -> Self {
+        Self {
+            limits,
+            looked: limits.looked(),
+            asked: 0,
+        }
+    }
+
+    /// Returns the bounding box of the subtree of an object.
+    fn box_of(&mut self, object: usize) -> Option<Bounds<F::Point>> {
+        self.asked += 1;
+        if self.asked > MAX_BOXES || self.limits.looked() - self.looked > MAX_LOOKED {
+            return None;
+        }
+        self.limits.at_object(object)
+    }
+}
 
 impl<F: Bounded> Graph<F> {
     /// Compiles a structure to its graph, whose unit frame is the plane or space itself.
@@ -27,10 +55,11 @@ impl<F: Bounded> Graph<F> {
     #[must_use]
     pub fn of_structure<M: AffineMap<Frame = F>>(structure: &Instancing<M>) -> Self {
         let (mut graph, canonical) = Compiler::new(structure).run();
-        if !structure.draws_anything() {
-            graph.draw_boxes::<M>();
-        }
-        let limit = graph.limit_bounds().or_else(|| graph.bounds(0));
+        let limit = match structure.draws_anything() {
+            true => graph.limit_bounds(),
+            false => graph.draw_boxes::<M>(),
+        };
+        let limit = limit.or_else(|| graph.bounds(0));
         if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
             graph.set_extent(&bounds);
         }
@@ -47,43 +76,29 @@ impl<F: Bounded> Graph<F> {
         compiler.of
     }
 
-    /// Draws every object as the bounding box of its limit set.
-    fn draw_boxes<M: AffineMap<Frame = F>>(&mut self) {
+    /// Draws every object as the bounding box of its limit set. Returns that of the whole.
+    fn draw_boxes<M: AffineMap<Frame = F>>(&mut self) -> Option<Bounds<F::Point>> {
         // The limit set contains visible objects only.
         self.objects
             .iter_mut()
             .for_each(|object| object.visible = true);
-        let most = self.max_boxes();
-        let initiators = self.initiators.clone();
+        let limits = self.limit_boxes();
+        let whole = { limits.as_ref() }.and_then(|it| it.at(&self.initiator(0).instances));
+        let mut known = limits.as_ref().map(ObjectBoxes::of);
         let mut boxes: Vec<Option<Bounds<F::Point>>> = Vec::new();
-        for number in 0..self.objects.len() {
-            // Behaviours are numbered in the order of the objects.
-            if self.objects[number].behaviour == boxes.len() {
-                // If one box takes too long, the others do as well.
-                let is_cheap = boxes.len() < most && boxes.iter().all(Option::is_some);
-                boxes.push(is_cheap.then(|| self.box_of(number)).flatten());
-            }
+        for (number, _) in self.behaviours_by_number() {
+            // If one box takes too long, the others do as well.
+            let is_cheap = boxes.last().is_none_or(Option::is_some);
+            let known = known.as_mut().filter(|_| is_cheap);
+            boxes.push(known.and_then(|known| known.box_of(number)));
         }
-        self.initiators = initiators;
         let first = self.base_elements.len();
         let boxes = boxes.into_iter().map(M::filling);
         self.base_elements = self.base_elements.iter().cloned().chain(boxes).collect();
         for object in &mut self.objects {
             object.base_element = first + object.behaviour;
         }
-    }
-
-    fn max_boxes(&self) -> usize {
-        MAX_BOXES.min(MAX_LOOKS / self.instances().count().max(1))
-    }
-
-    /// Returns the bounding box of the subtree of an object. Overwrites the initiator.
-    fn box_of(&mut self, object: usize) -> Option<Bounds<F::Point>> {
-        self.initiators[0].instances = vec![Instance {
-            length: F::UNIT.stretch(),
-            ..Instance::new(object, F::UNIT, 0)
-        }];
-        self.limit_bounds()
+        whole
     }
 
     /// Returns the bounding boxes of the subtrees of some objects of a structure, in their own
@@ -110,14 +125,12 @@ impl<F: Bounded> Graph<F> {
                 .iter_mut()
                 .for_each(|object| object.visible = true);
         }
-        let roots = graph.initiator(0).instances.clone();
-        let most = graph.max_boxes();
-        let numbered = roots.iter().enumerate();
-        let boxes = numbered.map(|(number, root)| {
-            let is_cheap = number < most;
-            is_cheap.then(|| graph.box_of(root.object)).flatten()
-        });
-        boxes.collect()
+        let limits = graph.limit_boxes();
+        let mut known = limits.as_ref().map(ObjectBoxes::of);
+        let roots = graph.initiator(0).instances.iter();
+        roots
+            .map(|root| known.as_mut()?.box_of(root.object))
+            .collect()
     }
 }
 

@@ -94,6 +94,9 @@ pub trait Hulls<F: Frame> {
 /// Frames whose graphs are bounded: by ratios of lengths and the stretch of products of maps, or more closely where
 /// the frames of a kind have hulls of subtrees.
 pub trait Bounded: RuleFrame {
+    /// Whether frames of the kind have hulls of subtrees.
+    const HAS_HULLS: bool = false;
+
     /// Returns convex sets that contain the subtrees of objects: at every step, or in the limit if `drawn`
     /// states which objects are drawn there. `None` if there are none.
     fn hulls(

@@ -6,12 +6,14 @@
 //! is kept, and states that cannot exceed the best one are dropped; the number of states stays small
 //! (where rotations are rational, directions are finitely many).
 
+use std::cell::Cell;
+
 use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::terms::{SupportTerm, child, merged};
-use crate::graph::{Graph, Object, Successor};
+use crate::graph::{Graph, Instance, Object, Successor};
 
 /// Limit of the number of states at one level.
 const MAX_STATES: usize = 20_000;
@@ -38,19 +40,19 @@ const NEGLIGIBLE: f64 = 1e-17;
 const ROUNDING: f64 = 1e-15;
 
 /// Bounds on the subtrees of objects, on which the search relies.
-struct Reach<F: Frame> {
+pub(super) struct Reach<F: Frame> {
     spread: f64,
     ratio: f64,
-    /// Polygons that contain the subtrees of objects, where ratios give no bound.
-    hulls: Option<Box<dyn Hulls<F>>>,
+    /// Polygons that contain the subtrees of objects, and their fineness, where ratios give no bound.
+    hulls: Option<(Box<dyn Hulls<F>>, Fineness)>,
     /// Objects that are certain to draw something.
     alive: Vec<bool>,
     /// Padding around every object, as a multiple of its length.
     pads: Vec<f64>,
-    /// Length by which the box may fall short.
-    spared: f64,
-    /// Whether no other bounds are tried afterwards.
-    is_last: bool,
+    /// Whether a search may take long, because no other bounds follow.
+    pub(super) is_patient: bool,
+    /// Number of states that were looked at.
+    pub(super) looked: Cell<usize>,
 }
 
 /// Bounding boxes of approximants, without stroke width: see [`Graph::bounds`].
@@ -63,7 +65,7 @@ impl<F: Frame> Reach<F> {
     /// Returns an upper bound of x·u over the points x that a state draws, and a lower bound that holds
     /// if it draws anything: of the least x·u, or in the limit with polygons, of the greatest.
     fn span(&self, state: &SupportTerm<F>, levels: Option<u32>) -> [f64; 2] {
-        let Some(hulls) = &self.hulls else {
+        let Some((hulls, _)) = &self.hulls else {
             let size = state.vector.length() * self.radius(levels);
             return [state.offset + size, state.offset - size];
         };
@@ -78,7 +80,7 @@ impl<F: Frame> Reach<F> {
     /// Returns the contribution of a state to its offset in the limit, if polygons determine it to within
     /// `negligible`.
     fn rest(&self, state: &SupportTerm<F>, negligible: f64) -> Option<f64> {
-        let hulls = self.hulls.as_ref()?;
+        let (hulls, _) = self.hulls.as_ref()?;
         let [farthest, surely] = hulls.along(state.object, state.vector);
         (farthest - surely <= negligible).then(|| f64::midpoint(farthest, surely))
     }
@@ -86,7 +88,7 @@ impl<F: Frame> Reach<F> {
     /// Returns the numbers of those instances in the place of a state's object that may reach farthest in the limit; `None` if
     /// they are not known.
     fn contenders(&self, state: &SupportTerm<F>, successor: &Successor<F>) -> Option<&[u32]> {
-        let hulls = self.hulls.as_ref()?;
+        let (hulls, _) = self.hulls.as_ref()?;
         let instances = &successor.body.instances;
         let has_seeds = !successor.seeds.is_empty();
         (!has_seeds).then(|| hulls.contenders(state.object, instances, state.vector))?
@@ -96,12 +98,20 @@ impl<F: Frame> Reach<F> {
     /// origin.
     fn size(&self, state: &SupportTerm<F>, levels: Option<u32>) -> f64 {
         match &self.hulls {
-            Some(hulls) => {
+            Some((hulls, _)) => {
                 let along = [state.vector, -state.vector];
                 let along = along.map(|vector| hulls.along(state.object, vector)[0]);
                 along[0].max(along[1])
             }
             None => state.vector.length() * self.radius(levels),
+        }
+    }
+
+    /// Returns the length by which the box of some instances may fall short.
+    fn spared(&self, start: &[Instance<F>]) -> f64 {
+        match &self.hulls {
+            Some((hulls, fineness)) if fineness.spared > 0.0 => hulls.spared(start, *fineness),
+            _ => 0.0,
         }
     }
 
@@ -145,7 +155,7 @@ impl<F: Bounded> Graph<F> {
     /// step. `None` if the graph determines none of them.
     #[must_use]
     pub fn boxes(&self) -> Option<ApproximantBounds<'_, F>> {
-        self.boxes_with(false, |_| 0.0)
+        self.boxes_with(|_| 0.0)
     }
 
     /// Returns the bounding box of approximant `steps` with padding around every object: `pad` returns it
@@ -155,72 +165,40 @@ impl<F: Bounded> Graph<F> {
         steps: u32,
         pad: impl Fn(&Object<F>) -> f64,
     ) -> Option<Bounds<F::Point>> {
-        self.boxes_with(false, pad)?.at(steps)
+        self.boxes_with(pad)?.at(steps)
     }
 
-    /// Returns the bounding box of the limit set: of the limit of the approximants as drawn, which
-    /// contains infertile visible elements.
-    ///
-    /// Exact to some 15 digits, or to 1e-10 of its longer side where maps contract so slowly that full
-    /// precision would take too long. `None` if there is no limit set, or if the graph does not determine
-    /// the box.
-    #[must_use]
-    pub fn limit_bounds(&self) -> Option<Bounds<F::Point>> {
-        if self.depth.is_some() || !self.contracts() {
-            return None;
-        }
-        // Ratios need no polygons, but bound flat sets loosely.
-        let (by_ratios, by_hulls) = (None, [Fineness::COARSE, Fineness::FINE].map(Some));
-        let attempts = match self.needs_hulls() {
-            true => [by_hulls[0], by_hulls[1], by_ratios],
-            false => [by_ratios, by_hulls[0], by_hulls[1]],
-        };
-        let last = attempts.len() - 1;
-        let mut found = (attempts.into_iter().enumerate()).map(|(number, fineness)| {
-            let mut boxes = self.boxes_within(true, fineness, |_| 0.0)?;
-            // In space balls may follow.
-            boxes.reach.is_last = number == last && F::Point::DIMENSION == 2;
-            boxes.of(None)
-        });
-        found.find_map(|bounds| bounds).or_else(|| {
-            self.has_balls_only()
-                .then(|| self.limit_bounds_by_balls())?
-        })
+    /// Returns whether hulls are tried before ratios of lengths: where ratios do not bound subtrees, or only loosely, unless
+    /// there are many subtrees of similarities.
+    pub(super) fn prefers_hulls(&self) -> bool {
+        let is_loose = || self.affine && !(self.has_many_behaviours() && self.is_similar());
+        F::HAS_HULLS && (self.longest_ratio() >= 1.0 || is_loose())
     }
 
-    /// Returns whether ratios of lengths do not bound subtrees, or only loosely.
-    fn needs_hulls(&self) -> bool {
-        self.affine || self.longest_ratio() >= 1.0
+    /// Returns whether there are so many behaviours that their hulls take long.
+    pub(super) fn has_many_behaviours(&self) -> bool {
+        const MANY: usize = 1_000;
+        self.behaviours().nth(MANY).is_some()
     }
 
-    /// Returns whether the graph has limits, for which frames of its kind have no hulls.
-    fn has_balls_only(&self) -> bool {
-        if self.check_maps().is_err() {
-            return false;
-        }
-        let own = Own::Outlines(&vec![0.0; self.objects.len()]);
-        F::hulls(self, &own, Some(&self.alive(true)), Fineness::COARSE).is_none()
+    /// Returns the boxes of approximants.
+    fn boxes_with(&self, pad: impl Fn(&Object<F>) -> f64) -> Option<ApproximantBounds<'_, F>> {
+        // Hulls of many objects take little only if no cycles lead through them.
+        let is_much = self.has_many_behaviours() && !self.is_time_indexed();
+        let by_hulls = (self.prefers_hulls() && !is_much).then_some(Fineness::COARSE);
+        let reach = by_hulls.and_then(|fineness| self.reach_within(false, Some(fineness), &pad));
+        let reach = reach.or_else(|| self.reach_within(false, None, &pad))?;
+        Some(ApproximantBounds { graph: self, reach })
     }
 
-    /// Returns the boxes of approximants, or of the limit if `limit` is set.
-    fn boxes_with(
-        &self,
-        limit: bool,
-        pad: impl Fn(&Object<F>) -> f64,
-    ) -> Option<ApproximantBounds<'_, F>> {
-        let by_hulls = self.needs_hulls().then_some(Fineness::COARSE);
-        let boxes = by_hulls.and_then(|fineness| self.boxes_within(limit, Some(fineness), &pad));
-        boxes.or_else(|| self.boxes_within(limit, None, &pad))
-    }
-
-    /// Returns the boxes of approximants, or of the limit, by polygons of a fineness, or else by ratios; `None` if these bound
-    /// nothing.
-    fn boxes_within(
+    /// Returns bounds for boxes of approximants, or of the limit, by polygons of a fineness, or else by ratios; `None` if these
+    /// bound nothing.
+    pub(super) fn reach_within(
         &self,
         limit: bool,
         fineness: Option<Fineness>,
         pad: impl Fn(&Object<F>) -> f64,
-    ) -> Option<ApproximantBounds<'_, F>> {
+    ) -> Option<Reach<F>> {
         let resets = self
             .instances()
             .any(|(placement, _)| placement == Placement::SeedsAsInitiator);
@@ -232,25 +210,20 @@ impl<F: Bounded> Graph<F> {
         let pads: Vec<f64> = self.objects.iter().map(&pad).collect();
         let own = Own::Outlines(&pads);
         let drawn = limit.then_some(&alive[..]);
-        let (hulls, spared) = match fineness {
-            Some(fineness) => {
-                let hulls = F::hulls(self, &own, drawn, fineness)?;
-                let spared = hulls.spared(&self.initiator(0).instances, fineness);
-                (Some(hulls), spared)
-            }
+        let hulls = match fineness {
+            Some(fineness) => Some((F::hulls(self, &own, drawn, fineness)?, fineness)),
             None if limit && ratio >= 1.0 => return None,
-            None => (None, 0.0),
+            None => None,
         };
-        let reach = Reach {
+        Some(Reach {
             spread,
             ratio,
-            spared,
-            is_last: true,
+            is_patient: true,
+            looked: Cell::new(0),
             hulls,
             alive,
             pads,
-        };
-        Some(ApproximantBounds { graph: self, reach })
+        })
     }
 
     /// Returns the largest distance from an object's origin at which it draws something or places an
@@ -278,39 +251,41 @@ impl<F: Bounded> Graph<F> {
         constant
     }
 
-    /// Returns, for every object, whether its subtree is certain to draw something: for approximants, at
-    /// every later level; for the limit, infinitely often. The latter are objects that lead to a visible
-    /// kept object, or to visible objects for ever.
-    pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
-        let leads = |object: usize, to: &[bool]| {
-            self.children(object)
-                .any(|(_, instance)| to[instance.object])
-        };
-        let ends = |object: usize| {
-            let object = &self.objects[object];
-            object.is_kept() || object.is_unresolved()
-        };
-        let drawn = |object: usize, set: &[bool]| {
-            self.objects[object].visible && (ends(object) || leads(object, set))
-        };
-        settled(vec![true; self.objects.len()], |set| {
-            let start = (0..set.len()).map(|object| drawn(object, set)).collect();
-            if !limit {
-                return start;
-            }
-            settled(start, |set| {
-                let member = |object: usize| set[object] || leads(object, set);
-                (0..set.len()).map(member).collect()
-            })
-        })
+    /// Returns the bounding box of what becomes of some instances: after so many steps, or in the limit.
+    pub(super) fn box_by(
+        &self,
+        reach: &Reach<F>,
+        start: &[Instance<F>],
+        steps: Option<u32>,
+    ) -> Option<Bounds<F::Point>> {
+        let spared = reach.spared(start);
+        let mut ends = [F::Point::ZERO; 2];
+        for (number, &axis) in F::Point::AXES.iter().enumerate() {
+            let far = self.support(axis, start, steps, (reach, spared))?;
+            ends[number % 2] = ends[number % 2] + axis * far;
+        }
+        let [max, min] = ends;
+        // Coordinates below the rounding error are replaced by zero.
+        let nothing = reach.slack() * min.abs().max(max.abs()).max_element();
+        let rounded = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
+        let bounds = Bounds::new(min.map(rounded), max.map(rounded));
+        bounds.is_finite().then_some(bounds)
     }
 
-    fn support(&self, direction: F::Point, steps: Option<u32>, reach: &Reach<F>) -> Option<f64> {
-        let start = self.initiator(steps.unwrap_or(0)).instances.iter();
+    /// Returns the greatest value of a linear functional on what some instances draw, after so many steps or in the limit. It
+    /// may fall short by the length that is spared.
+    fn support(
+        &self,
+        direction: F::Point,
+        start: &[Instance<F>],
+        steps: Option<u32>,
+        (reach, spared): (&Reach<F>, f64),
+    ) -> Option<f64> {
+        let start = start.iter();
         let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
         let mut best = f64::NEG_INFINITY;
         let (mut work, mut looked) = (0, 0);
-        let [max_looked, max_next] = match reach.is_last {
+        let [max_looked, max_next] = match reach.is_patient {
             true => [MAX_LOOKED, MAX_WORK],
             false => [MAX_LOOKED_AT_FIRST, MAX_NEXT_AT_FIRST],
         };
@@ -360,7 +335,7 @@ impl<F: Bounded> Graph<F> {
                     // A state that is not certain to draw at this step is followed to its end.
                     let known = reach.alive[state.object] || steps.is_none();
                     let negligible = reach.negligible() * (1.0 + state.offset.abs());
-                    let negligible = negligible.max(reach.spared);
+                    let negligible = negligible.max(spared);
                     let rest = if steps.is_none() && reach.hulls.is_some() {
                         reach.rest(state, negligible)
                     } else {
@@ -374,6 +349,7 @@ impl<F: Bounded> Graph<F> {
                     }
                     let mut look = |instance| {
                         looked += 1;
+                        reach.looked.set(reach.looked.get() + 1);
                         let child = child(instance, state.vector, state.offset, state.lost);
                         let [most, surely] = reach.span(&child, left);
                         if reach.alive[child.object] {
@@ -421,33 +397,8 @@ impl<F: Bounded> ApproximantBounds<'_, F> {
     #[must_use]
     pub fn at(&self, steps: u32) -> Option<Bounds<F::Point>> {
         let is_resolved = self.graph.depth.is_none_or(|depth| depth >= steps);
-        is_resolved.then(|| self.of(Some(steps))).flatten()
-    }
-
-    /// Returns the bounding box of an approximant, or of the limit set if `steps` is `None`.
-    fn of(&self, steps: Option<u32>) -> Option<Bounds<F::Point>> {
-        let mut ends = [F::Point::ZERO; 2];
-        for (number, &axis) in F::Point::AXES.iter().enumerate() {
-            let far = self.graph.support(axis, steps, &self.reach)?;
-            ends[number % 2] = ends[number % 2] + axis * far;
-        }
-        let [max, min] = ends;
-        // Coordinates below the rounding error are replaced by zero.
-        let nothing = self.reach.slack() * min.abs().max(max.abs()).max_element();
-        let rounded = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
-        let bounds = Bounds::new(min.map(rounded), max.map(rounded));
-        bounds.is_finite().then_some(bounds)
-    }
-}
-
-/// Iterates a function of sets from a set until it changes nothing.
-pub(crate) fn settled(mut set: Vec<bool>, next: impl Fn(&[bool]) -> Vec<bool>) -> Vec<bool> {
-    loop {
-        let next = next(&set);
-        if next == set {
-            return set;
-        }
-        set = next;
+        let start = &self.graph.initiator(steps).instances;
+        is_resolved.then(|| self.graph.box_by(&self.reach, start, Some(steps)))?
     }
 }
 

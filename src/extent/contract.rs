@@ -3,6 +3,7 @@
 use std::hash::Hasher as _;
 
 use super::bounded::Bounded;
+use crate::digraph::longest_paths;
 use crate::fast_hash::{FastHasher, FastMap};
 use crate::geometry::{Affine, Frame, Point};
 use crate::graph::{Graph, Instance};
@@ -83,42 +84,59 @@ impl<F: Bounded> Graph<F> {
         const FACTORS: [f64; 8] = [0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999];
         /// Limit of weights beyond which a cycle is taken not to contract.
         const MOST: f64 = 1e100;
+        let stretches = Stretches::of(self);
         FACTORS.into_iter().find_map(|factor| {
-            let weights = self.weights(factor, MOST)?;
+            let weights = stretches.weights(factor, MOST)?;
             let sum = 1.0 / (1.0 - factor);
             Some(Products { sum, weights })
         })
     }
 
     /// Returns, for every object, the largest product of stretches over a factor along any path of fertile
-    /// instances, at least 1 (Bellman 1958). `None` if a product grows along a cycle, or beyond `most`.
+    /// instances, at least 1. `None` if a product grows along a cycle, or beyond `most`, or if that takes too long to
+    /// decide.
     pub(super) fn weights(&self, factor: f64, most: f64) -> Option<Vec<f64>> {
-        let count = self.objects.len();
-        let mut weights = vec![1.0f64; count];
-        for _ in 0..=count {
-            let mut changes = false;
-            for object in (0..count).rev() {
-                let grown = self
-                    .fertile(object)
-                    .map(|instance| instance.length / factor * weights[instance.object]);
-                let largest = grown.fold(weights[object], f64::max);
-                changes |= largest > weights[object];
-                weights[object] = largest;
-            }
-            if !changes {
-                return Some(weights);
-            }
-            if weights.iter().any(|weight| *weight > most) {
-                return None;
-            }
-        }
-        None
+        Stretches::of(self).weights(factor, most)
     }
 
     /// Iterates over the fertile instances of an object.
     fn fertile(&self, object: usize) -> impl Iterator<Item = &Instance<F>> {
         let children = self.children(object).map(|(_, instance)| instance);
         children.filter(|instance| self.is_fertile(instance.object))
+    }
+}
+
+/// Largest stretches of fertile instances, by the replacements of objects.
+struct Stretches {
+    /// Number of the replacement of each object.
+    of: Vec<usize>,
+    /// Replacements of the fertile children of each replacement, with the logarithms of their largest stretches.
+    children: Vec<Vec<(usize, f64)>>,
+}
+
+impl Stretches {
+    fn of<F: Bounded>(graph: &Graph<F>) -> Self {
+        let (of, firsts) = graph.replacements();
+        let children = firsts.into_iter().map(|object| {
+            let children = graph.fertile(object);
+            let mut children: Vec<_> = children.map(|it| (of[it.object], it.length)).collect();
+            children.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+            children.dedup_by_key(|(child, _)| *child);
+            let logarithms = children.into_iter();
+            logarithms
+                .map(|(child, length)| (child, libm::log(length)))
+                .collect()
+        });
+        Self {
+            children: children.collect(),
+            of,
+        }
+    }
+
+    /// Returns the weights of objects: see [`Graph::weights`].
+    fn weights(&self, factor: f64, most: f64) -> Option<Vec<f64>> {
+        let longest = longest_paths(&self.children, -libm::log(factor), libm::log(most))?;
+        Some(self.of.iter().map(|of| libm::exp(longest[*of])).collect())
     }
 }
 

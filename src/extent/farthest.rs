@@ -1,5 +1,6 @@
 //! Bounding box of a limit set by branch and bound, for frames whose subtrees are bounded by balls alone.
 
+use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -57,20 +58,43 @@ impl<F: Frame> Ord for Node<F> {
     }
 }
 
-impl<F: Bounded> Graph<F> {
-    /// Returns the bounding box of the limit set, to within 1e-13 of its distance and extent. An instance is
-    /// replaced only while its ball may reach farther than all points that are known (Land & Doig 1960), and of several
-    /// that differ by a translation, only the farthest. `None` if a subtree is not bounded, or if that takes too long.
-    pub(super) fn limit_bounds_by_balls(&self) -> Option<Bounds<F::Point>> {
-        let alive = self.alive(true);
+/// Balls that contain the subtrees of objects, in the limit.
+pub(super) struct Balls {
+    /// Objects whose subtrees are drawn in the limit.
+    alive: Vec<bool>,
+    /// Radii about the middle of the unit frame, by object.
+    reaches: Vec<f64>,
+    /// Number of instances that were looked at.
+    pub(super) looked: Cell<usize>,
+}
+
+impl Balls {
+    pub(super) fn of<F: Bounded>(graph: &Graph<F>) -> Self {
         let own = |object: &Object<F>| match object.replacement {
             Replacement::Fixed(_) => 0.0,
-            _ => self.outline_radius(object),
+            _ => graph.outline_radius(object),
         };
-        let reaches = self.reaches(own);
+        Self {
+            alive: graph.alive(true),
+            reaches: graph.reaches(own),
+            looked: Cell::new(0),
+        }
+    }
+}
+
+impl<F: Bounded> Graph<F> {
+    /// Returns the bounding box of the limit set that begins with some instances, to within 1e-13 of its distance and
+    /// extent. An instance is replaced only while its ball may reach farther than all points that are known (Land & Doig
+    /// 1960), and of several that differ by a translation, only the farthest. `None` if a subtree is not bounded, or if that
+    /// takes too long.
+    pub(super) fn limit_bounds_by(
+        &self,
+        balls: &Balls,
+        start: &[Instance<F>],
+    ) -> Option<Bounds<F::Point>> {
         let mut ends = [F::Point::ZERO; 2];
         for (number, &axis) in F::Point::AXES.iter().enumerate() {
-            let far = self.farthest(axis, &alive, &reaches)?;
+            let far = self.farthest(axis, start, balls)?;
             ends[number % 2] = ends[number % 2] + axis * far;
         }
         let bounds = Bounds::new(ends[1], ends[0]);
@@ -79,21 +103,21 @@ impl<F: Bounded> Graph<F> {
 
     /// Returns a value of a linear functional that the limit set reaches: that of the farthest instance, of the farthest in it,
     /// and so on. Few instances reach farther than that. `size` is that of the set, about.
-    fn reached(&self, axis: F::Point, size: f64, alive: &[bool], reaches: &[f64]) -> f64 {
-        let mut instances: Vec<&Instance<F>> = self.initiator(0).instances.iter().collect();
-        let (mut outer, mut start) = (axis, 0.0);
+    fn reached(&self, axis: F::Point, start: &[Instance<F>], size: f64, balls: &Balls) -> f64 {
+        let mut instances: Vec<&Instance<F>> = start.iter().collect();
+        let (mut outer, mut offset) = (axis, 0.0);
         let mut surely = f64::NEG_INFINITY;
         for _ in 0..MAX_DEPTH {
             let mut best: Option<Node<F>> = None;
             let is_replaced = |object: usize| {
                 let replacement = &self.objects()[object].replacement;
-                alive[object] && matches!(replacement, Replacement::Fixed(_))
+                balls.alive[object] && matches!(replacement, Replacement::Fixed(_))
             };
             for instance in instances.iter().filter(|it| is_replaced(it.object)) {
                 let object = instance.object;
                 let vector = instance.frame.pullback(outer);
-                let offset = start + outer.dot(instance.frame.origin());
-                let radius = vector.length() * reaches[object];
+                let offset = offset + outer.dot(instance.frame.origin());
+                let radius = vector.length() * balls.reaches[object];
                 let middle = offset + vector.dot(self.middle());
                 let farthest = middle + radius;
                 if radius.is_finite() && best.as_ref().is_none_or(|it| farthest > it.farthest) {
@@ -116,13 +140,13 @@ impl<F: Bounded> Graph<F> {
                 break;
             };
             instances = { successor.placed_instances() }.map(|(_, it)| it).collect();
-            (outer, start) = (node.vector, node.offset);
+            (outer, offset) = (node.vector, node.offset);
         }
         surely
     }
 
     /// Returns the greatest value of a linear functional on the limit set.
-    fn farthest(&self, axis: F::Point, alive: &[bool], reaches: &[f64]) -> Option<f64> {
+    fn farthest(&self, axis: F::Point, start: &[Instance<F>], balls: &Balls) -> Option<f64> {
         let mut heap: BinaryHeap<Node<F>> = BinaryHeap::new();
         // The greatest value that is certain to be reached.
         let mut surely = f64::NEG_INFINITY;
@@ -133,7 +157,7 @@ impl<F: Bounded> Graph<F> {
                        instance: &Instance<F>,
                        outer: F::Point,
                        offset: f64| {
-            if !alive[instance.object] {
+            if !balls.alive[instance.object] {
                 return Some(());
             }
             let vector = instance.frame.pullback(outer);
@@ -147,7 +171,7 @@ impl<F: Bounded> Graph<F> {
                 }
                 return Some(());
             }
-            let radius = vector.length() * reaches[instance.object];
+            let radius = vector.length() * balls.reaches[instance.object];
             let middle = offset + vector.dot(self.middle());
             if !radius.is_finite() {
                 return None;
@@ -172,12 +196,12 @@ impl<F: Bounded> Graph<F> {
             });
             Some(())
         };
-        for instance in &self.initiator(0).instances {
+        for instance in start {
             add(&mut heap, &mut surely, instance, axis, 0.0)?;
         }
         let (mut work, mut looked) = (0, 0);
         let size = heap.peek().map_or(0.0, |node| node.farthest - surely);
-        surely = surely.max(self.reached(axis, size, alive, reaches));
+        surely = surely.max(self.reached(axis, start, size, balls));
         while let Some(node) = heap.pop() {
             let tolerance = TOLERANCE * (size + surely.abs());
             if node.farthest <= surely + tolerance {
@@ -192,6 +216,7 @@ impl<F: Bounded> Graph<F> {
             }
             for (_, instance) in successor.placed_instances() {
                 looked += 1;
+                balls.looked.set(balls.looked.get() + 1);
                 add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
             }
         }

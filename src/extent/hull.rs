@@ -27,6 +27,8 @@ const FAR: f64 = 64.0;
 const NEAR: f64 = 4.0;
 /// Number of rounds after which corners are followed to their limits.
 const FEW_ROUNDS: usize = 4;
+/// Number of mapped corners that take as long as the rest of the work on a polygon in a round.
+const OVERHEAD: usize = 16;
 
 /// Polygons that approximate the convex hulls of subtrees.
 struct Polygons {
@@ -187,6 +189,8 @@ impl Polygons {
 }
 
 impl Bounded for Frame2 {
+    const HAS_HULLS: bool = true;
+
     fn hulls(
         graph: &Graph,
         own: &Own<'_>,
@@ -261,7 +265,7 @@ impl Graph {
                     rightmost: &rights,
                 };
                 let hull = union.hull(tolerance);
-                work += hull.work;
+                work += OVERHEAD + hull.work;
                 lost = lost.max(hull.lost);
                 hull.corners
             });

@@ -118,7 +118,7 @@ impl<F: Bounded> Graph<F> {
         if self.affine {
             return self.contracts();
         }
-        // The longest paths grow without end if and only if there is such a cycle.
+        // The longest paths grow without end if there is such a cycle.
         self.weights(SLACK.recip(), f64::INFINITY).is_some()
     }
 }

@@ -150,19 +150,16 @@ pub(crate) fn steps_of_graph<F: Frame>(model: &Model, graph: &Graph<F>) -> u32 {
     if let Model::LSystemInSpace(_) = model {
         return model.resolved_steps_in_space(None);
     }
-    if graph.forecast().is_none() {
+    if !graph.has_forecast() {
         return DEEPEST / 2;
     }
     if let Some(depth) = model.as_kind().ends()
         && depth <= Goal::MAX_STEPS
-        && graph.check_size(depth, MOST_PROPOSED).is_ok()
+        && graph.deepest_step(depth, MOST_PROPOSED) == depth
     {
         return depth;
     }
-    match graph.check_size(DEEPEST, MOST_PROPOSED) {
-        Ok(_) => DEEPEST,
-        Err(error) => error.deepest.unwrap_or(0),
-    }
+    graph.deepest_step(DEEPEST, MOST_PROPOSED)
 }
 
 /// Returns whether a model is drawn to a pixel where neither steps nor a detail are given: a system, or a

@@ -19,6 +19,21 @@ pub struct TooLarge {
 const MAX_DIGITS: usize = 5_000;
 
 impl<F: Frame> Graph<F> {
+    /// Returns the largest number of steps, up to `steps`, within which no approximant has more than `most` elements; 0 if
+    /// approximant 0 has more, and `steps` as far as the graph has no forecast or consists of one approximant.
+    pub(crate) fn deepest_step(&self, steps: u32, most: u64) -> u32 {
+        let most = Count::from(most);
+        let Some(mut forecast) = self.forecast().filter(|_| !self.is_of_one_step()) else {
+            return steps;
+        };
+        while forecast.elements() <= most {
+            if forecast.step() == steps || !forecast.advance() {
+                return steps;
+            }
+        }
+        forecast.step().saturating_sub(1)
+    }
+
     /// Returns the number of elements of approximant `steps`, provided that no approximant up to it
     /// exceeds `max_elements`; `None` if the graph has no forecast, or none within a reasonable time.
     ///
@@ -60,6 +75,28 @@ impl<F: Frame> Graph<F> {
                 deepest,
             }),
             false => Ok(None),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails where it unwraps nothing")]
+
+    use crate::Fractal;
+
+    #[test]
+    fn deepest_steps_are_those_of_checks() {
+        for name in ["koch", "dragon", "pythagoras", "maple-leaf", "archipelago"] {
+            let fractal = Fractal::named(name).unwrap();
+            let graph = fractal.model().compile(8).unwrap();
+            for most in [0, 1, 5, 100, 5_000, u64::MAX] {
+                let checked = match graph.check_size(8, most) {
+                    Ok(_) => 8,
+                    Err(refused) => refused.deepest.unwrap_or(0),
+                };
+                assert_eq!(graph.deepest_step(8, most), checked, "{name} {most}");
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::digraph::Ancestry;
 use crate::expression::Interval;
 use crate::fast_hash::FastMap;
 use crate::geometry::{Frame, Point};
@@ -103,7 +104,7 @@ impl<F: Frame> Graph<F> {
 
     /// Returns the number of the replacement of each object, and the first object of each replacement: objects that are
     /// replaced by one and the same successor have one.
-    fn replacements(&self) -> (Vec<usize>, Vec<usize>) {
+    pub(crate) fn replacements(&self) -> (Vec<usize>, Vec<usize>) {
         let (mut known, mut firsts) = (FastMap::default(), Vec::new());
         let of = self.objects.iter().enumerate().map(|(number, object)| {
             // Successors are shared by reference. Objects without children have keys that are no addresses.
@@ -165,18 +166,32 @@ impl<F: Frame> Graph<F> {
 
     /// Returns, for every object, whether it is of a kind or may lead to an object of the kind.
     pub(crate) fn leading_to(&self, kind: impl Fn(usize) -> bool) -> Vec<bool> {
-        let mut leading: Vec<bool> = (0..self.objects.len()).map(kind).collect();
-        let mut changes = leading.contains(&true);
-        while changes {
-            changes = false;
-            for object in (0..leading.len()).rev() {
-                if !leading[object] && self.successors(object).any(|child| leading[child]) {
-                    leading[object] = true;
-                    changes = true;
-                }
-            }
+        let set: Vec<bool> = (0..self.objects.len()).map(kind).collect();
+        if !set.contains(&true) {
+            return set;
         }
-        leading
+        let (of, firsts) = self.replacements();
+        let lists = firsts.into_iter().map(|object| self.successors(object));
+        Ancestry::of(of, lists).leading_to(set)
+    }
+
+    /// Returns, for every object, whether its subtree is certain to draw something: for approximants, at
+    /// every later level; for the limit, infinitely often. The latter are objects that lead to a visible
+    /// kept object, or to visible objects for ever.
+    pub(crate) fn alive(&self, limit: bool) -> Vec<bool> {
+        let ends = |object: usize| {
+            let object = &self.objects[object];
+            object.is_kept() || object.is_unresolved()
+        };
+        let (of, firsts) = self.replacements();
+        let children = |object| self.children(object).map(|(_, instance)| instance.object);
+        let ancestry = Ancestry::of(of, firsts.into_iter().map(children));
+        let visible = self.objects.iter().map(|object| object.visible).collect();
+        let lasting = ancestry.lasting(visible, ends);
+        match limit {
+            true => ancestry.leading_to(lasting),
+            false => lasting,
+        }
     }
 
     /// Iterates over the fixed instances that take an object's place or that it seeds.
@@ -243,3 +258,6 @@ fn one_length<'g, F: Frame>(mut instances: impl Iterator<Item = &'g Instance<F>>
     let same = |instance: &Instance<F>| (instance.length - length).abs() <= ROUNDING * length;
     instances.all(same).then_some(length)
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,9 +3,10 @@
 //! The numbers of elements of step n are the n-th power of the graph's matrix applied to the initiator;
 //! they are computed step by step in natural numbers of any size.
 
-use std::collections::BTreeMap;
+use std::cell::OnceCell;
 
 use crate::count::Count;
+use crate::fast_hash::FastMap;
 use crate::geometry::{Direction, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
@@ -14,10 +15,12 @@ use super::{Alternative, Chain, Graph, Instance, Replacement};
 mod levels;
 mod outlines;
 mod sums;
+mod tallies;
 
 use levels::Totals;
 use outlines::Outlines;
 use sums::{Sums, Tally};
+use tallies::Tallies;
 
 /// Size of an approximant.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +50,7 @@ pub struct Forecast<'g, F: Frame = Frame2> {
     /// Whether all maps are similarities.
     is_similar: bool,
     /// Elements of the current approximant, by object.
-    population: BTreeMap<usize, Tally>,
+    population: Tallies,
     fractals: Count,
     step: u32,
     /// Approximate number of elements that were created in the last step next to one of another length,
@@ -58,10 +61,8 @@ pub struct Forecast<'g, F: Frame = Frame2> {
     /// Totals of objects, if the graph is time-indexed.
     totals: Totals,
     outlines: Outlines,
-    /// Signed areas of the base elements, by number.
-    areas: Vec<f64>,
-    /// Volumes of the base elements, by number.
-    volumes: Vec<f64>,
+    /// Signed areas and volumes of the base elements, by number, as far as they were asked for.
+    contents: Vec<OnceCell<[f64; 2]>>,
     /// Area enclosed by the closed paths through the end points of elements.
     path_area: f64,
 }
@@ -105,12 +106,16 @@ impl<F: Frame> Graph<F> {
     /// not known without a walk: for irregular rules, and if numbers of elements depend on draws.
     #[must_use]
     pub fn forecast(&self) -> Option<Forecast<'_, F>> {
-        let known = self.is_regular()
+        self.has_forecast().then(|| Forecast::new(self))
+    }
+
+    /// Returns whether the sizes of approximants are known without a walk.
+    pub(crate) fn has_forecast(&self) -> bool {
+        self.is_regular()
             && self.behaviours().all(|object| match &object.replacement {
                 Replacement::Evaluated(alternatives) => self.are_equal(alternatives),
                 _ => true,
-            });
-        known.then(|| Forecast::new(self))
+            })
     }
 
     /// Returns whether alternatives have equal numbers of children of every behaviour.
@@ -165,21 +170,14 @@ impl<'g, F: Frame> Forecast<'g, F> {
             graph,
             is_plain: graph.is_plain(),
             is_similar: graph.is_similar(),
-            population: BTreeMap::new(),
+            population: Tallies::new(graph.objects.len()),
             fractals: Count::from(graph.initiator(0).count() as u64),
             step: 0,
             new_lengths: [0.0; 2],
             work: 0,
             totals: Totals::default(),
             outlines: graph.outlines(),
-            areas: graph
-                .base_elements()
-                .iter()
-                .map(Outline::signed_area)
-                .collect(),
-            volumes: { graph.base_elements().iter() }
-                .map(Outline::volume)
-                .collect(),
+            contents: vec![OnceCell::new(); graph.base_elements().len()],
             path_area: { graph.initiator(0).fractals() }
                 .map(|fractal| area_under(fractal).abs())
                 .sum(),
@@ -211,10 +209,10 @@ impl<'g, F: Frame> Forecast<'g, F> {
                     root_square: square,
                     cube,
                     root_cube: cube,
-                    ..Sums::default()
                 },
             );
         }
+        forecast.population.sort();
         forecast
     }
 
@@ -237,31 +235,37 @@ impl<'g, F: Frame> Forecast<'g, F> {
     }
 
     fn add(&mut self, object: usize, count: &Count, sums: Sums) {
-        let area = sums.square * self.own_area(object);
-        let own = &self.graph.objects[object];
-        let volume = match own.visible {
-            true => sums.cube * self.volumes[own.base_element],
-            false => 0.0,
-        };
         self.work += work(count);
-        let population = self.population.entry(object).or_default();
+        let population = self.population.of(object);
         population.count += count;
-        population.sums += Sums {
-            area,
-            volume,
-            ..sums
-        };
+        population.sums += sums;
+    }
+
+    /// Returns the signed area and the volume of an object's base element.
+    fn content(&self, object: usize) -> [f64; 2] {
+        let number = self.graph.objects[object].base_element;
+        let base_element = &self.graph.base_elements()[number];
+        let content = || [base_element.signed_area(), base_element.volume()];
+        *self.contents[number].get_or_init(content)
     }
 
     /// Returns the area of an object's base element if it is closed and drawn, otherwise 0.
     fn own_area(&self, object: usize) -> f64 {
-        let object = &self.graph.objects[object];
-        let base_element = &self.graph.base_elements()[object.base_element];
-        if object.visible && base_element.is_closed() {
-            self.areas[object.base_element].abs()
-        } else {
-            0.0
-        }
+        let drawn = self.graph.drawn(object);
+        let [area, _] = match drawn.is_some_and(Outline::is_closed) {
+            true => self.content(object),
+            false => [0.0; 2],
+        };
+        area.abs()
+    }
+
+    /// Returns the volume of an object's base element if it is drawn, otherwise 0.
+    fn own_volume(&self, object: usize) -> f64 {
+        let [_, volume] = match self.graph.drawn(object) {
+            Some(_) => self.content(object),
+            None => [0.0; 2],
+        };
+        volume
     }
 
     /// Returns the number of the current approximant.
@@ -286,7 +290,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// Returns the number of elements of the current approximant.
     #[must_use]
     pub fn elements(&self) -> Count {
-        self.population.values().map(|tally| &tally.count).sum()
+        self.population.iter().map(|(_, tally)| &tally.count).sum()
     }
 
     /// Returns the size of the current approximant.
@@ -294,10 +298,12 @@ impl<'g, F: Frame> Forecast<'g, F> {
     pub fn level(&self) -> Level {
         let plain = self.is_plain;
         let all = || self.population.iter();
-        let fertile = all().filter(|(object, _)| self.graph.is_fertile(**object));
-        let bulge = |(&object, tally): (&usize, &Tally)| {
-            let number = self.graph.objects[object].base_element;
-            tally.sums.signed * self.areas[number]
+        let fertile = all().filter(|(object, _)| self.graph.is_fertile(*object));
+        let area = |(object, tally): (usize, &Tally)| tally.sums.square * self.own_area(object);
+        let volume = |(object, tally): (usize, &Tally)| tally.sums.cube * self.own_volume(object);
+        let bulge = |(object, tally): (usize, &Tally)| {
+            let [area, _] = self.content(object);
+            tally.sums.signed * area
         };
         Level {
             elements: self.elements(),
@@ -307,22 +313,20 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 // The sum of no numbers would be -0.
                 .then(|| all().fold(0.0, |length, (_, tally)| length + tally.sums.length)),
             area: match self.outlines {
-                Outlines::ClosedElements if plain => {
-                    Some(all().map(|(_, tally)| tally.sums.area).sum())
-                }
+                Outlines::ClosedElements if plain => Some(all().map(area).sum()),
                 Outlines::ClosedPaths if plain => {
                     Some((self.path_area + all().map(bulge).sum::<f64>()).abs())
                 }
                 _ => None,
             },
             volume: (plain && self.outlines == Outlines::ClosedElements)
-                .then(|| all().fold(0.0, |volume, (_, tally)| volume + tally.sums.volume)),
+                .then(|| all().map(volume).fold(0.0, |sum, volume| sum + volume)),
         }
     }
 
     /// Iterates over the elements of the current approximant, by object; `None` if they depend on draws.
     pub fn populations(&self) -> Option<impl Iterator<Item = Population>> {
-        let populations = self.population.iter().map(|(&object, tally)| Population {
+        let populations = self.population.iter().map(|(object, tally)| Population {
             object,
             count: tally.count.to_f64(),
             length: tally.sums.length,
@@ -336,28 +340,31 @@ impl<'g, F: Frame> Forecast<'g, F> {
     /// Returns whether every object of the current approximant is resolved, as [`Forecast::advance`]
     /// requires.
     fn is_resolved(&self) -> bool {
-        let mut objects = self.population.keys();
-        !objects.any(|&number| self.graph.objects[number].is_unresolved())
+        let mut objects = self.population.iter();
+        !objects.any(|(number, _)| self.graph.objects[number].is_unresolved())
     }
 
     /// Takes the tallies of the current approximant, with those of fertile objects of one behaviour
     /// merged.
-    fn standing_by_behaviour(&mut self) -> BTreeMap<usize, Tally> {
-        let mut first = BTreeMap::new();
-        let mut population: BTreeMap<usize, Tally> = BTreeMap::new();
-        for (number, tally) in std::mem::take(&mut self.population) {
-            let number = if self.graph.is_fertile(number) {
-                *first
-                    .entry(self.graph.objects[number].behaviour)
-                    .or_insert(number)
-            } else {
-                number
+    fn standing_by_behaviour(&mut self) -> Vec<(usize, Tally)> {
+        let mut places = FastMap::default();
+        let mut merged: Vec<(usize, Tally)> = Vec::new();
+        for (number, tally) in self.population.take() {
+            let next = merged.len();
+            let behaviour = self.graph.objects[number].behaviour;
+            let place = match self.graph.is_fertile(number) {
+                true => *places.entry(behaviour).or_insert(next),
+                false => next,
             };
-            let population: &mut Tally = population.entry(number).or_default();
-            population.count += &tally.count;
-            population.sums += tally.sums;
+            match merged.get_mut(place) {
+                Some((_, known)) => {
+                    known.count += &tally.count;
+                    known.sums += tally.sums;
+                }
+                None => merged.push((number, tally)),
+            }
         }
-        population
+        merged
     }
 
     /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved
@@ -418,6 +425,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 }
             }
         }
+        self.population.sort();
         self.step += 1;
         true
     }

@@ -215,6 +215,26 @@ impl<F: Frame> Successor<F> {
         self.body.meets_frame = [false; 2];
     }
 
+    /// Returns the successor without some of the instances, for what does not depend on how they are joined.
+    pub(crate) fn retaining(&self, is_kept: impl Fn(&Instance<F>) -> bool) -> Self {
+        let retained = |chain: &Chain<F>| Chain {
+            instances: { chain.instances.iter() }
+                .filter(|it| is_kept(it))
+                .cloned()
+                .collect(),
+            meets_frame: chain.meets_frame,
+            breaks: chain.breaks.clone(),
+        };
+        let seeds = self.seeds.iter().map(|seed| Seed {
+            chain: retained(&seed.chain),
+            placement: seed.placement,
+        });
+        Self {
+            body: retained(&self.body),
+            seeds: seeds.collect(),
+        }
+    }
+
     /// Iterates over all instances with their placements: the body, then the seeds.
     pub(crate) fn placed_instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
         let body = self.body.instances.iter();

@@ -1,5 +1,6 @@
 //! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
+use crate::digraph::on_infinite_paths;
 use crate::digraph::{components, count};
 use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::{Graph, Instance};
@@ -76,16 +77,12 @@ impl<M: Affine> Copies<M> {
 
     /// Removes the sets that contain no infinite sequence of copies.
     fn lasting(mut self) -> Self {
-        loop {
-            let mut lasts = vec![false; self.size];
-            self.copies.iter().for_each(|copy| lasts[copy.from] = true);
-            let before = self.copies.len();
-            self.copies.retain(|copy| lasts[copy.to]);
-            if self.copies.len() == before {
-                self.start.retain(|(set, _)| lasts[*set]);
-                return self;
-            }
-        }
+        let mut targets = vec![Vec::new(); self.size];
+        { self.copies.iter() }.for_each(|copy| targets[copy.from].push(copy.to));
+        let lasts = on_infinite_paths(&targets);
+        self.copies.retain(|copy| lasts[copy.to]);
+        self.start.retain(|(set, _)| lasts[*set]);
+        self
     }
 
     /// Returns the natural measure, for which a copy of size r has a mass of about r^s, where s is the

@@ -9,7 +9,8 @@ mod moments;
 mod slice;
 mod states;
 
-use crate::extent::{Bounded, NoLimit, settled};
+use crate::digraph::on_infinite_paths;
+use crate::extent::{Bounded, NoLimit};
 use crate::geometry::{Affine, Bounds, DAffine2, Linear, Point};
 use crate::graph::{Graph, Instance};
 
@@ -147,10 +148,8 @@ impl<M: Space> LimitSet<M> {
         let behaviour = |instance: &Instance<F>| graph.objects()[instance.object].behaviour;
         let fertile = |number: usize| graph.children(firsts[number]).map(|(_, instance)| instance);
         // Behaviours from which an infinite fertile path starts.
-        let lasting = settled(vec![true; firsts.len()], |lasting| {
-            let goes_on = |number| fertile(number).any(|instance| lasting[behaviour(instance)]);
-            (0..lasting.len()).map(goes_on).collect()
-        });
+        let targets = (0..firsts.len()).map(|number| fertile(number).map(behaviour).collect());
+        let lasting = on_infinite_paths(&targets.collect::<Vec<_>>());
         let kept = |instance: &&Instance<F>| lasting[behaviour(instance)];
         let placed = |instance: &Instance<F>| {
             let copy = LimitCopy::new(*instance.frame.map(), behaviour(instance));
@@ -346,7 +345,7 @@ impl<M: Space> LimitSet<M> {
             part.radius = radius;
         }
         // The middles are those of discs, which need not be the smallest.
-        let most_work = (4 * MAX_WORK / own.max(1)).max(MAX_WORK >> 4);
+        let most_work = (4 * MAX_WORK / own.max(1)).max(MAX_WORK >> 12);
         let middle = |object| {
             const TOLERANCE: f64 = 1e-3;
             let whole = [LimitCopy::whole(object)];

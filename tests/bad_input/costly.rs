@@ -284,6 +284,81 @@ fn many_loops_are_checked() {
 }
 
 #[test]
+fn many_objects_in_each_other_are_bounded() {
+    let count = 5_000;
+    let objects = |instance: &dyn Fn(usize) -> String| {
+        let objects = (0..count).map(|i| format!("  a{i}: [{}]\n", instance(i)));
+        structure(&objects.collect::<String>(), "a0")
+    };
+    let crossed = |scale: f64| {
+        objects(&|i| {
+            let [next, other] = [i + 1, i * 7 + 3].map(|number| number % count);
+            let turn = 0.37 * i as f64;
+            format!(
+                "{{object: a{next}, scale: {scale}, translate: [1, 0]}}, \
+                 {{object: a{other}, scale: {scale}, rotate: {turn:.2}}}"
+            )
+        })
+    };
+    accepted(&crossed(0.6), &INFO);
+    accepted(&crossed(0.9), &INFO);
+    // Translations without turns reach farthest: 1 + 0.6 + 0.36 + …
+    let bounds = graph_of(&crossed(0.6), 2).limit_bounds().unwrap();
+    assert!((bounds.max().x - 2.5).abs() < 1e-12, "{bounds:?}");
+    // All maps of a half enlarge, and those of the other half shrink more.
+    let ring = objects(&|i| {
+        let scale = if i < count / 2 { 1.01 } else { 0.9 };
+        let before = (i + count - 1) % count;
+        format!("{{object: a{before}, scale: {scale}, translate: [1, 0]}}")
+    });
+    accepted(&ring, &INFO);
+    // Each map squeezes heights more than widths.
+    let squeezed = objects(&|i| {
+        let before = (i + count - 1) % count;
+        format!("{{object: a{before}, scale: [0.9, 0.8], translate: [1, 0]}}")
+    });
+    accepted(&squeezed, &INFO);
+}
+
+#[test]
+fn initial_sets_of_many_faces_are_left_out_of_limits() {
+    let side = 80;
+    let height = |i: usize, j: usize| (i * 7 + j * 3) % 5;
+    let points = (0..=side).flat_map(|i| (0..=side).map(move |j| (i, j)));
+    let points = points.map(|(i, j)| format!("[{i}/{side}, {j}/{side}, {}/50], ", height(i, j)));
+    let faces = (0..side).flat_map(|i| {
+        (0..side).map(move |j| {
+            let corner = i * (side + 1) + j;
+            format!("[{corner}, {}, {}], ", corner + 1, corner + side + 2)
+        })
+    });
+    let maps = (0..8).map(|map| {
+        let [x, y, z] = [map & 1, map >> 1 & 1, map >> 2];
+        format!("  - {{scale: 1/2, translate: [{x}/2, {y}/2, {z}/2]}}\n")
+    });
+    let text = format!(
+        "kind: ifs\nspace: 3\nmaps:\n{}initial: {{mesh: {{points: [{}], faces: [{}]}}}}\n",
+        maps.collect::<String>(),
+        points.collect::<String>(),
+        faces.collect::<String>()
+    );
+    accepted(&text, &INFO);
+    let source = Source::new("hostile.yaml", &text);
+    let document = Document::read(&source, &Catalogue::embedded()).unwrap();
+    let (model, _) = document.resolve(&[]).unwrap();
+    let bounds = model
+        .compile_in_space(false)
+        .unwrap()
+        .limit_bounds()
+        .unwrap();
+    let sides = (bounds.max() - bounds.min()).to_array();
+    assert!(
+        sides.iter().all(|side| (side - 1.0).abs() < 1e-12),
+        "{bounds:?}"
+    );
+}
+
+#[test]
 fn many_objects_see_many_parameters() {
     let params: String = (0..10_000).map(|i| format!("  p{i}: 1\n")).collect();
     let objects: String = (0..10_000)

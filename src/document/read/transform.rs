@@ -81,6 +81,8 @@ pub(super) fn read_transforms(reader: &mut Reader, fields: &Fields<'_>) -> Vec<T
             _ => transforms.extend(read_in_plane(reader, name, node)),
         }
     }
+    // Transforms are large, and most lists are short.
+    transforms.shrink_to_fit();
     transforms
 }
 

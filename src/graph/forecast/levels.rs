@@ -47,10 +47,7 @@ impl<F: Frame> Forecast<'_, F> {
         let mut all = Total::default();
         totals.add_chain(self.graph, start, &mut all);
         self.work += std::mem::take(&mut totals.work);
-        for (&object, tally) in &mut all.tallies {
-            tally.sums.area = tally.sums.square * self.own_area(object);
-        }
-        self.population = all.tallies;
+        self.population.set(all.tallies);
         self.step += 1;
         true
     }

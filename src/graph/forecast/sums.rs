@@ -31,14 +31,10 @@ pub(super) struct Sums {
     pub(super) root_length: f64,
     /// Sum of the squares of these lengths.
     pub(super) root_square: f64,
-    /// Sum of the areas of the closed base elements.
-    pub(super) area: f64,
     /// Sum of cubes of lengths.
     pub(super) cube: f64,
     /// Sum of the cubes of the lengths of the initiator elements from which the elements descend.
     pub(super) root_cube: f64,
-    /// Sum of the volumes of the base elements.
-    pub(super) volume: f64,
 }
 
 impl AddAssign for Sums {
@@ -51,9 +47,7 @@ impl AddAssign for Sums {
         self.signed += other.signed;
         self.root_length += other.root_length;
         self.root_square += other.root_square;
-        self.area += other.area;
         self.cube += other.cube;
         self.root_cube += other.root_cube;
-        self.volume += other.volume;
     }
 }

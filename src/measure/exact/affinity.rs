@@ -27,6 +27,9 @@ pub struct Affinity {
 /// Maximum number of products of one length.
 const MAX_PRODUCTS: usize = 10_000;
 
+/// Maximum number of entries that a product of two matrices of sums takes.
+const MAX_ENTRIES: usize = 1 << 20;
+
 /// Maximum length of products.
 const MAX_LENGTH: usize = 40;
 
@@ -41,7 +44,7 @@ struct Product {
 }
 
 /// Computes the affinity dimension of a strongly connected part. Returns `None` unless all products of some
-/// length contract, up to the length that is reached.
+/// length contract, up to the length that is reached, and for many sets.
 pub(super) fn affinity(part: &GraphDirectedSystem, effort: Effort) -> Option<Affinity> {
     let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
         .map(|set| (set, set, DMat3::IDENTITY))
@@ -49,14 +52,22 @@ pub(super) fn affinity(part: &GraphDirectedSystem, effort: Effort) -> Option<Aff
     let mut sums: [Vec<Product>; 2] = [Vec::new(), Vec::new()];
     let mut contracts = false;
     let mut length = 0;
+    if part.size.saturating_pow(3) > effort.of(MAX_ENTRIES) {
+        return None;
+    }
+    let mut copies = vec![Vec::new(); part.size];
+    for copy in &part.copies {
+        copies[copy.from].push((copy.to, copy.map.matrix3));
+    }
     while length < MAX_LENGTH {
+        let longer = paths.iter().map(|(_, to, _)| copies[*to].len());
+        if longer.sum::<usize>() > effort.of(MAX_PRODUCTS) {
+            break;
+        }
         let mut next = Vec::new();
         for (from, to, matrix) in &paths {
-            let copies = part.copies.iter().filter(|copy| copy.from == *to);
-            next.extend(copies.map(|copy| (*from, copy.to, *matrix * copy.map.matrix3)));
-        }
-        if next.len() > effort.of(MAX_PRODUCTS) {
-            break;
+            let copies = copies[*to].iter();
+            next.extend(copies.map(|(to, last)| (*from, *to, *matrix * *last)));
         }
         let products = next.iter().map(|&(from, to, matrix)| Product {
             from,

@@ -26,6 +26,9 @@ const STILL: f64 = 1e-13;
 /// Least cost of the comparison of two hulls.
 const LEAST: usize = 4;
 
+/// Cost of a hull beside that of its points.
+const OVERHEAD: usize = 64;
+
 /// Overlap, in a system of size 1, up to which hulls count as touching.
 const SLACK: f64 = 1e-10;
 
@@ -42,20 +45,19 @@ pub(super) fn hulls_are_open_sets(flat: &Flat, effort: Effort) -> bool {
     let Some(hulls) = hulls(flat, effort) else {
         return false;
     };
-    let copies: Vec<(usize, Vec<DVec2>)> = flat
-        .copies
-        .iter()
-        .map(|copy| (copy.from, moved(&copy.map, &hulls[copy.to])))
-        .collect();
+    let mut sets: Vec<Vec<Vec<DVec2>>> = vec![Vec::new(); flat.size];
+    for copy in &flat.copies {
+        sets[copy.from].push(moved(&copy.map, &hulls[copy.to]));
+    }
     let mut compared = 0;
-    copies.iter().enumerate().all(|(number, (from, a))| {
-        compared += number;
-        let others = copies[..number].iter().filter(|(other, _)| other == from);
-        others.into_iter().all(|(_, b)| {
-            let corners = a.len() + b.len();
-            compared += (corners * corners).max(LEAST);
-            compared <= most && separated(a, b)
-        })
+    let in_one_set = sets.iter().flat_map(|copies| {
+        let numbered = copies.iter().enumerate();
+        numbered.flat_map(|(number, a)| copies[..number].iter().map(move |b| (a, b)))
+    });
+    { in_one_set }.all(|(a, b)| {
+        let corners = a.len() + b.len();
+        compared += (corners * corners).max(LEAST);
+        compared <= most && separated(a, b)
     })
 }
 
@@ -80,7 +82,7 @@ fn hulls(flat: &Flat, effort: Effort) -> Option<Vec<Vec<DVec2>>> {
     let mut left = effort.of(MAX_POINTS);
     for _ in 0..MAX_ROUNDS {
         let moved_points = flat.copies.iter().map(|copy| hulls[copy.to].len());
-        left = left.checked_sub(moved_points.sum())?;
+        left = left.checked_sub(moved_points.sum::<usize>() + OVERHEAD * flat.size)?;
         let mut points: Vec<Vec<DVec2>> = hulls.clone();
         for copy in &flat.copies {
             points[copy.from].extend(moved(&copy.map, &hulls[copy.to]));

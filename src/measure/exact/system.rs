@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::digraph::{Edge, parts};
+use crate::digraph::{Edge, longest_paths, parts};
 use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::Graph;
 use crate::measure::copies::fixed_copies;
@@ -135,27 +135,14 @@ impl GraphDirectedSystem {
         })
     }
 
-    /// Returns units for all sets, as logarithms: the lengths of the longest paths of copies (Bellman 1958),
-    /// where `more` is added for every copy. Returns `None` where these are unbounded.
+    /// Returns units for all sets, as logarithms: the lengths of the longest paths of copies,
+    /// where `more` is added for every copy. Returns `None` where these are unbounded, or where that takes too long.
     fn units(&self, more: f64) -> Option<Vec<f64>> {
-        let ways: Vec<(usize, usize, f64)> = self
-            .ratios()
-            .map(|(from, to, ratio)| (from, to, libm::log(ratio) + more))
-            .collect();
-        let mut units: Vec<f64> = vec![0.0; self.size];
-        for _ in 0..=self.size {
-            let mut changes = false;
-            for &(from, to, way) in &ways {
-                if units[to] + way > units[from] {
-                    units[from] = units[to] + way;
-                    changes = true;
-                }
-            }
-            if !changes {
-                return Some(units);
-            }
+        let mut ways = vec![Vec::new(); self.size];
+        for (from, to, ratio) in self.ratios() {
+            ways[from].push((to, libm::log(ratio)));
         }
-        None
+        longest_paths(&ways, more, f64::INFINITY)
     }
 
     /// Returns `true` if all maps are similarities that contract.

@@ -68,7 +68,7 @@ pub(super) fn reach<M: Affine>(
         }
         keep_farthest(&mut reaching);
         if reaching.len() > MAX_COPIES {
-            reaching.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+            reaching.select_nth_unstable_by(MAX_COPIES, |(a, _), (b, _)| b.total_cmp(a));
             reaching.truncate(MAX_COPIES);
         }
         let inner = reaching.iter().flat_map(|(_, copy)| {

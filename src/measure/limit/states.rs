@@ -10,7 +10,7 @@
 //! lies in the common side of two boxes enters the one behind it. Boxes that the set only touches from outside are
 //! therefore not counted, and the boxes that are counted cover the set.
 
-use crate::extent::settled;
+use crate::digraph::on_infinite_paths;
 use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Point};
 use crate::measure::cover::Counts;
@@ -73,10 +73,7 @@ impl<M: Space> LimitSet<M> {
             parts.push(states.divided(cell, base)?);
         }
         // States that are the start of an infinite path.
-        let lasting = settled(vec![true; parts.len()], |lasting| {
-            let goes_on = |parts: &Vec<usize>| parts.iter().any(|&part| lasting[part]);
-            parts.iter().map(goes_on).collect()
-        });
+        let lasting = on_infinite_paths(&parts);
         let mut boxes = vec![0u64; parts.len()];
         boxes[start] = 1;
         let mut counts = Vec::new();

@@ -2,7 +2,7 @@
 
 use crate::extent::{Bounded, bounding_box};
 use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Frame, Frame3, Solid};
-use crate::graph::{Chain, Graph, Instance, Object, Replacement};
+use crate::graph::{Graph, Instance, Object, Replacement};
 use crate::grow::Growth;
 use crate::instancing::Appearance;
 use crate::style::ColorBy;
@@ -205,13 +205,13 @@ fn child(instance: &Instance<Frame3>) -> Child {
 /// Returns a convex set for every object that contains what its subtree draws: within a number of steps, or in
 /// the limit.
 fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
-    let mut own = graph.clone();
+    let limits = graph.limit_boxes();
     let mut known: Vec<Option<Bounds<DVec3>>> = Vec::new();
     for (number, object) in graph.objects().iter().enumerate() {
         // Behaviours are numbered in the order of the objects.
         if object.behaviour == known.len() {
             known.push(match graph.is_fertile(number) {
-                true => box_of(&mut own, number),
+                true => { limits.as_ref() }.and_then(|limits| limits.at_object(number)),
                 false => None,
             });
         }
@@ -277,24 +277,6 @@ fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
                 && (middle + half).cmple(bounds.max() + slack).all()
         })
     })
-}
-
-/// Returns the box of the limit of an object's subtree, in its unit frame. Overwrites the initiator.
-fn box_of(graph: &mut Graph<Frame3>, object: usize) -> Option<Bounds<DVec3>> {
-    start_with(graph, object, Frame3::UNIT);
-    graph.limit_bounds()
-}
-
-fn start_with(graph: &mut Graph<Frame3>, object: usize, frame: Frame3) {
-    let root = Instance {
-        corners: None,
-        length: frame.stretch(),
-        frame,
-        joined: false,
-        position: 0,
-        object,
-    };
-    graph.initiators = vec![Chain::loose(vec![root])];
 }
 
 /// Returns the graph as it is seen under a map.
