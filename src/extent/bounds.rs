@@ -175,8 +175,8 @@ impl<F: Bounded> Graph<F> {
         F::HAS_HULLS && (self.longest_ratio() >= 1.0 || is_loose())
     }
 
-    /// Returns whether there are so many behaviours that their hulls take long.
-    pub(super) fn has_many_behaviours(&self) -> bool {
+    /// Returns whether there are so many behaviours that a hull, or cells, of each take long.
+    pub(crate) fn has_many_behaviours(&self) -> bool {
         const MANY: usize = 1_000;
         self.behaviours().nth(MANY).is_some()
     }

@@ -15,6 +15,9 @@ const LENGTHS_AN_OCTAVE: f64 = 32.0;
 /// Maximum number of classes of lengths.
 const MAX_LENGTHS: usize = 640;
 
+/// Limit of the number of children that are looked at for classes of lengths.
+const MAX_WORK: usize = 1 << 24;
+
 /// Tolerance in units of a class: a length this close to the edge of a class lies on it.
 const ROUNDING: f64 = 1e-6;
 
@@ -132,11 +135,14 @@ impl Sizes {
             })
             .collect();
         let mut by_length = vec![vec![1]; children.len()];
+        let round = children.len() + children.iter().flatten().map(Vec::len).sum::<usize>();
+        let mut rounds = MAX_WORK / round.max(1);
         for class in 1..=MAX_LENGTHS {
             let mut is_any = false;
             // Children of their parent's length belong to the class itself, so it is repeated until stable.
-            while lengthen(&mut by_length, &children, class, most) {
+            while rounds > 0 && lengthen(&mut by_length, &children, class, most) {
                 is_any = true;
+                rounds -= 1;
             }
             if !is_any {
                 break;

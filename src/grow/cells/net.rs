@@ -1,5 +1,6 @@
 //! Limit set of a graph, as sets that consist of images of each other.
 
+use crate::digraph::on_infinite_paths;
 use crate::geometry::{DAffine2, DVec2, stretch};
 use crate::graph::{Graph, Instance, Object};
 
@@ -130,17 +131,11 @@ impl Builder<'_> {
             parts.flatten().collect()
         };
         let mut parts: Vec<Vec<_>> = self.graph.behaviours_by_number().map(parts).collect();
-        loop {
-            let ends: Vec<bool> = parts.iter().map(Vec::is_empty).collect();
-            let mut changes = false;
-            for parts in &mut parts {
-                let before = parts.len();
-                parts.retain(|(_, part)| !ends[*part]);
-                changes |= parts.len() < before;
-            }
-            if !changes {
-                break;
-            }
+        let targets = parts.iter();
+        let targets = targets.map(|parts| parts.iter().map(|(_, part)| *part).collect());
+        let lasting = on_infinite_paths(&targets.collect::<Vec<_>>());
+        for parts in &mut parts {
+            parts.retain(|(_, part)| lasting[*part]);
         }
         for behaviour in 0..parts.len() {
             let is_needed = net.nodes[behaviour].stretch > 0.0;

@@ -62,7 +62,14 @@ impl LimitStyle {
             _ => false,
         };
         let fills_rings = style.fill.is_some() && starts_rings(graph);
-        if !is_known || !is_determined || fills_rings || options.plot || !graph.contracts() {
+        let is_much = graph.has_many_behaviours();
+        if !is_known
+            || !is_determined
+            || fills_rings
+            || options.plot
+            || is_much
+            || !graph.contracts()
+        {
             return None;
         }
         let drawn = graph.objects().iter().filter(|object| object.visible);
