@@ -205,7 +205,9 @@ fn child(instance: &Instance<Frame3>) -> Child {
 /// Returns a convex set for every object that contains what its subtree draws: within a number of steps, or in
 /// the limit.
 fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
-    let limits = graph.limit_boxes();
+    // Balls take less where there are many.
+    let limits = (!graph.has_many_behaviours()).then(|| graph.limit_boxes());
+    let limits = limits.flatten();
     let mut known: Vec<Option<Bounds<DVec3>>> = Vec::new();
     for (number, object) in graph.objects().iter().enumerate() {
         // Behaviours are numbered in the order of the objects.
