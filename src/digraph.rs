@@ -54,7 +54,7 @@ pub(crate) fn components(targets: &[Vec<usize>]) -> Vec<usize> {
 
 /// Returns the vertices in the order in which a depth-first search leaves them: every vertex after those to which it leads,
 /// except around loops.
-pub(crate) fn post_order(targets: &[Vec<usize>]) -> Vec<usize> {
+fn post_order(targets: &[Vec<usize>]) -> Vec<usize> {
     let mut order = Vec::with_capacity(targets.len());
     let mut is_met = vec![false; targets.len()];
     for root in 0..targets.len() {
@@ -85,16 +85,16 @@ pub(crate) fn post_order(targets: &[Vec<usize>]) -> Vec<usize> {
 /// vertices to which those of each vertex lead, with lengths, to each of which `more` is added. `None` if sums exceed `most`
 /// or grow along a loop, or if that takes too long to decide.
 pub(crate) fn longest_paths(edges: &[Vec<(usize, f64)>], more: f64, most: f64) -> Option<Vec<f64>> {
-    /// Limit of the number of vertices and edges that are looked at, in more than some rounds.
+    /// Limit of the number of vertices and edges that are looked at, after the first rounds.
     const MAX_WORK: usize = 1 << 20;
-    /// Number of rounds in any case.
-    const FEW: usize = 16;
+    /// Number of rounds that are made in any case.
+    const FIRST: usize = 16;
     let targets = edges
         .iter()
         .map(|edges| edges.iter().map(|(target, _)| *target).collect());
     let order = post_order(&targets.collect::<Vec<_>>());
     let work = edges.len() + edges.iter().map(Vec::len).sum::<usize>();
-    let rounds = (MAX_WORK / work.max(1)).max(FEW).min(edges.len());
+    let rounds = (MAX_WORK / work.max(1)).max(FIRST).min(edges.len());
     let mut longest = vec![0.0f64; edges.len()];
     for _ in 0..=rounds {
         let mut has_changed = false;
@@ -204,6 +204,38 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn longest_paths_end_unless_loops_grow() {
+        // Ways 0 → 1 → 3 and 0 → 2 → 3, and a loop of 3.
+        let edges = |around: f64| {
+            vec![
+                vec![(1, 1.0), (2, -1.0)],
+                vec![(3, 2.0)],
+                vec![(3, 7.0)],
+                vec![(3, around)],
+            ]
+        };
+        let longest = Some(vec![6.0, 2.0, 7.0, 0.0]);
+        assert_eq!(longest_paths(&edges(-0.5), 0.0, 100.0), longest);
+        assert_eq!(longest_paths(&edges(0.0), 0.0, 100.0), longest);
+        assert_eq!(longest_paths(&edges(-0.5), 0.0, 6.5), None);
+        assert_eq!(longest_paths(&edges(0.1), 0.0, f64::INFINITY), None);
+        assert_eq!(longest_paths(&edges(-0.5), 1.0, f64::INFINITY), None);
+        // All lengths of a long loop but one shrink a little, and that one makes up for less, or for more.
+        let ring = |last: f64| -> Vec<_> {
+            let length = |vertex: usize| if vertex == 0 { last } else { -1.0 };
+            (0..5_000)
+                .map(|vertex| vec![((vertex + 1) % 5_000, length(vertex))])
+                .collect()
+        };
+        let longest = longest_paths(&ring(4_998.0), 0.0, f64::INFINITY);
+        assert_eq!(
+            longest.map(|it| [it[0], it[1], it[4_999]]),
+            Some([4_998.0, 0.0, 4_997.0])
+        );
+        assert_eq!(longest_paths(&ring(5_000.0), 0.0, f64::INFINITY), None);
+    }
 
     proptest! {
         #[test]

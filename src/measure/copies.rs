@@ -1,7 +1,6 @@
 //! Graph-directed sets, made of copies of each other, and the distribution of mass among the copies.
 
-use crate::digraph::on_infinite_paths;
-use crate::digraph::{components, count};
+use crate::digraph::{components, count, on_infinite_paths};
 use crate::geometry::{Affine, DAffine2, Frame, Linear, Point};
 use crate::graph::{Graph, Instance};
 use crate::ifs::{AffineMap, Ifs};

@@ -27,8 +27,8 @@ pub struct Affinity {
 /// Maximum number of products of one length.
 const MAX_PRODUCTS: usize = 10_000;
 
-/// Maximum number of entries that a product of two matrices of sums takes.
-const MAX_ENTRIES: usize = 1 << 20;
+/// Maximum number of products of entries in a product of two matrices, which have a row for each set.
+const MAX_FACTORS: usize = 1 << 20;
 
 /// Maximum length of products.
 const MAX_LENGTH: usize = 40;
@@ -44,17 +44,17 @@ struct Product {
 }
 
 /// Computes the affinity dimension of a strongly connected part. Returns `None` unless all products of some
-/// length contract, up to the length that is reached, and for many sets.
+/// length contract, up to the length that is reached; and if there are more sets than the effort allows, about a hundred.
 pub(super) fn affinity(part: &GraphDirectedSystem, effort: Effort) -> Option<Affinity> {
+    if part.size.saturating_pow(3) > effort.of(MAX_FACTORS) {
+        return None;
+    }
     let mut paths: Vec<(usize, usize, DMat3)> = (0..part.size)
         .map(|set| (set, set, DMat3::IDENTITY))
         .collect();
     let mut sums: [Vec<Product>; 2] = [Vec::new(), Vec::new()];
     let mut contracts = false;
     let mut length = 0;
-    if part.size.saturating_pow(3) > effort.of(MAX_ENTRIES) {
-        return None;
-    }
     let mut copies = vec![Vec::new(); part.size];
     for copy in &part.copies {
         copies[copy.from].push((copy.to, copy.map.matrix3));
