@@ -40,7 +40,8 @@ pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
-    let wanted = folded(name)?;
+    let wanted: Vec<char> = folded(name)?.collect();
+    let letters = letter_set(wanted.iter().copied());
     let candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES).collect();
     let beginning = || {
         let same = |candidate: &&&str| {
@@ -55,13 +56,20 @@ pub(crate) fn nearest<'a>(
         .filter(|candidate| *candidate != name)
         .filter_map(|candidate| {
             let known = folded(candidate)?;
-            let longest = wanted.len().max(known.len());
+            let length = known.clone().count();
+            let longest = wanted.len().max(length);
             let most = (longest / 3).max(1);
-            // The distance is at least the difference of the lengths.
-            if wanted.len().abs_diff(known.len()) > most {
+            // The distance is at least the difference of the lengths, and an edit removes at most one letter.
+            let removed = letters & !letter_set(known.clone());
+            if wanted
+                .len()
+                .abs_diff(length)
+                .max(removed.count_ones() as usize)
+                > most
+            {
                 return None;
             }
-            let distance = distance(&wanted, &known);
+            let distance = distance(&wanted, &known.collect::<Vec<_>>());
             // Otherwise every name of one letter would be near to every other.
             let near = distance == 0 || (distance <= most && distance < longest);
             near.then_some((distance, candidate))
@@ -90,9 +98,16 @@ fn distance(a: &[char], b: &[char]) -> usize {
     row[b.len()]
 }
 
-fn folded(name: &str) -> Option<Vec<char>> {
+/// Returns the characters of a name in lower case, with `_` for `-`. Empty and long names have none.
+fn folded(name: &str) -> Option<impl Iterator<Item = char> + Clone> {
+    let lower = name.chars().flat_map(char::to_lowercase);
     (!name.is_empty() && name.chars().nth(MAX_CHARS).is_none())
-        .then(|| name.to_lowercase().replace('-', "_").chars().collect())
+        .then(|| lower.map(|letter| if letter == '-' { '_' } else { letter }))
+}
+
+/// Returns the set of the characters' numbers modulo 64, as bits.
+fn letter_set(letters: impl Iterator<Item = char>) -> u64 {
+    letters.fold(0, |set, letter| set | 1 << (u32::from(letter) % 64))
 }
 
 #[cfg(test)]
