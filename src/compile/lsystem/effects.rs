@@ -67,8 +67,8 @@ pub(super) struct Effects<F: TurtleFrame = Frame2> {
     pub(super) system: Arc<F::System>,
     pub(super) compass: Compass,
     pub(super) kinds: Kinds,
-    /// Effects by the number of steps that are left, less 1, and by kind.
-    levels: Vec<Vec<Option<Effect<F>>>>,
+    /// Effects by the number of steps that are left, less 1, and by kind; most kinds have none.
+    levels: Vec<Vec<Option<Box<Effect<F>>>>>,
 }
 
 impl<F: SummedFrame> Effects<F> {
@@ -133,7 +133,7 @@ impl<F: TurtleFrame> Effects<F> {
         kind: usize,
         left: u32,
         steps: u32,
-    ) -> Result<Option<Effect<F>>, NotCompiled> {
+    ) -> Result<Option<Box<Effect<F>>>, NotCompiled> {
         let of = &self.kinds.all[kind];
         if !of.is_fertile() || of.born > steps - left {
             return Ok(None);
@@ -145,8 +145,8 @@ impl<F: TurtleFrame> Effects<F> {
         });
         let effects: Vec<Effect<F>> = effects.collect::<Result<_, _>>()?;
         match effects.as_slice() {
-            [only] => Ok(Some(only.clone())),
-            _ => Effect::of_any(&effects).map(Some),
+            [only] => Ok(Some(Box::new(only.clone()))),
+            _ => Ok(Some(Box::new(Effect::of_any(&effects)?))),
         }
     }
 
@@ -177,7 +177,7 @@ impl<F: TurtleFrame> Effects<F> {
     /// Returns the effect of a kind with `left` steps left.
     pub(super) fn of(&self, kind: usize, left: u32) -> Result<&Effect<F>, NotCompiled> {
         self.levels[left as usize - 1][kind]
-            .as_ref()
+            .as_deref()
             .ok_or(NotCompiled)
     }
 

@@ -82,7 +82,7 @@ pub(super) trait Sums<F: TurtleFrame>: Sized {
     fn too_few(&self) -> Option<usize>;
 
     /// Advances to the effects of the next number of steps, and corrects their positions.
-    fn advance(&mut self, effects: &Effects<F>, left: u32, level: &mut [Option<Effect<F>>]);
+    fn advance(&mut self, effects: &Effects<F>, left: u32, level: &mut [Option<Box<Effect<F>>>]);
 }
 
 /// Doubles suffice.
@@ -93,7 +93,7 @@ impl<F: TurtleFrame> Sums<F> for () {
         None
     }
 
-    fn advance(&mut self, _: &Effects<F>, _: u32, _: &mut [Option<Effect<F>>]) {}
+    fn advance(&mut self, _: &Effects<F>, _: u32, _: &mut [Option<Box<Effect<F>>>]) {}
 }
 
 /// Displacements of all kinds for the number of steps that has been processed.
@@ -130,7 +130,7 @@ impl Sums<Frame2> for Displacements {
         (!enough).then_some(bits)
     }
 
-    fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Effect>]) {
+    fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Box<Effect>>]) {
         let mut next = Vec::with_capacity(level.len());
         for (kind, effect) in level.iter_mut().enumerate() {
             let exact = effect.as_mut().filter(|effect| effect.is_exact);
