@@ -259,12 +259,7 @@ impl<F: Bounded> Graph<F> {
         steps: Option<u32>,
     ) -> Option<Bounds<F::Point>> {
         let spared = reach.spared(start);
-        let mut ends = [F::Point::ZERO; 2];
-        for (number, &axis) in F::Point::AXES.iter().enumerate() {
-            let far = self.support(axis, start, steps, (reach, spared))?;
-            ends[number % 2] = ends[number % 2] + axis * far;
-        }
-        let [max, min] = ends;
+        let [max, min] = ends(|axis| self.support(axis, start, steps, (reach, spared)))?;
         // Coordinates below the rounding error are replaced by zero.
         let nothing = reach.slack() * min.abs().max(max.abs()).max_element();
         let rounded = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
@@ -390,6 +385,15 @@ impl<F: Bounded> Graph<F> {
         }
         None
     }
+}
+
+/// Returns the greatest and the least corner of a box, by the greatest values along the directions of the axes.
+pub(super) fn ends<P: Point>(mut farthest: impl FnMut(P) -> Option<f64>) -> Option<[P; 2]> {
+    let mut ends = [P::ZERO; 2];
+    for (number, &axis) in P::AXES.iter().enumerate() {
+        ends[number % 2] = ends[number % 2] + axis * farthest(axis)?;
+    }
+    Some(ends)
 }
 
 impl<F: Bounded> ApproximantBounds<'_, F> {

@@ -9,6 +9,7 @@ use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Instance, Object, Replacement};
 
 use super::Bounded;
+use super::bounds::ends;
 
 /// Limit of the number of instances that are replaced, for a direction.
 const MAX_WORK: usize = 1 << 17;
@@ -92,12 +93,8 @@ impl<F: Bounded> Graph<F> {
         balls: &Balls,
         start: &[Instance<F>],
     ) -> Option<Bounds<F::Point>> {
-        let mut ends = [F::Point::ZERO; 2];
-        for (number, &axis) in F::Point::AXES.iter().enumerate() {
-            let far = self.farthest(axis, start, balls)?;
-            ends[number % 2] = ends[number % 2] + axis * far;
-        }
-        let bounds = Bounds::new(ends[1], ends[0]);
+        let [max, min] = ends(|axis| self.farthest(axis, start, balls))?;
+        let bounds = Bounds::new(min, max);
         bounds.is_finite().then_some(bounds)
     }
 

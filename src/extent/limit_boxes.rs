@@ -11,12 +11,15 @@ use crate::graph::{Graph, Instance, Replacement};
 use super::bounded::{Bounded, Fineness};
 use super::bounds::Reach;
 use super::farthest::Balls;
+use super::recurrent::Recurrent;
 
 /// Bounding boxes of limit sets of a graph, which share the bounds on subtrees: see [`Graph::limit_bounds`].
 pub(crate) struct LimitBoxes<'g, F: Frame> {
     graph: Cow<'g, Graph<F>>,
     /// Bounds that are tried one after the other.
     attempts: Vec<Attempt<F>>,
+    /// Farthest values along directions that recur, which are tried first where there are many behaviours.
+    recurrent: OnceCell<Option<Recurrent>>,
     /// Balls for frames without hulls, which are tried last.
     balls: OnceCell<Balls>,
     /// Number of the attempt that found the last box; those before it fail again, as a rule.
@@ -69,6 +72,7 @@ impl<F: Bounded> Graph<F> {
         Some(LimitBoxes {
             graph: self.living(),
             attempts: attempts.collect(),
+            recurrent: OnceCell::new(),
             balls: OnceCell::new(),
             first: Cell::new(0),
         })
@@ -102,6 +106,13 @@ impl<F: Bounded> Graph<F> {
 impl<F: Bounded> LimitBoxes<'_, F> {
     /// Returns the bounding box of the limit set that begins with some instances: see [`Graph::limit_bounds`].
     pub(crate) fn at(&self, start: &[Instance<F>]) -> Option<Bounds<F::Point>> {
+        let recurrent = self.recurrent.get_or_init(|| {
+            let is_much = self.graph.has_many_behaviours();
+            is_much.then(|| Recurrent::of(&self.graph))?
+        });
+        if let Some(bounds) = { recurrent.as_ref() }.and_then(|known| known.box_of(start)) {
+            return Some(bounds);
+        }
         let attempts = self.first.get()..=self.attempts.len();
         let mut found = attempts.filter_map(|number| Some((number, self.tried(number, start)?)));
         let (number, bounds) = found.next()?;

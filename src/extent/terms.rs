@@ -58,29 +58,39 @@ pub(super) fn merged<F: Frame>(
     kept
 }
 
-/// Returns a key that is equal for vectors that differ by rounding: the direction to ten decimals, and
-/// the length to as many digits.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "casts from floats saturate"
-)]
+/// Returns a key that is equal for vectors that differ by rounding: the direction, and the length to as many digits.
 fn key<P: Point>(vector: P) -> ([i64; 3], u64) {
     /// Number of low bits of a double that are dropped, by rounding: truncation would separate the
     /// neighbours of powers of two.
     const ROUNDED: u32 = 19;
-    let (unit, length) = match vector.length() {
+    let (unit, length) = unit_and_length(vector);
+    (
+        decimals(unit),
+        (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
+    )
+}
+
+/// Returns a key that is equal for directions that differ by rounding: that of a vector, to ten decimals.
+pub(super) fn direction_key<P: Point>(vector: P) -> [i64; 3] {
+    decimals(unit_and_length(vector).0)
+}
+
+fn unit_and_length<P: Point>(vector: P) -> (P, f64) {
+    match vector.length() {
         length if length > 0.0 && length.is_finite() => (vector / length, length),
         // Squares of large and of small numbers leave the range of doubles.
         _ => {
             let unit = (vector / vector.abs().max_element()).normalize_or_zero();
             (unit, vector.dot(unit))
         }
-    };
-    let direction = unit
-        .coordinates()
-        .map(|value| (value * 1e10).round() as i64);
-    (
-        direction,
-        (length.to_bits() + (1 << (ROUNDED - 1))) >> ROUNDED,
-    )
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "casts from floats saturate"
+)]
+fn decimals<P: Point>(unit: P) -> [i64; 3] {
+    unit.coordinates()
+        .map(|value| (value * 1e10).round() as i64)
 }
