@@ -28,6 +28,15 @@ pub(super) const EMPTY: u32 = u32::MAX;
 /// Exponents of the sides of blocks, in samples, from fine to coarse.
 const BLOCKS: [u32; 4] = [2, 4, 6, 8];
 
+/// Side of the smallest blocks, in samples.
+pub(super) const BLOCK: usize = 1 << BLOCKS[0];
+
+/// Number of the smallest blocks along a side of a tile.
+pub(super) const BLOCKS_ALONG: usize = SIDE / BLOCK;
+
+/// Number of keys that are compared together.
+const PIECE: usize = 8;
+
 /// Samples of a tile.
 pub(super) struct Buffer {
     /// Keys of the samples and of the margin.
@@ -63,6 +72,11 @@ impl Buffer {
     /// follow.
     pub(super) fn row_mut(&mut self, y: usize) -> &mut [u32] {
         &mut self.keys[place(y)..place(y) + SIDE]
+    }
+
+    /// Returns the largest keys of the smallest blocks in a row of blocks.
+    pub(super) fn blocks(&self, row: usize) -> &[u32; BLOCKS_ALONG] {
+        &self.pyramid[0].as_chunks().0[row]
     }
 
     /// Returns the keys of the samples and of the margin, in rows, to be changed. [`refresh`](Self::refresh) has to
@@ -111,19 +125,46 @@ impl Buffer {
         depth: u32,
     ) -> Option<[usize; 4]> {
         let least = depth << CLASS_BITS;
-        let is_open = |key: &u32| *key >= least;
+        if right - left <= PIECE {
+            return self.open_of_narrow([left, top, right, bottom], least);
+        }
+        // Only what lies beside the columns that are known to be open matters.
         let [mut first, mut last] = [right, left];
-        let [mut upper, mut lower] = [bottom, top];
+        let mut upper = None;
         for y in top..bottom {
-            let row = &self.row(y)[left..right];
-            if let Some(at) = row.iter().position(is_open) {
-                first = first.min(left + at);
-                last = last.max(right - row.iter().rev().position(is_open).unwrap_or(0));
+            let row = self.row(y);
+            if let Some(at) = first_open(&row[left..first], least) {
+                first = left + at;
+                upper.get_or_insert(y);
+            }
+            if let Some(at) = last_open(&row[last.max(first)..right], least) {
+                last = last.max(first) + at + 1;
+            }
+        }
+        let is_open = |y: &usize| first_open(&self.row(*y)[first..last], least).is_some();
+        let lower = (upper?..bottom).rev().find(is_open)?;
+        Some([first, upper?, last, lower + 1])
+    }
+
+    /// Returns the least rectangle within one of at most [`PIECE`] columns that contains its keys of at least `least`.
+    fn open_of_narrow(
+        &self,
+        [left, top, right, bottom]: [usize; 4],
+        least: u32,
+    ) -> Option<[usize; 4]> {
+        let (mut columns, mut upper, mut lower) = (0_u32, bottom, top);
+        for y in top..bottom {
+            let keys = self.row(y)[left..right].iter().zip(0..);
+            let open = keys.fold(0, |open, (key, x)| open | u32::from(*key >= least) << x);
+            if open > 0 {
                 upper = upper.min(y);
                 lower = y + 1;
             }
+            columns |= open;
         }
-        (upper < lower).then_some([first, upper, last, lower])
+        let first = left + columns.trailing_zeros() as usize;
+        let last = left + (u32::BITS - columns.leading_zeros()) as usize;
+        (columns > 0).then_some([first, upper, last, lower])
     }
 
     /// Updates the pyramid after samples of a rectangle have been changed, which may reach into the margin: it is
@@ -138,21 +179,17 @@ impl Buffer {
 
     /// Updates the pyramid after samples of a rectangle have been changed.
     pub(super) fn refresh(&mut self, [left, top, right, bottom]: [usize; 4]) {
-        const BLOCK: usize = 1 << BLOCKS[0];
         let mut range = [left, top, right - 1, bottom - 1].map(|end| end >> BLOCKS[0]);
         let mut changes = false;
         for row in range[1]..=range[3] {
-            for column in range[0]..=range[2] {
-                let start = place(row * BLOCK) + column * BLOCK;
-                let lines: [&[u32]; BLOCK] = std::array::from_fn(|line| {
-                    let start = start + line * STRIDE;
-                    &self.keys[start..start + BLOCK]
-                });
-                let most = lines.into_iter().flatten().fold(0, |a, b| a.max(*b));
-                let known = &mut self.pyramid[0][row * (SIDE >> BLOCKS[0]) + column];
-                changes |= *known != most;
-                *known = most;
-            }
+            let columns = range[0]..range[2] + 1;
+            let lines = std::array::from_fn(|line| {
+                let start = place(row * BLOCK + line);
+                &self.keys[start..][columns.start * BLOCK..columns.end * BLOCK]
+            });
+            let start = row * BLOCKS_ALONG;
+            let known = &mut self.pyramid[0][start..][columns];
+            changes |= set_largest(lines, known);
         }
         for level in 1..BLOCKS.len() {
             if !changes {
@@ -182,6 +219,45 @@ impl Buffer {
     }
 }
 
+/// Returns the place of the first of some keys that is at least `least`.
+fn first_open(keys: &[u32], least: u32) -> Option<usize> {
+    let mut pieces = keys.chunks(PIECE);
+    let piece = pieces.position(|piece| has_open(piece, least))?;
+    let at = { keys[piece * PIECE..].iter() }.position(|key| *key >= least)?;
+    Some(piece * PIECE + at)
+}
+
+/// Returns the place of the last of some keys that is at least `least`.
+fn last_open(keys: &[u32], least: u32) -> Option<usize> {
+    let mut end = keys.len();
+    for piece in keys.rchunks(PIECE) {
+        if has_open(piece, least) {
+            return keys[..end].iter().rposition(|key| *key >= least);
+        }
+        end -= piece.len();
+    }
+    None
+}
+
+/// Returns whether one of some keys is at least `least`, without a branch for each.
+fn has_open(keys: &[u32], least: u32) -> bool {
+    keys.iter().fold(false, |open, key| open | (*key >= least))
+}
+
+/// Sets the largest keys of the blocks along some lines; returns whether one has changed.
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+fn set_largest(lines: [&[u32]; BLOCK], largest: &mut [u32]) -> bool {
+    let mut changes = 0;
+    let [a, b, c, d] = lines.map(|line| line.as_chunks::<BLOCK>().0);
+    for ((((known, a), b), c), d) in largest.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+        let down: [u32; BLOCK] = std::array::from_fn(|x| a[x].max(b[x]).max(c[x].max(d[x])));
+        let most = down[0].max(down[1]).max(down[2].max(down[3]));
+        changes |= *known ^ most;
+        *known = most;
+    }
+    changes != 0
+}
+
 /// Returns the place of the first sample of a row.
 fn place(y: usize) -> usize {
     (y + MARGIN) * STRIDE + MARGIN
@@ -189,7 +265,52 @@ fn place(y: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    /// Returns a rectangle of a tile that is not empty.
+    fn rectangle() -> impl Strategy<Value = [usize; 4]> {
+        let span = || (0..SIDE, 1..40_usize).prop_map(|(at, size)| [at, (at + size).min(SIDE)]);
+        (span(), span()).prop_map(|([left, right], [top, bottom])| [left, top, right, bottom])
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+
+        #[test]
+        fn open_samples_and_blocks_are_found(
+            drawn in proptest::collection::vec((rectangle(), 0..20_u32), 0..12),
+            within in rectangle(),
+            depth in 0..20_u32,
+        ) {
+            let mut buffer = Buffer::new();
+            for (area @ [left, top, right, bottom], depth) in drawn {
+                for y in top..bottom {
+                    buffer.row_mut(y)[left..right].fill(depth << CLASS_BITS | 7);
+                }
+                buffer.refresh(area);
+            }
+            let [left, top, right, bottom] = within;
+            let mut expected: Option<[usize; 4]> = None;
+            for y in top..bottom {
+                for x in left..right {
+                    if buffer.row(y)[x] >= depth << CLASS_BITS {
+                        let [a, b, c, d] = expected.unwrap_or([x, y, x, y]);
+                        expected = Some([a.min(x), b.min(y), c.max(x + 1), d.max(y + 1)]);
+                    }
+                }
+            }
+            prop_assert_eq!(buffer.open(within, depth), expected);
+            for row in 0..BLOCKS_ALONG {
+                for (column, known) in buffer.blocks(row).iter().enumerate() {
+                    let lines = (row * BLOCK..(row + 1) * BLOCK).map(|y| buffer.row(y));
+                    let keys = lines.flat_map(|line| &line[column * BLOCK..(column + 1) * BLOCK]);
+                    prop_assert_eq!(keys.max(), Some(known));
+                }
+            }
+        }
+    }
 
     #[test]
     fn a_full_rectangle_hides_what_is_strictly_behind() {

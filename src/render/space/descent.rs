@@ -1,8 +1,11 @@
 //! Descent of a graph into the depth buffer of a tile: nearest first, and nothing that is hidden.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use crate::geometry::{DAffine3, DVec3};
 
-use super::buffer::{Buffer, MAX_CLASS};
+use super::buffer::{Buffer, MAX_CLASS, SIDE};
 use super::copies::Copies;
 use super::forms::{Form, Forms, class};
 use super::lit::{Classes, FINE, Lit, intensity};
@@ -12,6 +15,12 @@ use super::stamp::Stamp;
 use super::tints::Tints;
 use super::turned::Turned;
 use crate::style::Colour;
+
+/// Samples along a side from which instances are visited from near to far, one by one.
+const LARGE: usize = SIDE / 2;
+
+/// Number of instances that wait, or of their forms, from which the others of a tile are not visited one by one.
+const MAX_LARGE: usize = 1 << 14;
 
 /// Properties on which the colour of an instance depends.
 #[derive(Clone, Copy, Default)]
@@ -33,16 +42,63 @@ struct Node {
     nearest: u32,
     /// The samples of the tile that it may meet.
     rectangle: [usize; 4],
+    /// Forms and appearances up to those of its siblings.
+    known: Known,
+}
+
+/// Numbers of the forms and of the appearances that a descent knows.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    forms: usize,
+    appearances: usize,
+}
+
+impl Node {
+    /// Returns whether the instance may meet a large part of the tile.
+    fn is_large(&self) -> bool {
+        let [left, top, right, bottom] = self.rectangle;
+        (right - left).max(bottom - top) >= LARGE
+    }
+}
+
+/// A node in a queue, from which the nearest is taken first.
+struct Nearest(Node);
+
+impl PartialEq for Nearest {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Nearest {}
+
+impl PartialOrd for Nearest {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Nearest {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let place = |node: &Self| node.0.at.to_array();
+        let by_place = place(other).into_iter().zip(place(self));
+        // The order of those that are equally near does not depend on the tile.
+        let by_place = by_place.map(|(other, own)| other.total_cmp(&own));
+        { other.0.nearest.cmp(&self.0.nearest) }
+            .then_with(|| by_place.fold(Ordering::Equal, Ordering::then))
+    }
 }
 
 /// State of the descent into a tile; memory is reused from tile to tile.
 #[derive(Default)]
 pub(super) struct Descent {
     stack: Vec<Node>,
-    /// Forms that are not known before: those of nodes on the stack, in their order.
+    /// Instances that wait, of which the nearest is visited next: those in large ones, and large ones themselves.
+    large: BinaryHeap<Nearest>,
+    /// Forms that are not known before: those of nodes that wait or are on the stack, and of their siblings.
     own: Vec<Form>,
-    /// Instances in a form, with their middles and classes.
-    inner: Vec<(Form, DVec3, Paint)>,
+    /// Instances in a form that may be seen, with the z of their nearest points.
+    inner: Vec<(f64, Node)>,
     pencil: Pencil,
     copies: Option<Copies>,
     pub(super) tints: Tints,
@@ -109,6 +165,7 @@ impl Descent {
         start: &[usize],
     ) {
         self.stack.clear();
+        self.large.clear();
         self.own.clear();
         self.tints.clear();
         if roots.overlap {
@@ -117,31 +174,67 @@ impl Descent {
         let forms = roots.forms;
         for step in start.iter().map(|number| &forms.start[*number]) {
             let form = &forms.known[step.form];
-            let paint = self.paint(roots, Paint::default(), form.object, None);
             let form = (form, step.form);
-            let node = node(roots, view, buffer, form, step.offset, paint);
-            self.stack.extend(node);
+            if let Some(mut node) = node(roots, view, buffer, form, step.offset) {
+                node.paint = self.paint(roots, Paint::default(), form.0.object, None);
+                self.stack.push(node);
+            }
         }
-        while let Some(node) = self.stack.pop() {
-            let known = forms.known.get(node.form);
-            let own = match known {
-                Some(_) => None,
-                None => {
-                    // The forms that follow belonged to nodes that are done.
-                    self.own.truncate(node.form + 1 - forms.known.len());
-                    self.own.pop()
-                }
-            };
-            if buffer.hides(node.rectangle, node.nearest) {
+        let mut own = std::mem::take(&mut self.own);
+        // Instances of which others are nearer in part are visited one by one, from near to far. In small ones, the order is
+        // that of the depth of each in the next.
+        self.large.extend(self.stack.drain(..).map(Nearest));
+        while let Some(Nearest(node)) = self.large.pop() {
+            // These belong to nodes that wait.
+            let kept = self.known(&own);
+            if node.is_large() && self.large.len().max(kept.forms) < MAX_LARGE {
+                self.visit_seen(roots, view, buffer, &node, &mut own);
+                self.large.extend(self.stack.drain(..).map(Nearest));
                 continue;
             }
-            if let Some(form) = known {
-                self.visit_known(roots, view, buffer, form, &node);
-            } else if let Some(form) = own
-                && !self.draws_turned(roots, view, buffer, &form, &node)
-            {
-                self.visit(roots, view, buffer, &form, &node);
+            self.stack.push(Node {
+                known: kept,
+                ..node
+            });
+            while let Some(node) = self.stack.pop() {
+                // All that follow belonged to nodes that are done.
+                own.truncate(node.known.forms);
+                self.tints.truncate(node.known.appearances);
+                let rest = self.stack.len();
+                self.visit_seen(roots, view, buffer, &node, &mut own);
+                let known = self.known(&own);
+                { self.stack[rest..].iter_mut() }.for_each(|inner| inner.known = known);
             }
+            own.truncate(kept.forms);
+            self.tints.truncate(kept.appearances);
+        }
+        self.own = own;
+    }
+
+    fn known(&self, own: &[Form]) -> Known {
+        Known {
+            forms: own.len(),
+            appearances: self.tints.len(),
+        }
+    }
+
+    /// Visits an instance, unless it is hidden.
+    fn visit_seen(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        node: &Node,
+        own: &mut Vec<Form>,
+    ) {
+        if buffer.hides(node.rectangle, node.nearest) {
+            return;
+        }
+        let known = &roots.forms.known;
+        if let Some(form) = known.get(node.form) {
+            self.visit_known(roots, view, buffer, form, node, own);
+        } else if !self.draws_turned(roots, view, buffer, &own[node.form - known.len()], node) {
+            self.visit(roots, view, buffer, node, own);
         }
     }
 
@@ -152,6 +245,7 @@ impl Descent {
         buffer: &mut Buffer,
         form: &'a Form,
         node: &Node,
+        own: &mut Vec<Form>,
     ) {
         let copies = self.copies.as_mut();
         let class = node.paint.class;
@@ -169,18 +263,18 @@ impl Descent {
             return;
         }
         let Some(steps) = roots.forms.steps(form) else {
-            return self.visit(roots, view, buffer, form, node);
+            return self.visit(roots, view, buffer, node, own);
         };
         if form.is_small(&roots.end, view.scale_of_box(node.at.z + form.half.z)) {
             return self.draw(roots, view, buffer, form, node);
         }
         for step in steps {
             let inner = &roots.forms.known[step.form];
-            let paint = self.paint(roots, node.paint, inner.object, step.class);
             let at = node.at + step.offset;
-            let inner = (inner, step.form);
-            self.stack
-                .extend(self::node(roots, view, buffer, inner, at, paint));
+            if let Some(mut inside) = self::node(roots, view, buffer, (inner, step.form), at) {
+                inside.paint = self.paint(roots, node.paint, inner.object, step.class);
+                self.stack.push(inside);
+            }
         }
     }
 
@@ -214,34 +308,39 @@ impl Descent {
         roots: &Roots<'_>,
         view: &View<'_>,
         buffer: &mut Buffer,
-        form: &Form,
         node: &Node,
+        own: &mut Vec<Form>,
     ) {
+        let form = form(roots, own, node.form);
         let scale = view.scale_of_box(node.at.z + form.half.z);
         if ends(roots.parts, form, &roots.end) || form.is_small(&roots.end, scale) {
             return self.draw(roots, view, buffer, form, node);
         }
         self.inner.clear();
+        let level = form.level;
         for child in &roots.parts[form.object].children {
+            let form = self::form(roots, own, node.form);
             let inner = form.inner(roots.parts, child);
             let at = node.at + form.offset(child, &inner);
-            let class = match (roots.class_by, form.level) {
+            let number = roots.forms.known.len() + own.len();
+            let Some(mut inside) = self::node(roots, view, buffer, (&inner, number), at) else {
+                continue;
+            };
+            let class = match (roots.class_by, level) {
                 (ClassBy::LastMap, 0) => Some(class(roots.parts[child.object].origin)),
                 _ => None,
             };
-            let paint = self.paint(roots, node.paint, child.object, class);
-            self.inner.push((inner, at, paint));
+            inside.paint = self.paint(roots, node.paint, child.object, class);
+            self.inner.push((at.z + inner.half.z, inside));
+            own.push(inner);
         }
-        self.inner.reverse();
-        let near = |(form, at, _): &(Form, DVec3, Paint)| at.z + form.half.z;
-        self.inner.sort_by(|a, b| near(a).total_cmp(&near(b)));
-        for (form, at, paint) in self.inner.drain(..) {
-            let number = roots.forms.known.len() + self.own.len();
-            if let Some(node) = self::node(roots, view, buffer, (&form, number), at, paint) {
-                self.stack.push(node);
-                self.own.push(form);
-            }
-        }
+        // From far to near; of those that are equally near the last first.
+        let order = |(a, one): &(f64, Node), (b, other): &(f64, Node)| {
+            a.total_cmp(b).then(other.form.cmp(&one.form))
+        };
+        self.inner.sort_unstable_by(order);
+        self.stack
+            .extend(self.inner.drain(..).map(|(_, node)| node));
     }
 
     /// Returns what the colour of an instance of an object in another depends on; `class` is its class if it has
@@ -334,6 +433,14 @@ impl Descent {
     }
 }
 
+/// Returns the form of a number; `own` are those that are not known before the descent.
+fn form<'f>(roots: &'f Roots<'_>, own: &'f [Form], number: usize) -> &'f Form {
+    let known = &roots.forms.known;
+    known
+        .get(number)
+        .unwrap_or_else(|| &own[number - known.len()])
+}
+
 /// Returns an instance of a form, which is given with its number, if it may be seen.
 fn node(
     roots: &Roots<'_>,
@@ -341,7 +448,6 @@ fn node(
     buffer: &Buffer,
     (form, number): (&Form, usize),
     at: DVec3,
-    paint: Paint,
 ) -> Option<Node> {
     if view.cuts_off(at, form.half) {
         return None;
@@ -354,8 +460,9 @@ fn node(
     (!buffer.hides(rectangle, nearest)).then_some(Node {
         at,
         form: number,
-        paint,
+        paint: Paint::default(),
         nearest,
         rectangle,
+        known: Known::default(),
     })
 }

@@ -18,6 +18,7 @@ mod eye;
 mod forms;
 mod lit;
 mod occlusion;
+mod open;
 mod options;
 mod place;
 mod planes;

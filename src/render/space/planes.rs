@@ -2,7 +2,7 @@
 
 use crate::geometry::DVec3;
 
-use super::buffer::{CLASS_BITS, EMPTY};
+use super::buffer::{BLOCK, BLOCKS_ALONG, CLASS_BITS, EMPTY};
 use super::camera::Projection;
 use super::lit::Classes;
 use super::solid::View;
@@ -25,6 +25,49 @@ struct Plane {
 }
 
 impl Plane {
+    /// Returns the face of a half-space n · x ≤ d as z = plane / across.
+    fn of(projection: Projection, normal: DVec3, distance: f64) -> (Self, f64) {
+        match projection {
+            Projection::Parallel => (
+                Self {
+                    x: -normal.x,
+                    y: -normal.y,
+                    z: distance,
+                },
+                normal.z,
+            ),
+            Projection::Central { focus, middle } => {
+                let [x, y] = [normal.x / focus, normal.y / focus];
+                let z = -normal.z - x * middle[0] - y * middle[1];
+                // With w = 1 / distance from the viewer, n · x ≤ d is n · ray ≤ d w.
+                (
+                    Self {
+                        x: -x,
+                        y: -y,
+                        z: -z,
+                    },
+                    -distance,
+                )
+            }
+        }
+    }
+
+    fn divided(&self, by: f64) -> Self {
+        Self {
+            x: self.x / by,
+            y: self.y / by,
+            z: self.z / by,
+        }
+    }
+
+    fn negated(&self) -> Self {
+        Self {
+            x: -self.x,
+            y: -self.y,
+            z: -self.z,
+        }
+    }
+
     /// Returns the size of the slopes.
     fn slope(&self) -> f64 {
         self.x.abs() + self.y.abs()
@@ -97,43 +140,12 @@ impl Planes {
         self.back.clear();
         self.edges.clear();
         for (normal, distance) in faces {
-            // The face is z = plane / across.
-            let (plane, across) = match projection {
-                Projection::Parallel => (
-                    Plane {
-                        x: -normal.x,
-                        y: -normal.y,
-                        z: distance,
-                    },
-                    normal.z,
-                ),
-                Projection::Central { focus, middle } => {
-                    let [x, y] = [normal.x / focus, normal.y / focus];
-                    let z = -normal.z - x * middle[0] - y * middle[1];
-                    // With w = 1 / distance from the viewer, n · x ≤ d is n · ray ≤ d w.
-                    (
-                        Plane {
-                            x: -x,
-                            y: -y,
-                            z: -z,
-                        },
-                        -distance,
-                    )
-                }
-            };
+            let (plane, across) = Plane::of(projection, normal, distance);
             if across.abs() <= EDGE_ON * plane.slope() {
-                self.edges.push(Plane {
-                    x: -plane.x,
-                    y: -plane.y,
-                    z: -plane.z,
-                });
+                self.edges.push(plane.negated());
                 continue;
             }
-            let plane = Plane {
-                x: plane.x / across,
-                y: plane.y / across,
-                z: plane.z / across,
-            };
+            let plane = plane.divided(across);
             if across > 0.0 {
                 self.front.push(plane);
                 self.classes.push(classes.of(normal));
@@ -144,6 +156,21 @@ impl Planes {
         if let Projection::Central { .. } = projection {
             // Nothing is seen that is behind the viewer.
             self.back.push(Plane::default());
+        }
+    }
+
+    /// Adds a half-space whose face is seen edge-on, but for rounding, before the sides are found.
+    pub(super) fn add_edge(&mut self, projection: Projection, (normal, distance): (DVec3, f64)) {
+        let (plane, _) = Plane::of(projection, normal, distance);
+        self.edges.push(plane.negated());
+    }
+
+    /// Adds a half-space that contains the solid, if its face is seen from the front, after the sides have been found. It has no
+    /// class, and serves to find [open blocks](Self::open_blocks) only.
+    pub(super) fn add_front(&mut self, projection: Projection, (normal, distance): (DVec3, f64)) {
+        let (plane, across) = Plane::of(projection, normal, distance);
+        if across > EDGE_ON * plane.slope() {
+            self.front.push(plane.divided(across));
         }
     }
 
@@ -198,6 +225,18 @@ impl Planes {
         [first, last.max(first)]
     }
 
+    /// Returns the blocks of a row of blocks, as bits, on which the solid is not strictly behind all that is shown; only those
+    /// between two `columns` are examined. `keys` are the largest of the blocks.
+    pub(super) fn open_blocks(
+        &self,
+        view: &View<'_>,
+        row: usize,
+        columns: [usize; 2],
+        keys: &[u32; BLOCKS_ALONG],
+    ) -> u64 {
+        open_blocks(&self.front, view, row, columns, keys)
+    }
+
     /// Returns the nearest value at a point of the picture, its slopes, and the class of its face; `None` if the solid is
     /// farther from the point than `spread`, along the axes.
     pub(super) fn meet(&self, [x, y]: [f64; 2], spread: f64) -> Option<(f64, [f64; 2], u16)> {
@@ -217,6 +256,49 @@ impl Planes {
         let low = self.back.iter().map(|back| at(back) - room(back));
         (high >= low.fold(f64::NEG_INFINITY, f64::max)).then_some(nearest)
     }
+}
+
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    reason = "tiles are small"
+)]
+fn open_blocks(
+    front: &[Plane],
+    view: &View<'_>,
+    row: usize,
+    [start, end]: [usize; 2],
+    keys: &[u32; BLOCKS_ALONG],
+) -> u64 {
+    let is_parallel = matches!(view.projection, Projection::Parallel);
+    let side = BLOCK as f64;
+    let half = (side - 1.0) / 2.0;
+    let middle = |corner: f64, block: usize| corner + (block as f64 + 0.5) * side;
+    let [corner_x, corner_y] = view.corner;
+    let at_y = middle(corner_y, row);
+    let mut open = 0;
+    for first in (start / LANES * LANES..end).step_by(LANES) {
+        let at_x = middle(corner_x, first);
+        let mut highest = [f64::INFINITY; LANES];
+        for plane in front {
+            // The value at the nearest sample of a block.
+            let nearest = plane.z + plane.y * at_y + plane.x * at_x + plane.slope() * half;
+            for (step, highest) in highest.iter_mut().enumerate() {
+                let z = nearest + plane.x * side * step as f64;
+                *highest = if z < *highest { z } else { *highest };
+            }
+        }
+        let keys = &keys[first..first + LANES];
+        for (lane, (high, key)) in highest.into_iter().zip(keys).enumerate() {
+            let z = if is_parallel { high } else { -1.0 / high };
+            // One less for rounding.
+            let depth = view.depths.of(z).saturating_sub(1);
+            open |= u64::from(*key >= depth << CLASS_BITS) << (first + lane);
+        }
+    }
+    let before = |end: usize| !u64::MAX.unbounded_shl(end as u32);
+    open & before(end) & !before(start)
 }
 
 /// Draws a solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they

@@ -1,34 +1,30 @@
 //! Drawing of round solids into a depth buffer: every sample has the exact depth of the surface.
 
+mod rays;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 
-use crate::geometry::{DAffine3, DMat3, DVec3, HalfSpace, Round};
+use crate::geometry::{DAffine3, DMat3, DVec3, Round};
 
-use super::buffer::{Buffer, CLASS_BITS, EMPTY};
+use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE};
 use super::camera::Projection;
 use super::lit::{Classes, Lit};
+use super::open::draw_open;
 use super::planes::{LANES, LONG, Planes};
 use super::solid::{Depths, View};
 
-/// Points of a ray: `start` + w · `along`, for real w.
-#[derive(Clone, Copy, Default)]
-struct Ray {
-    start: DVec3,
-    along: DVec3,
-}
+use self::rays::{Ray, Shape, cut, least, most, nearest_cut, span, square};
 
 /// Draws the image of a primitive under a map that is not singular. `rectangle` contains what is seen of it on the
 /// tile.
-#[expect(clippy::cast_precision_loss, reason = "tiles are small")]
 pub(super) fn draw(
     buffer: &mut Buffer,
     view: &View<'_>,
     primitive: Round,
     place: &DAffine3,
-    [left, top, right, bottom]: [usize; 4],
+    rectangle @ [left, top, right, bottom]: [usize; 4],
     classes: &mut Classes<'_>,
     (row, planes): (&mut Row, &mut Planes),
 ) {
@@ -37,55 +33,42 @@ pub(super) fn draw(
         inverse: place.matrix3.inverse(),
         middle: place.translation,
     };
-    let [corner_x, corner_y] = view.corner;
-    let width = right - left;
-    let may_be_long = primitive != Round::Ball && width >= LONG;
-    let is_long = may_be_long && surface.find_sides(view, planes, width);
-    for y in top..bottom {
-        let [left, right] = match is_long {
-            true => planes.seen_on_row(view, y, [left, right]),
-            false => [left, right],
-        };
-        row.resize((right - left).next_multiple_of(LANES));
-        let first = [corner_x + left as f64 + 0.5, corner_y + y as f64 + 0.5];
-        meet(&surface, view, first, row);
-        let keys = &mut buffer.row_mut(y)[left..right];
-        let Some(seen) = hide(keys, row) else {
-            continue;
-        };
-        if let (Classes::OfLevels { lit, bits, .. }, []) = (&*classes, view.cuts) {
-            light(&surface, view, first, (lit, *bits), (row, seen.clone()));
-        }
-        for (x, key) in keys.iter_mut().enumerate().take(seen.end).skip(seen.start) {
-            if row.depths[x] == EMPTY {
-                continue;
-            }
-            let class = match classes {
-                Classes::One(class) => *class,
-                Classes::OfLevels { of, .. } if view.cuts.is_empty() => of(row.levels[x]),
-                _ => classes.of(surface.normal(view, [first[0] + x as f64, first[1]], row.ways[x])),
-            };
-            *key = (*key).min(row.depths[x] | u32::from(class));
-        }
+    let is_long = right - left >= LONG && surface.find_sides(view, planes, right - left);
+    let mut draw = |keys: &mut [u32], at| surface.draw_row(view, (keys, at), row, classes);
+    if is_long {
+        return draw_open(buffer, view, planes, rectangle, draw);
     }
+    for y in top..bottom {
+        draw(&mut buffer.row_mut(y)[left..right], [left, y]);
+    }
+    buffer.refresh(rectangle);
 }
 
 /// Row of samples, as a primitive shows it.
-#[derive(Default)]
 pub(super) struct Row {
     /// Distances along the rays.
-    ways: Vec<f64>,
+    ways: [f64; SIDE],
     /// Keys without classes; [`EMPTY`] where nothing is shown.
-    depths: Vec<u32>,
-    levels: Vec<u16>,
+    depths: [u32; SIDE],
+    levels: [u16; SIDE],
 }
 
-impl Row {
-    fn resize(&mut self, count: usize) {
-        self.ways.resize(count, 0.0);
-        self.depths.resize(count, EMPTY);
-        self.levels.resize(count, 0);
+impl Default for Row {
+    fn default() -> Self {
+        Self {
+            ways: [0.0; SIDE],
+            depths: [EMPTY; SIDE],
+            levels: [0; SIDE],
+        }
     }
+}
+
+/// Normals n of planes n · x = 1, in the coordinates of a primitive, that touch it along lines.
+struct Touching {
+    /// The one that faces the viewer.
+    front: DVec3,
+    /// The normals of planes that are seen edge-on, if there are any.
+    edges: Option<[DVec3; 2]>,
 }
 
 /// A primitive in its place.
@@ -96,12 +79,45 @@ struct Surface {
 }
 
 impl Surface {
+    /// Draws the part of a row of samples whose first one is given.
+    #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
+    fn draw_row(
+        &self,
+        view: &View<'_>,
+        (keys, [left, y]): (&mut [u32], [usize; 2]),
+        row: &mut Row,
+        classes: &mut Classes<'_>,
+    ) {
+        let [corner_x, corner_y] = view.corner;
+        let first = [corner_x + left as f64 + 0.5, corner_y + y as f64 + 0.5];
+        let Some(seen) = meet(self, view, first, (keys, row)) else {
+            return;
+        };
+        if let (Classes::OfLevels { lit, bits, .. }, []) = (&*classes, view.cuts) {
+            light(self, view, first, (lit, *bits), (row, seen.clone()));
+        }
+        for (x, key) in keys.iter_mut().enumerate().take(seen.end).skip(seen.start) {
+            if row.depths[x] == EMPTY {
+                continue;
+            }
+            let class = match classes {
+                Classes::One(class) => *class,
+                Classes::OfLevels { of, .. } if view.cuts.is_empty() => of(row.levels[x]),
+                _ => classes.of(self.normal(view, [first[0] + x as f64, first[1]], row.ways[x])),
+            };
+            *key = (*key).min(row.depths[x] | u32::from(class));
+        }
+    }
+
     /// Finds the sides of the box around the primitive; returns whether rows of `width` samples are long enough
     /// for them.
     fn find_sides(&self, view: &View<'_>, planes: &mut Planes, width: usize) -> bool {
         let across = self.inverse.transpose();
         // All primitives but the ball reach from y = 0 to y = 1.
-        let low = DVec3::new(1.0, 0.0, 1.0);
+        let low = match self.primitive {
+            Round::Ball => DVec3::ONE,
+            _ => DVec3::new(1.0, 0.0, 1.0),
+        };
         let face = |normal: DVec3, distance: f64| {
             let normal = across * normal;
             (normal, distance + normal.dot(self.middle))
@@ -109,7 +125,50 @@ impl Surface {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter();
         let faces = axes.flat_map(|axis| [face(axis, 1.0), face(-axis, low.dot(axis))]);
         planes.set(view.projection, faces, &mut Classes::One(0));
-        planes.find_sides(width)
+        let touching = self.touching(view.projection);
+        let edges = { touching.iter() }.filter_map(|it| it.edges).flatten();
+        for normal in edges {
+            planes.add_edge(view.projection, face(normal, 1.0));
+        }
+        let is_long = planes.find_sides(width);
+        if let Some(Touching { front, .. }) = touching {
+            planes.add_front(view.projection, face(front, 1.0));
+        }
+        is_long
+    }
+
+    /// Returns planes that touch a cone or a cylinder along lines; `None` for a ball, and if it is seen along its axis.
+    fn touching(&self, projection: Projection) -> Option<Touching> {
+        let slope = match self.primitive {
+            Round::Ball => return None,
+            Round::Cylinder => 0.0,
+            Round::Cone => 1.0,
+        };
+        // The normals of planes that touch along a line are (cos t, slope, sin t).
+        let (across, rest) = match projection {
+            Projection::Parallel => {
+                let along = self.inverse * DVec3::Z;
+                (along, -slope * along.y)
+            }
+            Projection::Central { .. } => {
+                let viewer = self.inverse * -self.middle;
+                (viewer, 1.0 - slope * viewer.y)
+            }
+        };
+        let length = across.x.hypot(across.z);
+        let [cosine, sine] = [across.x / length, across.z / length];
+        // Edges are where x cos t + z sin t = rest.
+        let near = rest / length;
+        let far = (1.0 - near * near).sqrt();
+        let edges = [far, -far].map(|aside| {
+            let x = near * cosine - aside * sine;
+            let z = near * sine + aside * cosine;
+            DVec3::new(x, slope, z)
+        });
+        (length > 0.0).then_some(Touching {
+            front: DVec3::new(cosine, slope, sine),
+            edges: (near.abs() < 1.0).then_some(edges),
+        })
     }
 
     /// Returns the ray of a sample. The distance along it is that from the middle, or in perspective from the viewer.
@@ -143,9 +202,10 @@ impl Surface {
         let [low, high] = self.span(inside);
         if view.cuts.is_empty() || low <= way && way <= high {
             let point = inside.start + inside.along * way;
+            let shape = Shape::of(self.primitive);
             let normal = match self.primitive {
-                Round::Ball => normal::<false>(self.primitive, point),
-                _ => normal::<true>(self.primitive, point),
+                Round::Ball => shape.normal::<false>(point),
+                _ => shape.normal::<true>(point),
             };
             return self.inverse.transpose() * normal;
         }
@@ -156,51 +216,69 @@ impl Surface {
     fn span(&self, ray: Ray) -> [f64; 2] {
         let quadric = self.primitive.quadric();
         match self.primitive {
-            Round::Ball => span::<false>(quadric, ray),
-            _ => span::<true>(quadric, ray),
+            Round::Ball => span::<false, false>(quadric, ray),
+            _ => span::<true, false>(quadric, ray),
         }
     }
 }
 
-/// Finds where the rays of a row of samples, of which the first is given, meet a primitive.
-fn meet(surface: &Surface, view: &View<'_>, first: [f64; 2], row: &mut Row) {
+/// Finds where the rays of a row of samples, of which the first is given, meet a primitive. Returns the part that
+/// contains all of it that is not behind the `keys`; `None` if nothing is.
+fn meet(
+    surface: &Surface,
+    view: &View<'_>,
+    first: [f64; 2],
+    row: (&[u32], &mut Row),
+) -> Option<Range<usize>> {
+    if !view.cuts.is_empty() {
+        return meet_cut(surface, view, first, row);
+    }
     let is_parallel = matches!(view.projection, Projection::Parallel);
-    match (surface.primitive, is_parallel) {
-        _ if !view.cuts.is_empty() => meet_cut(surface, view, first, row),
-        (Round::Ball, true) => meet_uncut::<false, true>(surface, view, first, row),
-        (Round::Ball, false) => meet_uncut::<false, false>(surface, view, first, row),
-        (_, true) => meet_uncut::<true, true>(surface, view, first, row),
-        (_, false) => meet_uncut::<true, false>(surface, view, first, row),
+    // All rays are parallel, and meet the surface twice or never.
+    let is_twice = is_parallel && square(surface.primitive.quadric(), surface.inverse.z_axis) > 0.0;
+    match (surface.primitive, is_parallel, is_twice) {
+        (Round::Ball, true, true) => meet_uncut::<false, true, true>(surface, view, first, row),
+        (Round::Ball, true, _) => meet_uncut::<false, true, false>(surface, view, first, row),
+        (Round::Ball, ..) => meet_uncut::<false, false, false>(surface, view, first, row),
+        (_, true, true) => meet_uncut::<true, true, true>(surface, view, first, row),
+        (_, true, _) => meet_uncut::<true, true, false>(surface, view, first, row),
+        _ => meet_uncut::<true, false, false>(surface, view, first, row),
     }
 }
 
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
-fn meet_uncut<const CAPPED: bool, const PARALLEL: bool>(
+fn meet_uncut<const CAPPED: bool, const PARALLEL: bool, const TWICE: bool>(
     surface: &Surface,
     view: &View<'_>,
     [first, y]: [f64; 2],
-    row: &mut Row,
-) {
+    (keys, row): (&[u32], &mut Row),
+) -> Option<Range<usize>> {
     let projection = match view.projection {
         _ if PARALLEL => Projection::Parallel,
         central => central,
     };
     let quadric = surface.primitive.quadric();
     let depths_of = view.depths;
-    let Row { ways, depths, .. } = row;
-    let ways = &mut ways[..depths.len()];
-    for x in 0..depths.len() {
+    let count = keys.len().next_multiple_of(LANES);
+    let (ways, depths) = (&mut row.ways[..count], &mut row.depths[..count]);
+    for x in 0..count {
         let ray = surface.inside(surface.ray(projection, [first + f64::from(x as u32), y]));
-        let span @ [low, high] = span::<CAPPED>(quadric, ray);
+        let span @ [low, high] = span::<CAPPED, TWICE>(quadric, ray);
         let way = if PARALLEL { high } else { low };
         ways[x] = way;
         depths[x] = key::<PARALLEL>(surface, depths_of, span);
     }
+    hide(keys, depths)
 }
 
-fn meet_cut(surface: &Surface, view: &View<'_>, [first, y]: [f64; 2], row: &mut Row) {
-    for x in 0..row.depths.len() {
+fn meet_cut(
+    surface: &Surface,
+    view: &View<'_>,
+    [first, y]: [f64; 2],
+    (keys, row): (&[u32], &mut Row),
+) -> Option<Range<usize>> {
+    for x in 0..keys.len() {
         let seen = surface.ray(view.projection, [first + x as f64, y]);
         let span = cut(surface.span(surface.inside(seen)), view.cuts, seen);
         (row.ways[x], row.depths[x]) = match view.projection {
@@ -208,6 +286,7 @@ fn meet_cut(surface: &Surface, view: &View<'_>, [first, y]: [f64; 2], row: &mut 
             Projection::Central { .. } => (span[0], key::<false>(surface, view.depths, span)),
         };
     }
+    hide(keys, &mut row.depths)
 }
 
 /// Returns the key of a ray, without its class, by its part within the primitive.
@@ -227,17 +306,17 @@ fn key<const PARALLEL: bool>(surface: &Surface, depths: Depths, [low, high]: [f6
 }
 
 /// Removes what is behind the samples of a row; returns the part that contains all that is left; `None` if nothing is.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
-fn hide(keys: &[u32], row: &mut Row) -> Option<Range<usize>> {
+#[inline(always)]
+fn hide(keys: &[u32], depths: &mut [u32]) -> Option<Range<usize>> {
+    let depths = &mut depths[..keys.len()];
     let mut nearest = EMPTY;
-    for (depth, key) in row.depths.iter_mut().zip(keys) {
+    for (depth, key) in depths.iter_mut().zip(keys) {
         *depth = if *depth <= *key { *depth } else { EMPTY };
         nearest = nearest.min(*depth);
     }
     if nearest == EMPTY {
         return None;
     }
-    let depths = &row.depths[..keys.len()];
     let is_left = |depth: &u32| *depth < EMPTY;
     let start = depths.iter().position(is_left)?;
     let end = depths.iter().rposition(is_left)? + 1;
@@ -280,130 +359,14 @@ fn light_on<const CAPPED: bool, const PARALLEL: bool>(
     };
     let towards = surface.inverse * lit.towards();
     let across = surface.inverse.transpose();
-    let (primitive, lit) = (surface.primitive, *lit);
+    let (shape, lit) = (Shape::of(surface.primitive), *lit);
     let ways = &ways[..levels.len()];
     for x in 0..levels.len() {
         let ray = surface.inside(surface.ray(projection, [first + f64::from(x as u32), y]));
-        let normal = normal::<CAPPED>(primitive, ray.start + ray.along * ways[x]);
-        let square = (across * normal).length_squared();
-        let cosine = normal.dot(towards) / square.sqrt();
-        levels[x] = lit.level_of_cosine(if square > 0.0 { cosine } else { 0.0 }, bits);
+        let normal = shape.normal::<CAPPED>(ray.start + ray.along * ways[x]);
+        let length = (across * normal).length();
+        // Where the normal vanishes, so does the product. A branch would keep rays from being lit at once.
+        let cosine = most(1.0, normal.dot(towards) / least(f64::MIN_POSITIVE, length));
+        levels[x] = lit.level_of_cosine(cosine, bits);
     }
-}
-
-/// The span of a ray that lies outside.
-const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
-
-/// Returns the part of a ray within a quadric, and between caps. All cases are computed, and one is selected: several rays
-/// are met at once.
-#[inline(always)]
-fn span<const CAPPED: bool>([a, b, c]: [f64; 3], Ray { start, along }: Ray) -> [f64; 2] {
-    let square = along.x * along.x + along.z * along.z + a * along.y * along.y;
-    let half = start.x * along.x + start.z * along.z + (a * start.y + b) * along.y;
-    let rest = start.x * start.x + start.z * start.z + (a * start.y + 2.0 * b) * start.y + c;
-    let discriminant = half * half - square * rest;
-    // The form without cancellation.
-    let root = least(0.0, discriminant).sqrt();
-    let sum = -(half + root.copysign(half));
-    let is_double = sum == 0.0;
-    let one = if is_double { 0.0 } else { sum / square };
-    let other = if is_double { 0.0 } else { rest / sum };
-    let [first, last] = [most(one, other), least(one, other)];
-    // A ray that is steeper than a cone is within it outside of the roots: below its apex on one side.
-    let is_below = along.y > 0.0;
-    let steep = [
-        if is_below { f64::NEG_INFINITY } else { last },
-        if is_below { first } else { f64::INFINITY },
-    ];
-    let curved = select(square > 0.0, [first, last], steep);
-    let curved = select((discriminant < 0.0) & (square > 0.0), NOTHING, curved);
-    let end = -rest / (2.0 * half);
-    let straight = [
-        if half > 0.0 { f64::NEG_INFINITY } else { end },
-        if half > 0.0 { end } else { f64::INFINITY },
-    ];
-    let all = [f64::NEG_INFINITY, f64::INFINITY];
-    let constant = select(rest > 0.0, NOTHING, all);
-    let straight = select(half == 0.0, constant, straight);
-    let span @ [low, high] = select(square == 0.0, straight, curved);
-    if !CAPPED {
-        return span;
-    }
-    // The caps y = 0 and y = 1.
-    let is_between = (0.0 <= start.y) & (start.y <= 1.0);
-    let [bottom, top] = [-start.y / along.y, (1.0 - start.y) / along.y];
-    let capped = [
-        least(low, most(bottom, top)),
-        most(high, least(bottom, top)),
-    ];
-    let level = select(is_between, span, NOTHING);
-    select(along.y == 0.0, level, capped)
-}
-
-#[inline(always)]
-fn select(condition: bool, yes: [f64; 2], no: [f64; 2]) -> [f64; 2] {
-    [
-        if condition { yes[0] } else { no[0] },
-        if condition { yes[1] } else { no[1] },
-    ]
-}
-
-/// Returns the larger of two numbers, in one instruction.
-#[inline(always)]
-fn least(bound: f64, value: f64) -> f64 {
-    if value > bound { value } else { bound }
-}
-
-/// Returns the smaller of two numbers, in one instruction.
-#[inline(always)]
-fn most(bound: f64, value: f64) -> f64 {
-    if value < bound { value } else { bound }
-}
-
-/// Returns a vector outwards across the surface of a primitive at a point of it.
-#[inline(always)]
-fn normal<const CAPPED: bool>(primitive: Round, point: DVec3) -> DVec3 {
-    let [a, b, c] = primitive.quadric();
-    let DVec3 { x, y, z } = point;
-    let side = DVec3::new(x, a * y + b, z);
-    if !CAPPED {
-        return side;
-    }
-    // A point on a cap is farther from the quadric than from the cap.
-    let inside = -(x * x + z * z + (a * y + 2.0 * b) * y + c);
-    let is_top = (1.0 - y < inside) & (primitive == Round::Cylinder);
-    let is_bottom = y < inside;
-    let sign = if is_bottom { -1.0 } else { 1.0 };
-    let is_cap = is_bottom | is_top;
-    DVec3::new(
-        if is_cap { 0.0 } else { side.x },
-        if is_cap { sign } else { side.y },
-        if is_cap { 0.0 } else { side.z },
-    )
-}
-
-/// Returns the normal of the half-space on whose plane a point lies.
-fn nearest_cut(cuts: &[HalfSpace], point: DVec3) -> DVec3 {
-    let away = |cut: &HalfSpace| {
-        let distance = cut.distance - cut.normal.dot(point);
-        (distance / cut.normal.length()).abs()
-    };
-    let nearest = cuts.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-    nearest.map_or(DVec3::Z, |cut| cut.normal)
-}
-
-/// Returns the part of a ray that lies within half-spaces, too, which may be empty.
-fn cut([mut low, mut high]: [f64; 2], cuts: &[HalfSpace], ray: Ray) -> [f64; 2] {
-    for HalfSpace { normal, distance } in cuts {
-        let along = normal.dot(ray.along);
-        let rest = distance - normal.dot(ray.start);
-        if along > 0.0 {
-            high = high.min(rest / along);
-        } else if along < 0.0 {
-            low = low.max(rest / along);
-        } else if rest < 0.0 {
-            return NOTHING;
-        }
-    }
-    [low, high]
 }

@@ -4,13 +4,20 @@ use tiny_skia::PremultipliedColorU8;
 
 use crate::style::{Colour, Shade, Style};
 
-use super::buffer::{EMPTY, SAMPLES, STEPS};
+use super::buffer::{CLASS_BITS, EMPTY, SAMPLES, STEPS};
 use super::lit::{Lit, intensity};
 use super::scene::ClassBy;
 use super::solid::depth_of;
 
 /// Colour of what has no other: a warm yellow, as in the paper.
 const INK: Colour = Colour::of_rgba([255, 214, 120, 255]);
+
+/// Bits of a key that are its class.
+const CLASS: u32 = (1 << CLASS_BITS) - 1;
+
+/// Number of samples of a pixel.
+#[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+const SAMPLES_A_PIXEL: f64 = (SAMPLES * SAMPLES) as f64;
 
 /// Returns the colour of elements that have no other.
 pub(in crate::render) fn ink(style: &Style) -> Colour {
@@ -70,7 +77,7 @@ impl Inks {
         let Some(depth) = depth_of(key) else {
             return [0.0; 4];
         };
-        let class = (key & ((1 << super::buffer::CLASS_BITS) - 1)) as usize;
+        let class = (key & CLASS) as usize;
         let ink = match tint {
             Some(colour) => colour.rgba().map(f64::from),
             None => self.inks[class % self.inks.len()],
@@ -91,21 +98,52 @@ impl Inks {
         rows: [&[u32]; SAMPLES],
         tints: Option<[&[Colour]; SAMPLES]>,
     ) -> ([f64; 4], Option<u32>) {
-        let mut sum = [0.0; 4];
         let mut nearest = EMPTY;
-        let mut tints = tints.into_iter().flatten().flatten();
-        for key in rows.into_iter().flatten() {
-            let tint = tints.next();
-            if *key == EMPTY {
-                continue;
-            }
-            nearest = nearest.min(*key);
-            let own = self.sample(*key, tint);
-            sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
+        for row in rows {
+            nearest = row.iter().fold(nearest, |nearest, key| nearest.min(*key));
         }
-        #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
-        let all = (SAMPLES * SAMPLES) as f64;
-        (sum.map(|part| part / all), depth_of(nearest))
+        if nearest == EMPTY {
+            return ([0.0; 4], None);
+        }
+        let of_one_class = { tints.is_none() }.then(|| self.sum_of_one_class(rows));
+        let sum = of_one_class.flatten().unwrap_or_else(|| {
+            let mut tints = tints.into_iter().flatten().flatten();
+            let mut sum = [0.0; 4];
+            for key in rows.into_iter().flatten() {
+                let own = self.sample(*key, tints.next());
+                sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
+            }
+            sum
+        });
+        (sum.map(|part| part / SAMPLES_A_PIXEL), depth_of(nearest))
+    }
+
+    /// Returns the sum of the colours of samples that all show something of the same class.
+    fn sum_of_one_class(&self, rows: [&[u32]; SAMPLES]) -> Option<[f64; 4]> {
+        let (mut most, mut depths, mut any, mut all) = (0, 0, 0, CLASS);
+        for row in rows {
+            for key in row {
+                most = most.max(*key);
+                depths += key >> CLASS_BITS;
+                any |= key & CLASS;
+                all &= key;
+            }
+        }
+        if most == EMPTY || any != all {
+            return None;
+        }
+        let ink = self.inks[any as usize % self.inks.len()];
+        let intensity = match self.shade.cues_depth() {
+            true => SAMPLES_A_PIXEL - f64::from(depths) / STEPS,
+            false => SAMPLES_A_PIXEL,
+        };
+        let share = intensity * ink[3] / 255.0;
+        Some([
+            ink[0] * share,
+            ink[1] * share,
+            ink[2] * share,
+            ink[3] * SAMPLES_A_PIXEL,
+        ])
     }
 }
 

@@ -9,6 +9,7 @@ use crate::graph::Graph;
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
 use super::camera::Projection;
 use super::lit::Classes;
+use super::open::draw_open;
 use super::planes::{Planes, draw_row};
 use super::round;
 
@@ -123,24 +124,24 @@ impl Pencil {
                 &mut classes,
                 memory,
             );
-            buffer.refresh(rectangle);
             return;
         }
         let faces =
             faces(solid, map, view).chain(view.cuts.iter().map(|cut| (cut.normal, cut.distance)));
         self.planes.set(view.projection, faces, &mut classes);
+        let planes = &mut self.planes;
         let [left, top, right, bottom] = rectangle;
-        let is_long = self.planes.find_sides(right - left);
+        let is_long = planes.find_sides(right - left);
+        let planes = &*planes;
+        let draw = |keys: &mut [u32], at| match classes {
+            Classes::One(class) => draw_row::<false>(planes, keys, view, at, class),
+            _ => draw_row::<true>(planes, keys, view, at, 0),
+        };
+        if is_long {
+            return draw_open(buffer, view, planes, rectangle, draw);
+        }
         for y in top..bottom {
-            let [left, right] = match is_long {
-                true => self.planes.seen_on_row(view, y, [left, right]),
-                false => [left, right],
-            };
-            let row = &mut buffer.row_mut(y)[left..right];
-            match classes {
-                Classes::One(class) => draw_row::<false>(&self.planes, row, view, [left, y], class),
-                _ => draw_row::<true>(&self.planes, row, view, [left, y], 0),
-            }
+            draw(&mut buffer.row_mut(y)[left..right], [left, y]);
         }
         buffer.refresh(rectangle);
     }

@@ -15,7 +15,7 @@ use super::buffer::{Buffer, CLASS_BITS, EMPTY, MAX_CLASS, SIDE};
 /// Colours of a tile.
 #[derive(Default)]
 pub(super) struct Tints {
-    /// Appearances of instances that have been met; the first is that of instances without tint.
+    /// Appearances of instances; the first is that of instances without tint.
     appearances: Vec<Appearance>,
     classes: FastMap<Colour, u16>,
     /// Colours of the classes from 1 on.
@@ -31,6 +31,16 @@ impl Tints {
         self.appearances.push(Appearance::NONE);
         self.classes.clear();
         self.colours.clear();
+    }
+
+    /// Returns the number of appearances.
+    pub(super) fn len(&self) -> usize {
+        self.appearances.len()
+    }
+
+    /// Forgets all appearances but so many.
+    pub(super) fn truncate(&mut self, count: usize) {
+        self.appearances.truncate(count);
     }
 
     /// Returns the number of the appearance of an instance inside another.
