@@ -93,7 +93,7 @@ impl Ord for Nearest {
 #[derive(Default)]
 pub(super) struct Descent {
     stack: Vec<Node>,
-    /// Instances that wait, of which the nearest is visited next: those in large ones, and large ones themselves.
+    /// Instances of the initiator and in large instances, of which the nearest is visited next.
     large: BinaryHeap<Nearest>,
     /// Forms that are not known before: those of nodes that wait or are on the stack, and of their siblings.
     own: Vec<Form>,
@@ -181,11 +181,11 @@ impl Descent {
             }
         }
         let mut own = std::mem::take(&mut self.own);
-        // Instances of which others are nearer in part are visited one by one, from near to far. In small ones, the order is
-        // that of the depth of each in the next.
+        // Large instances overlap in depth: the nearest of all is visited next. The instances in a small one are visited
+        // before any other.
         self.large.extend(self.stack.drain(..).map(Nearest));
         while let Some(Nearest(node)) = self.large.pop() {
-            // These belong to nodes that wait.
+            // Forms and appearances up to here belong to nodes that wait.
             let kept = self.known(&own);
             if node.is_large() && self.large.len().max(kept.forms) < MAX_LARGE {
                 self.visit_seen(roots, view, buffer, &node, &mut own);
