@@ -90,7 +90,17 @@ impl Linear for DMat2 {
     fn spectral_radius(&self) -> f64 {
         let (a, c) = (self.x_axis.x, self.x_axis.y);
         let (b, d) = (self.y_axis.x, self.y_axis.y);
-        largest_root(a / 2.0 + d / 2.0, a / 2.0 - d / 2.0, b * c)
+        let (middle, half) = (a / 2.0 + d / 2.0, a / 2.0 - d / 2.0);
+        let is_exact = |square: f64, is_zero: bool| is_zero || EXACT.contains(&square.abs());
+        let is_plain = is_exact(half * half, half == 0.0) && is_exact(b * c, b == 0.0 || c == 0.0);
+        if is_plain || !self.is_finite() {
+            return largest_root(middle, half, b * c);
+        }
+        // As for the map in coordinates in which the other two entries are equal but for their signs.
+        let mean = b.abs().sqrt() * c.abs().sqrt();
+        let size = mean.max(half.abs()).max(middle.abs());
+        let product = (mean / size) * (mean / size) * b.signum() * c.signum();
+        size * largest_root(middle / size, half / size, product)
     }
 }
 
@@ -170,8 +180,55 @@ impl Linear for DMat3 {
         if let Some(ratio) = ratio(&scaled) {
             return ratio * size;
         }
-        size * largest_eigenvalue(&scaled)
+        let is_exact = |entry: &f64| *entry == 0.0 || entry.abs() / size > LEAST;
+        if self.to_cols_array().iter().all(is_exact) {
+            return size * largest_eigenvalue(&scaled);
+        }
+        let balanced = balanced(*self);
+        match largest_entry(&balanced) {
+            0.0 => 0.0,
+            size => size * largest_eigenvalue(&(balanced / size)),
+        }
     }
+}
+
+/// Share of the largest entry above which no product of three entries is below the range of doubles.
+const LEAST: f64 = 1e-90;
+
+/// Returns the matrix of a map in coordinates in which the other entries of a row are about as large as those of its column:
+/// its eigenvalues are those of the map. Entries that have no part in them become 0 (Osborne 1960; Parlett & Reinsch 1969).
+fn balanced(matrix: DMat3) -> DMat3 {
+    let mut rows = matrix.transpose().to_cols_array_2d();
+    for _ in 0..100 {
+        let mut is_done = true;
+        for at in [0, 1, 2] {
+            let others = || [0, 1, 2].into_iter().filter(move |other| *other != at);
+            let row = others().map(|other| rows[at][other].abs());
+            let column = others().map(|other| rows[other][at].abs());
+            let (row, column) = (row.fold(0.0, f64::max), column.fold(0.0, f64::max));
+            if row == 0.0 || column == 0.0 {
+                for other in others() {
+                    (rows[at][other], rows[other][at]) = (0.0, 0.0);
+                }
+                is_done &= row == column;
+                continue;
+            }
+            // Powers of two take no digits.
+            let exponent = (libm::ilogb(row) - libm::ilogb(column)) / 2;
+            if exponent == 0 {
+                continue;
+            }
+            is_done = false;
+            for other in others() {
+                rows[at][other] = libm::scalbn(rows[at][other], -exponent);
+                rows[other][at] = libm::scalbn(rows[other][at], exponent);
+            }
+        }
+        if is_done {
+            break;
+        }
+    }
+    DMat3::from_cols_array_2d(&rows).transpose()
 }
 
 fn largest_entry(matrix: &DMat3) -> f64 {
@@ -336,6 +393,37 @@ mod tests {
         let shear = DMat3::from_cols(DVec3::X * 0.5, DVec3::new(7.0, 0.5, 0.0), DVec3::Z * 0.1);
         assert!(stretch3(&shear) > 7.0);
         assert!((shear.spectral_radius() - 0.5).abs() < 1e-5);
+    }
+
+    /// Products of entries are below or beyond the range of doubles.
+    #[test]
+    fn eigenvalues_of_entries_of_any_size() {
+        let is_near = |found: f64, radius: f64| (found / radius - 1.0).abs() < 1e-12;
+        // Double roots of a characteristic polynomial have half of the digits.
+        let is_about = |found: f64, radius: f64| (found / radius - 1.0).abs() < 1e-7;
+        for ([a, b, c, d], radius) in [
+            ([0.5, 1e300, 0.0, 1.0], 1.0),
+            ([0.5e-200, 1.0, 0.0, -1e-200], 1e-200),
+            ([0.0, 1e300, 1e-300, 0.0], 1.0),
+            ([0.0, 1e300, -4e-300, 0.0], 2.0),
+            ([1e200, 1e200, 1e200, 1e200], 2e200),
+            ([3e-170, 2e-170, 2e-170, 3e-170], 5e-170),
+            ([0.5, 1e-310, 1e-310, 0.5], 0.5),
+            ([1e150, 1e-200, 1e-200, 1e150], 1e150),
+        ] {
+            let plane = DMat2::from_cols(DVec2::new(a, c), DVec2::new(b, d));
+            let found = plane.spectral_radius();
+            assert!(is_near(found, radius), "{plane}: {found}");
+            for third in [0.0, radius / 4.0] {
+                let rows = [[third, 1.0, 0.0], [0.0, a, b], [0.0, c, d]];
+                let space = DMat3::from_cols_array_2d(&rows).transpose();
+                let found = space.spectral_radius();
+                assert!(is_about(found, radius), "{space}: {found}");
+            }
+        }
+        let cycle = [[0.0, 1e200, 0.0], [0.0, 0.0, 8.0], [1e-200, 0.0, 0.0]];
+        let found = DMat3::from_cols_array_2d(&cycle).spectral_radius();
+        assert!(is_near(found, 2.0), "{found}");
     }
 
     #[test]
