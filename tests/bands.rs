@@ -75,6 +75,21 @@ fn the_height_of_bands_does_not_show() {
     }
 }
 
+/// Many small elements are drawn by sprites, which bands share.
+#[test]
+fn many_elements_are_the_same_in_bands() {
+    for (name, steps) in [("dragon", 20), ("carpet", 7)] {
+        let size = |options: &mut Options| options.size = Size::Long(300);
+        let whole = png(name, steps, None, &size);
+        for rows in [1_000, 40, 64] {
+            assert!(
+                png(name, steps, Some(300 * rows), &size) == whole,
+                "{name}, {rows} rows"
+            );
+        }
+    }
+}
+
 /// Coverage, strokes of thin round pens and small polygons, does not depend on bands.
 #[test]
 fn what_is_drawn_in_one_piece_is_the_same_in_bands() {

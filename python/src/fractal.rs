@@ -597,10 +597,9 @@ impl Fractal {
         steps: Option<u32>,
         seed: u64,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let growing = Growing::steps(steps, seed);
-        let is_in_space = self.fractal.model().is_in_space();
-        let level = self.grown(py, &growing, move |fractal| {
-            Ok(match is_in_space {
+        let level = quick(py, || {
+            let fractal = Growing::steps(steps, seed).apply(&self.fractal);
+            Ok(match fractal.model().is_in_space() {
                 true => fractal.forecast_in_space()?.map(|it| it.level()),
                 false => fractal.forecast()?.map(|it| it.level()),
             })

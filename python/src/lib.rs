@@ -9,11 +9,17 @@ mod error;
 mod fit;
 mod fractal;
 mod library;
+#[cfg(target_os = "linux")]
+mod memory;
 mod results;
 mod table;
 mod work;
 
 use pyo3::prelude::*;
+
+#[cfg(target_os = "linux")]
+#[global_allocator]
+static MEMORY: memory::HugePages = memory::HugePages;
 
 /// Linear fractals: grown from production rules, drawn and measured.
 #[pymodule(gil_used = false)]

@@ -1,13 +1,17 @@
 //! Elements of an approximant in memory, column by column.
 
 use std::num::NonZero;
+use std::sync::Arc;
 
-use crate::geometry::BEYOND;
+use crate::geometry::{BEYOND, Point};
 use crate::graph::Graph;
-use crate::grow::{Division, Element, FractalInfo, Growth, Ranks, Visitor, WalkError, walk_with};
+use crate::grow::{
+    Division, Element, FractalInfo, Growth, Ranks, Run, Visitor, WalkError, walk_with,
+};
 use crate::parallel::with_team;
 
 use super::listed::Listed;
+use super::pattern::{Pattern, Patterns};
 
 /// Values of a column, one for each element.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +31,8 @@ pub enum Column {
 ///
 /// Columns are those of [`write`](super::write) (`fractal`, `age`, `index`; the coordinates, in the model's units;
 /// `fertile`, `direction`, `visible`; the entries of maps, if maps may be arbitrary affine ones) and `joined`: whether the
-/// first point of traversal is the last one of the preceding element.
+/// first point of traversal is the last one of the preceding element. Coordinates may differ by rounding from those that are
+/// written to files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     rows: usize,
@@ -59,13 +64,15 @@ impl Columns {
     ) -> Result<Self, WalkError<ColumnError>> {
         let known = graph.check_size(growth.steps, growth.max_elements).ok();
         let known = known.flatten().and_then(|rows| usize::try_from(rows).ok());
-        let mut all = Block::<F>::new(graph, known.unwrap_or(0));
+        let patterns = Patterns::default();
+        let mut all = Block::<F>::new(graph, known.unwrap_or(0), &patterns);
         with_team(threads, |team| {
             let division = Division {
                 span: Some(MANY),
                 ranks: Ranks::Unknown,
+                blocks: None,
             };
-            let fresh = || Block::new(graph, 0);
+            let fresh = || Block::new(graph, 0, &patterns);
             walk_with(team, graph, growth, division, fresh, |block, seam| {
                 let before = i64::try_from(seam.before).map_err(|_| ColumnError::Rank)?;
                 let goes_on = block.goes_on.min(block.index.len());
@@ -124,10 +131,11 @@ struct Block<'g, F: Listed> {
     joined: Vec<bool>,
     /// Coordinates, and entries of maps.
     reals: Vec<Vec<f64>>,
+    patterns: Patterns,
 }
 
 impl<'g, F: Listed> Block<'g, F> {
-    fn new(graph: &'g Graph<F>, rows: usize) -> Self {
+    fn new(graph: &'g Graph<F>, rows: usize, patterns: &Patterns) -> Self {
         let affine = graph.is_affine();
         let [coordinates, entries] = names::<F>();
         let reals = coordinates.len() + if affine { entries.len() } else { 0 };
@@ -144,6 +152,7 @@ impl<'g, F: Listed> Block<'g, F> {
             visible: Vec::with_capacity(rows),
             joined: Vec::with_capacity(rows),
             reals: (0..reals).map(|_| Vec::with_capacity(rows)).collect(),
+            patterns: Arc::clone(patterns),
         }
     }
 
@@ -225,6 +234,53 @@ impl<F: Listed> Visitor<F> for Block<'_, F> {
         for (reals, value) in self.reals.iter_mut().zip(values) {
             // Adding zero turns −0 into 0.
             reals.push(value + 0.0);
+        }
+        Ok(())
+    }
+
+    fn takes_runs(&self) -> bool {
+        !self.affine && F::UNIT.plane_map().is_some()
+    }
+
+    fn run(&mut self, run: &Run<'_, F>) -> Result<(), ColumnError> {
+        let Some(first) = run.first() else {
+            return Ok(());
+        };
+        let frame = run.frame();
+        let place = self.graph.place();
+        let pattern = Pattern::find(&self.patterns, run);
+        let map = frame.plane_map();
+        let Some(map) = map.filter(|_| pattern.is_in_range(frame, place)) else {
+            let mut elements = run.elements();
+            return elements.try_for_each(|element| self.element(&element));
+        };
+        let rank = |_| ColumnError::Rank;
+        let last = first.index + (pattern.joined.len() - 1) as u128;
+        let [first_rank, last_rank] = [first.index, last].map(i64::try_from);
+        let number = i64::try_from(self.current.number).map_err(rank)?;
+        self.index
+            .extend(first_rank.map_err(rank)?..=last_rank.map_err(rank)?);
+        let rows = self.index.len();
+        self.fractal.resize(rows, number);
+        self.age.resize(rows, self.current.age.into());
+        self.fertile.extend_from_slice(&pattern.fertile);
+        self.direction.extend_from_slice(&pattern.direction);
+        self.visible.extend_from_slice(&pattern.visible);
+        self.joined.push(first.joined);
+        self.joined.extend_from_slice(&pattern.joined[1..]);
+        let (x, y) = (map.matrix2.x_axis, map.matrix2.y_axis);
+        let start = map.translation;
+        let ratio = place.ratio();
+        let [shift_x, shift_y, _] = place.point(F::Point::ZERO).coordinates();
+        let axes = [[x.x, y.x, start.x, shift_x], [x.y, y.y, start.y, shift_y]];
+        for (points, reals) in pattern.coordinates.chunks(2).zip(self.reals.chunks_mut(2)) {
+            for ([along, across, start, shift], reals) in axes.into_iter().zip(reals) {
+                let points = points[0].iter().zip(&points[1]);
+                // Adding zero turns −0 into 0.
+                reals.extend(
+                    points.map(|(x, y)| (along * x + across * y + start) * ratio + shift + 0.0),
+                );
+            }
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Frames as rows of a table, in the plane and in space.
 
-use crate::geometry::{DVec3, Frame, Frame2, Frame3, Homothety};
+use crate::geometry::{DAffine2, DVec3, Frame, Frame2, Frame3, Homothety};
 
 /// Frame whose elements are listed in tables.
 pub trait Listed: Frame {
@@ -21,6 +21,12 @@ pub trait Listed: Frame {
         place: &Homothety<Self::Point>,
         moves_map: bool,
     ) -> Option<(Self::Coordinates, Self::Entries)>;
+
+    /// Returns the map of the plane that moves the coordinates, if these are the first and the last point in the plane.
+    #[must_use]
+    fn plane_map(&self) -> Option<&DAffine2> {
+        None
+    }
 }
 
 impl Listed for Frame2 {
@@ -62,6 +68,10 @@ impl Listed for Frame2 {
         let [from, to] = ends;
         let ends = [from.x, from.y, to.x, to.y];
         is_finite.then(|| (ends, self.map().to_cols_array()))
+    }
+
+    fn plane_map(&self) -> Option<&DAffine2> {
+        Some(self.map())
     }
 }
 

@@ -3,6 +3,7 @@
 mod bits;
 mod columns;
 mod listed;
+mod pattern;
 mod ply;
 mod points;
 mod table;

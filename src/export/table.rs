@@ -77,6 +77,7 @@ pub fn write<F: Listed>(
         let division = Division {
             span: Some(MANY),
             ranks: Ranks::Unknown,
+            blocks: None,
         };
         let walked = walk_with(team, graph, growth, division, fresh, |span, seam| {
             let goes_on = span.goes_on.min(span.rows.len());

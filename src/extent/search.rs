@@ -157,7 +157,7 @@ impl<F: Frame, E: Fn(&Subtree<F>) -> Enter> Maximisation<'_, F, E> {
                 base_element.add_to(&mut self.bounds, &state.frame, pad);
             }
             Enter::Keep | Enter::Skip => {}
-            Enter::Replace => {
+            Enter::Replace | Enter::Divide => {
                 let middle = state.frame.apply(self.graph.middle());
                 let farthest =
                     middle.dot(self.direction) + self.reaches.all[object] * length * SLACK;

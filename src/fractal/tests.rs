@@ -263,12 +263,30 @@ fn columns_are_those_of_the_elements() -> Result<(), Error> {
         };
         let index = elements.iter().map(|it| i64::try_from(it.index).unwrap());
         assert_eq!(columns.get("index"), Some(&Column::Wholes(index.collect())));
-        let x = elements.iter().map(|it| it.frame.ends()[0].x + 0.0);
+        // Elements that are placed as blocks have other roundings than those that are placed one by one.
+        for (name, at) in [("x0", 0), ("y0", 1), ("x1", 2), ("y1", 3)] {
+            let expected = elements.iter().map(|it| {
+                let [from, to] = it.frame.ends();
+                [from.x, from.y, to.x, to.y][at]
+            });
+            let Some(Column::Reals(found)) = columns.get(name) else {
+                panic!("{} has no {name}", entry.name);
+            };
+            assert_eq!(found.len(), elements.len());
+            for (found, expected) in found.iter().zip(expected) {
+                let difference = (found - expected).abs();
+                assert!(
+                    difference <= 1e-13 * (1.0 + expected.abs()),
+                    "{}",
+                    entry.name
+                );
+                assert!(found.is_sign_positive() || *found < 0.0);
+            }
+        }
+        let direction = { elements.iter() }.map(|it| it.frame.direction().number());
         assert_eq!(
-            columns.get("x0"),
-            Some(&Column::Reals(x.collect())),
-            "{}",
-            entry.name
+            columns.get("direction"),
+            Some(&Column::Bytes(direction.collect()))
         );
         let joined = elements.iter().map(|it| it.joined);
         assert_eq!(
@@ -278,6 +296,26 @@ fn columns_are_those_of_the_elements() -> Result<(), Error> {
         tried += 1;
     }
     assert!(tried > 100, "{tried}");
+    Ok(())
+}
+
+/// Where entries of products might lie beyond the range of numbers, elements are placed one by one.
+#[test]
+fn columns_reach_to_the_end_of_the_range() -> Result<(), Error> {
+    let koch = |length: &str| {
+        let text = format!("{{initiator: [[0, 0], [{length}, 0]], generator: koch}}");
+        Fractal::parse(&text)?.steps(4).columns()
+    };
+    let (near, far) = (koch("1e140")?, koch("9e149")?);
+    let [near, far] = [near, far].map(|it| match it.get("x1") {
+        Some(Column::Reals(x)) => x.clone(),
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(near.len(), 256);
+    for (near, far) in near.iter().zip(far) {
+        assert!((near / 1e140 - far / 9e149).abs() < 1e-14);
+    }
+    assert!(koch("2e150").is_err());
     Ok(())
 }
 

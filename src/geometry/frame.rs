@@ -7,6 +7,9 @@ use super::{Affine, Bounds, Direction, Point};
 /// Message for an element whose frame is not [in range](Frame::is_in_range).
 pub const BEYOND: &str = "an element lies beyond the range of numbers";
 
+/// Absolute value below which entries of maps are [in range](Frame::is_in_range).
+pub(crate) const LARGEST_ENTRY: f64 = 1e150;
+
 /// The placement of an element: a map of the unit frame, and the direction along the element's path.
 ///
 /// Graphs, walks, forecasts, bounds and draws know elements by this interface alone; [`Frame2`](super::Frame2)

@@ -2,6 +2,7 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
+use super::frame::LARGEST_ENTRY;
 use super::{BaseElement, Corners2, Direction, Frame, Homothety};
 
 /// The frame of an element in the plane: the map from the unit frame, and the direction along the element's path.
@@ -162,12 +163,11 @@ impl Frame2 {
     #[inline]
     #[must_use]
     pub fn is_in_range(&self) -> bool {
-        const LARGEST: f64 = 1e150;
         let largest = self.map.translation.abs().max_element();
         let linear = self.map.matrix2;
         let largest = largest.max(linear.x_axis.abs().max(linear.y_axis.abs()).max_element());
         // Minima and maxima ignore NaN.
-        largest < LARGEST && self.map.is_finite()
+        largest < LARGEST_ENTRY && self.map.is_finite()
     }
 
     /// Returns `true` if no entry of the map is infinite or NaN.

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::frame::LARGEST_ENTRY;
 use super::linear::stretch3;
 use super::{Bounds, Corners, Direction, Frame, Solid};
 use crate::expression::degrees;
@@ -222,7 +223,6 @@ impl Frame for Frame3 {
     }
 
     fn is_in_range(&self) -> bool {
-        const LARGEST: f64 = 1e150;
         let linear = self.map.matrix3;
         let all = [
             linear.x_axis,
@@ -232,7 +232,7 @@ impl Frame for Frame3 {
         ];
         // Minima and maxima ignore NaN.
         all.iter()
-            .all(|vector| vector.abs().max_element() < LARGEST)
+            .all(|vector| vector.abs().max_element() < LARGEST_ENTRY)
             && self.map.is_finite()
     }
 }

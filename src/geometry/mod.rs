@@ -46,6 +46,7 @@ pub use round::Round;
 pub use solid::{HalfSpace, MAX_HULL_POINTS, Side, Solid};
 
 pub(crate) use clip::clip;
+pub(crate) use frame::LARGEST_ENTRY;
 pub(crate) use frame2::stretch;
 pub(crate) use homothety::exponent_of;
 pub(crate) use hull::{EIGHT_WAYS, convex_hull, distance_to_segment, hausdorff_distance, thinned};

@@ -5,10 +5,12 @@
 //! last steps: an object then has one block for each range of lengths with the same expansion.
 
 mod cut;
+mod kept;
 mod made;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use kept::KeptBlocks;
 pub(super) use made::{Blocks, MAX_LEAVES};
 
 use std::ops::{Range, RangeInclusive};
@@ -57,6 +59,10 @@ pub(super) struct Block<F: Frame = Frame2> {
     line: Option<Vec<F::Point>>,
     /// Corners of the outlines, if these have no curves.
     corners: Option<F::Corners>,
+    /// Numbers of the leaves' objects, each once.
+    objects: Vec<usize>,
+    /// Number of steps after which no element is replaced.
+    steps: u32,
     /// Number of fertile leaves.
     fertile: u64,
     /// Sum of the leaves' lengths.
@@ -115,6 +121,12 @@ impl<F: Frame> Run<'_, F> {
     /// Returns the frame of the object that the elements replace.
     pub(crate) fn frame(&self) -> F {
         self.frame
+    }
+
+    /// Returns the run placed in the unit frame, with its direction.
+    pub(crate) fn in_unit_frame(&self) -> Self {
+        let frame = F::UNIT.with_direction(self.frame.direction());
+        Self { frame, ..*self }
     }
 
     /// Returns the step in which the object was born.
@@ -217,6 +229,16 @@ impl<F: Frame> Run<'_, F> {
     #[must_use]
     pub fn sticks(&self) -> Option<&[LineElement<F::Point>]> {
         self.block.sticks.as_deref()
+    }
+
+    /// Returns the numbers of the elements' objects, each once.
+    pub(crate) fn objects(&self) -> &[usize] {
+        &self.block.objects
+    }
+
+    /// Returns the step after which no element is replaced any more, of those that have led to the run.
+    pub(crate) fn settled(&self) -> u32 {
+        self.born + self.block.steps
     }
 
     /// Returns the number of elements that are replaced in the next step.

@@ -342,7 +342,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                 continue;
             }
             match stop {
-                Stop::AtBlocks(blocks) => {
+                Stop::AtBlocks(blocks) if entered == Enter::Replace => {
                     if let Some(run) = self.run(&state, object, level, meets_end, blocks) {
                         return Ok(Next::Run(run));
                     }
@@ -366,7 +366,7 @@ impl<'g, F: Frame> Descent<'g, F> {
                         }));
                     }
                 }
-                Stop::Nowhere => {}
+                Stop::AtBlocks(_) | Stop::Nowhere => {}
             }
             self.push(state, object, level, rank, meets_end)?;
         }

@@ -2,6 +2,7 @@
 
 use crate::geometry::{Frame, Frame2};
 
+use super::Subtree;
 use super::block::{Blocks, Run};
 use super::sizes::Sizes;
 use super::start::TraversalState;
@@ -18,6 +19,17 @@ pub(super) struct FoundElement<F: Frame = Frame2> {
     pub(super) rank: u64,
     /// Rank in its fractal, from 1; for an element that is replaced, the rank of its first descendant.
     pub(super) index: u128,
+}
+
+impl<F: Frame> FoundElement<F> {
+    /// Returns the element as the root of a subtree.
+    pub(super) fn subtree(&self) -> Subtree<F> {
+        Subtree {
+            frame: self.state.frame,
+            object: self.object,
+            born: self.level,
+        }
+    }
 }
 
 /// Element that a descent has reached and whose subtree it leaves to another descent.

@@ -241,10 +241,6 @@ fn replaces<'g, F: Frame, S: Sink<'g, F>>(
     if !graph.is_fertile(found.object) {
         return false;
     }
-    let subtree = Subtree {
-        frame: found.state.frame,
-        object: found.object,
-        born: found.level,
-    };
-    graph.counts_index() || leads_to_seeds[found.object] && sink.enter(&subtree) == Enter::Replace
+    let mut enters = || matches!(sink.enter(&found.subtree()), Enter::Replace | Enter::Divide);
+    graph.counts_index() || leads_to_seeds[found.object] && enters()
 }

@@ -33,6 +33,7 @@ mod whole;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use block::KeptBlocks;
 pub use block::{LineElement, Run};
 pub use colony::{Colony, Taken};
 pub(crate) use count::Counter;
@@ -118,8 +119,10 @@ pub struct Subtree<F: Frame = Frame2> {
 /// Decision of a visitor about an element that can be replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Enter {
-    /// Replaces the element.
+    /// Replaces the element. Its descendants may come as a [run](Visitor::run).
     Replace,
+    /// Replaces the element, and decides about its descendants, which do not come as a run.
+    Divide,
     /// Visits the element itself, as in the last approximant; it seeds nothing.
     Keep,
     /// Visits neither the element nor its subtree. The elements before and after it are not joined.
@@ -143,8 +146,8 @@ pub trait Visitor<F: Frame = Frame2> {
     /// Resumes a fractal that an earlier span of the walk began.
     fn go_on(&mut self, _: FractalInfo) {}
 
-    /// Decides about an element that can be replaced. Walks for seeds repeat the call for an element; the
-    /// result must be the same each time, unless the subtree of the element no longer matters.
+    /// Decides about an element that can be replaced. Walks for seeds, and those on several threads, repeat the call
+    /// for an element; the result must be the same each time, unless the subtree of the element no longer matters.
     ///
     /// Not called if the walk counts indices ([`Graph::counts_index`](crate::graph::Graph)), because elements
     /// that are not visited could not be counted.
@@ -168,8 +171,9 @@ pub trait Visitor<F: Frame = Frame2> {
     fn element(&mut self, element: &Element<F>) -> Result<(), Self::Error>;
 
     /// Returns whether the visitor accepts runs of elements whose frames are fixed. [`Visitor::enter`] is not
-    /// called for the elements of a run, so it may keep elements only for being shorter than
-    /// [`Visitor::cuts`]. Frames of elements in runs may differ by rounding from those of single elements.
+    /// called for the elements of a run: where it returns [`Enter::Replace`], it has to return that for all descendants
+    /// but those that it keeps for being shorter than [`Visitor::cuts`], or that [`Visitor::run`] leaves out. Frames of
+    /// elements in runs may differ by rounding from those of single elements.
     fn takes_runs(&self) -> bool {
         false
     }

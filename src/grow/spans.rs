@@ -10,11 +10,11 @@ use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::geometry::Frame;
+use crate::geometry::{Frame, Frame2};
 use crate::graph::Graph;
 use crate::parallel::{Pipeline, Team, with_team};
 
-use super::block::{Blocks, MAX_LEAVES};
+use super::block::{Blocks, KeptBlocks, MAX_LEAVES};
 use super::census::Census;
 use super::colony::{Colony, Taken};
 use super::descent::Descent;
@@ -81,19 +81,24 @@ where
     V::Error: Send,
 {
     with_team(threads, |team| {
-        let ranks = Ranks::Unknown;
-        let division = Division { span, ranks };
+        let division = Division {
+            span,
+            ranks: Ranks::Unknown,
+            blocks: None,
+        };
         walk_with(team, graph, growth, division, fresh, take)
     })
 }
 
 /// Division of a walk into spans.
 #[derive(Clone, Copy)]
-pub(crate) struct Division<'r> {
+pub(crate) struct Division<'r, F: Frame = Frame2> {
     /// Approximate number of elements of a span; `None` for a single visitor of the whole walk.
     pub(crate) span: Option<u64>,
     /// Source of the ranks that visitors receive.
     pub(crate) ranks: Ranks<'r>,
+    /// Blocks of the graph that other walks share.
+    pub(crate) blocks: Option<&'r KeptBlocks<F>>,
 }
 
 /// Source of ranks.
@@ -112,7 +117,7 @@ pub(crate) fn walk_with<'w, F: Frame, V: Visitor<F> + Send + 'w>(
     team: &Team<'w>,
     graph: &'w Graph<F>,
     growth: &Growth<'_>,
-    division: Division<'w>,
+    division: Division<'w, F>,
     mut fresh: impl FnMut() -> V,
     take: impl FnMut(&mut V, Seam) -> Result<(), V::Error>,
 ) -> Result<Walked, WalkError<V::Error>>
@@ -146,7 +151,10 @@ where
         graph,
         steps: growth.steps,
         size,
-        blocks: takes_runs.then(|| Arc::new(Blocks::of(graph, asked.longest_run(), cuts))),
+        blocks: takes_runs.then(|| match division.blocks {
+            Some(kept) => kept.of(graph, asked.longest_run(), cuts),
+            None => Arc::new(Blocks::of(graph, asked.longest_run(), cuts)),
+        }),
         asked,
         span: Span::default(),
         ranks: match division.ranks {
@@ -239,7 +247,12 @@ impl<F: Frame, V: Visitor<F>> Job<'_, F, V> {
                 }
                 SpanItem::Subtree(subtree) => {
                     let joined = joined && subtree.root.joined;
-                    let run = self.descent.enter(subtree, born, joined, blocks)?;
+                    let mut is_run = || {
+                        let root = subtree.root.subtree();
+                        visiting.visitor.enter(&root) == Enter::Replace
+                    };
+                    let whole = blocks.filter(|_| is_run());
+                    let run = self.descent.enter(subtree, born, joined, whole)?;
                     run.iter().try_for_each(|run| visiting.run(run))?;
                     loop {
                         let enter = |subtree: &Subtree<F>| visiting.visitor.enter(subtree);

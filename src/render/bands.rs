@@ -9,6 +9,7 @@
 use std::io::{self, Write};
 use std::num::NonZero;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use crate::grow::{Growth, Progress, WalkError};
@@ -21,7 +22,7 @@ use super::error::RenderError;
 use super::layout::Layout;
 use super::options::Options;
 use super::paint::overhang;
-use super::png::{BAND_ROWS, Colours, Pixmap, Png, Spare, encode_pieces};
+use super::png::{BAND_ROWS, Colours, KeptSprites, Pixmap, Png, Spare, encode_pieces};
 use super::scene::Scene;
 
 /// Pixels of a band, and buffers for the next one.
@@ -74,10 +75,14 @@ pub(super) fn write_layout(
         progress: None,
         ..*growth
     };
+    let sprites = Arc::<KeptSprites>::default();
     bands.write(out, |rows, spare| {
         let shown = canvas.shown_in(rows.clone(), pad);
         let prepass = prepass.clone().of_what_is_in(culling.moved_to(&shown));
-        let scene = Scene::new(&prepass, &growth, *canvas);
+        let scene = Scene {
+            sprites: Some(Arc::clone(&sprites)),
+            ..Scene::new(&prepass, &growth, *canvas)
+        };
         drawn(&scene, rows, spare, options.threads)
     })
 }

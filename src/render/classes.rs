@@ -107,6 +107,14 @@ impl Classes {
         Some(maker.map_or(0, |number| number as u128 + self.before))
     }
 
+    /// Returns the value on which the colours of all elements of an object depend, if they depend on the object at most.
+    pub(super) fn value_of_all<F: Frame>(&self, object: &Object<F>) -> Option<u128> {
+        match self.by.property() {
+            ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => Some(0),
+            _ => self.value_of_object(object),
+        }
+    }
+
     /// Returns the value on which the colour of an element depends.
     #[inline]
     pub(super) fn value(&self, element: &Element, fractal: &FractalInfo, graph: &Graph) -> u128 {

@@ -12,6 +12,8 @@ use super::classes::Classes;
 use super::paint::relative_overhang;
 
 #[cfg(test)]
+mod runs;
+#[cfg(test)]
 mod tests;
 
 /// Maximum number of steps for which lengths are tabulated.
@@ -37,6 +39,8 @@ pub(super) struct Culling {
 #[derive(Clone, Debug)]
 struct VisibleRegion {
     bounds: Bounds,
+    /// Part of the plane within which subtrees are replaced whole: that of the picture, of which the bounds may be a part.
+    whole: Bounds,
     /// Padding of the bounds around the part that is shown.
     pad: f64,
     /// By object, radius of its subtree about the centre of its frame.
@@ -94,6 +98,7 @@ impl Culling {
         }
         let window = VisibleRegion {
             bounds: padded(bounds, pad),
+            whole: padded(bounds, pad),
             pad,
             reaches: reaches.into(),
             middle: graph.middle(),
@@ -110,7 +115,7 @@ impl Culling {
         links(graph, graph.longest_after(growth.steps).max(self.shortest))
     }
 
-    /// Returns the sight of another part of the plane, if it is restricted to one.
+    /// Restricts the sight to a part of the window, if it has one. Elements that are drawn there are those of the whole window.
     pub(super) fn moved_to(&self, bounds: &Bounds) -> Self {
         let mut moved = self.clone();
         if let Some(window) = &mut moved.window {
@@ -156,16 +161,15 @@ impl Culling {
             return Enter::Replace;
         }
         let length = subtree.frame.stretch();
-        if let Some(window) = &self.window
-            && window.is_outside(subtree, length)
-        {
-            return window.outside;
-        }
-        let is_whole = self.is_whole.get(subtree.object);
-        if self.is_short(length) && is_whole != Some(&true) {
+        let entered = match &self.window {
+            Some(window) => window.enter(subtree, length),
+            None => Enter::Replace,
+        };
+        let replaces = matches!(entered, Enter::Replace | Enter::Divide);
+        if replaces && self.is_short(length) && self.is_whole.get(subtree.object) != Some(&true) {
             return Enter::Keep;
         }
-        Enter::Replace
+        entered
     }
 }
 
@@ -174,14 +178,24 @@ fn padded(bounds: &Bounds, pad: f64) -> Bounds {
 }
 
 impl VisibleRegion {
-    /// Returns whether the subtree of an element lies outside.
-    fn is_outside(&self, subtree: &Subtree, length: f64) -> bool {
+    /// Returns what a walk does with an element by its place.
+    #[inline]
+    fn enter(&self, subtree: &Subtree, length: f64) -> Enter {
         // Slack for rounding, so that subtrees which just touch the edge stay visible.
         const SLACK: f64 = 1.0 + 1e-9;
         let middle = subtree.frame.apply(self.middle);
         let nearest = middle.clamp(self.bounds.min(), self.bounds.max());
         let reach = self.reaches[subtree.object] * length * SLACK;
-        middle.distance_squared(nearest) > reach * reach
+        if middle.distance_squared(nearest) > reach * reach {
+            return self.outside;
+        }
+        let [least, most] = [self.whole.min(), self.whole.max()];
+        let is_inside = (middle - reach).cmpge(least) & (middle + reach).cmple(most);
+        if is_inside.all() {
+            Enter::Replace
+        } else {
+            Enter::Divide
+        }
     }
 }
 

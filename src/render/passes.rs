@@ -44,6 +44,7 @@ impl Drawing for Scene<'_> {
         let mut division = Division {
             span: Some(span(self.graph)),
             ranks: grow::Ranks::Unknown,
+            blocks: Some(&*self.blocks),
         };
         if self.style.color_by == ColorBy::Index {
             match &self.ranks {
@@ -196,6 +197,7 @@ mod tests {
             let division = Division {
                 span: Some(span(&graph)),
                 ranks: grow::Ranks::Unknown,
+                blocks: None,
             };
             let pass = Pass::Class(0);
             let mask = Arc::new(ContributionMask::of(&scene, pass));

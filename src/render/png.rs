@@ -34,7 +34,7 @@ pub(crate) use raster::Raster;
 pub(super) use spare::Spare;
 pub(crate) use spare::Spares;
 pub(super) use split::ROWS as BAND_ROWS;
-pub(super) use sprites::Put;
+pub(super) use sprites::{KeptSprites, Put};
 
 use std::convert::Infallible;
 use std::io::{self, Write};

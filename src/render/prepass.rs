@@ -9,16 +9,17 @@ use crate::extent::{Reaches, search};
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
-    self, Census, Element, Enter, FractalInfo, Growth, Seam, Subtree, Visitor, WalkError,
-    walk_in_spans,
+    self, Census, Division, Element, FractalInfo, Growth, KeptBlocks, Seam, WalkError, walk_with,
 };
+use crate::parallel::with_team;
 use crate::style::{ColorBy, Style, Width};
 
 use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
-use super::frame_colours::length;
 use super::paint::{overhang, relative_overhang};
 use super::short_cuts::ShortCuts;
+
+mod visit;
 
 /// Approximate number of elements of a span, in prepasses and in the walks that follow them.
 const SPAN: u64 = 1 << 12;
@@ -109,6 +110,8 @@ pub(crate) struct Prepass<'g> {
     pub(super) short_cuts: ShortCuts,
     /// Ranks, if the colour depends on them and they are known.
     pub(super) ranks: Option<Ranks>,
+    /// Blocks of the graph, for all walks over it.
+    pub(super) blocks: Arc<KeptBlocks>,
     culling: Culling,
     /// Part of the plane that is shown, if it is restricted.
     shown: Option<Bounds>,
@@ -142,6 +145,7 @@ impl<'g> Prepass<'g> {
             steps: 0,
             short_cuts: ShortCuts::default(),
             ranks: None,
+            blocks: Arc::default(),
             culling: Culling::unbounded(),
             shown: None,
             is_met: false,
@@ -347,13 +351,15 @@ impl<'g> Prepass<'g> {
         let none = prepass.clone();
         let fresh = || none.clone();
         let mut before = Vec::new();
-        walk_in_spans(
-            prepass.graph,
-            growth,
-            threads,
-            Some(span(prepass.graph)),
-            fresh,
-            |seen, seam| {
+        let blocks = Arc::clone(&prepass.blocks);
+        let division = Division {
+            span: Some(span(prepass.graph)),
+            ranks: grow::Ranks::Unknown,
+            blocks: Some(&*blocks),
+        };
+        let graph = prepass.graph;
+        with_team(threads, |team| {
+            walk_with(team, graph, growth, division, fresh, |seen, seam| {
                 prepass.add(seen, seam);
                 before.push(seam.before);
                 let fractal = seen.fractal;
@@ -362,8 +368,8 @@ impl<'g> Prepass<'g> {
                     ..none.clone()
                 };
                 Ok(())
-            },
-        )?;
+            })
+        })?;
         if prepass.style.color_by == ColorBy::Index && prepass.ranks.is_none() {
             if prepass.culling.cuts() {
                 // The last visitor only decided about replacement, and belongs to no span.
@@ -385,78 +391,5 @@ impl<'g> Prepass<'g> {
             Width::Pixels(width) if self.strokes => width * self.widest() * overhang(self.style),
             _ => 0.0,
         }
-    }
-}
-
-impl Visitor for Prepass<'_> {
-    type Error = Infallible;
-
-    fn takes_runs(&self) -> bool {
-        !self.culling.is_bounded()
-    }
-
-    fn longest_run(&self) -> u64 {
-        span(self.graph)
-    }
-
-    fn cuts(&self) -> Option<f64> {
-        self.culling.shortest()
-    }
-
-    fn go_on(&mut self, fractal: FractalInfo) {
-        self.fractal = fractal;
-        self.goes_on = true;
-    }
-
-    fn begin(&mut self, fractal: FractalInfo) -> Result<(), Infallible> {
-        self.fractal = fractal;
-        self.goes_on = false;
-        self.fractals += 1;
-        Ok(())
-    }
-
-    #[inline]
-    fn enter(&mut self, subtree: &Subtree) -> Enter {
-        let enter = self.culling.enter(subtree);
-        // Skipped elements count, too: without a further step they would be drawn.
-        if enter != Enter::Keep {
-            self.steps = self.steps.max(subtree.born + 1);
-        }
-        enter
-    }
-
-    fn element(&mut self, element: &Element) -> Result<(), Infallible> {
-        self.elements += 1;
-        // Roots may be born later than any element that is replaced.
-        self.steps = self.steps.max(element.born);
-        if self.goes_on {
-            self.last_index = Some(element.index);
-        } else {
-            self.largest_index = self.largest_index.max(element.index);
-        }
-        let object = &self.graph.objects()[element.object];
-        if object.visible {
-            let fractal = self.fractal;
-            self.use_value_of(element, &fractal);
-            self.strokes |= self.is_stroked(object);
-            self.is_beyond |= !element.frame.is_in_range();
-            if self.needs_lengths() {
-                self.lengths = joined(self.lengths, [length(element); 2]);
-            }
-            if !self.is_bounded {
-                let base_element = &self.graph.base_elements()[object.base_element];
-                let pad = self.pad(object) * element.frame.stretch();
-                match &self.shown {
-                    Some(shown) if !self.is_met => {
-                        let mut own = Bounds::EMPTY;
-                        base_element.add_to(&mut own, &element.frame, pad);
-                        self.is_met = shown.meets(&own);
-                        self.bounds.add_all(&own);
-                    }
-                    _ => base_element.add_to(&mut self.bounds, &element.frame, pad),
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -1,9 +1,9 @@
 //! Scenes: approximants on their canvases, drawn in one or more passes.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::graph::{Graph, Object};
-use crate::grow::{ColonyKinds, Growth};
+use crate::grow::{ColonyKinds, Growth, KeptBlocks};
 use crate::rule::BaseElement;
 use crate::style::{Colour, Style, Width};
 
@@ -11,7 +11,7 @@ use super::canvas::Canvas;
 use super::classes::Classes;
 use super::culling::{Culling, starts_rings};
 use super::frame_colours::FrameColours;
-use super::png::LevelOfDetail;
+use super::png::{KeptSprites, LevelOfDetail};
 use super::prepass::Prepass;
 use super::prepass::Ranks;
 use super::short_cuts::ShortCuts;
@@ -41,8 +41,12 @@ pub(crate) struct Scene<'a> {
     pub(super) uses: u64,
     /// Whether one path fills and strokes closed chains.
     pub(super) fills_strokes: bool,
+    /// Blocks of the graph, for all walks over it.
+    pub(super) blocks: Arc<KeptBlocks>,
     /// Simplified outlines, computed for the first surface of pixels.
     pub(super) outlines: OnceLock<Option<LevelOfDetail>>,
+    /// Sprites of all bands of the picture, if it is drawn in bands.
+    pub(super) sprites: Option<Arc<KeptSprites>>,
 }
 
 /// Part of a picture that one walk paints.
@@ -95,7 +99,9 @@ impl<'a> Scene<'a> {
             colonies: OnceLock::new(),
             uses: USES,
             fills_strokes: together && style.fill.is_some(),
+            blocks: Arc::clone(&prepass.blocks),
             outlines: OnceLock::new(),
+            sprites: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Blocks of a graph, computed on first use.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -117,10 +118,13 @@ impl<F: Frame> Blocks<F> {
         length: f64,
         reversed: bool,
     ) -> Result<Block<F>, CompileError> {
+        // The object itself is replaced in the first step.
+        let settled = Cell::new(1);
         let enter = |subtree: &Subtree<F>| {
             if subtree.frame.stretch() * length < 1.0 {
                 Enter::Keep
             } else {
+                settled.set(settled.get().max(subtree.born + 1));
                 Enter::Replace
             }
         };
@@ -175,6 +179,9 @@ impl<F: Frame> Blocks<F> {
             let mut later = sticks[1..].iter();
             later.all(|stick| stick.joined)
         });
+        let mut objects: Vec<usize> = leaves.iter().map(|leaf| leaf.object).collect();
+        objects.sort_unstable();
+        objects.dedup();
         let births = births(&leaves);
         let mut by_birth: Vec<u32> = (0..).take(leaves.len()).collect();
         by_birth.sort_by_key(|&number| leaves[number as usize].born);
@@ -185,6 +192,8 @@ impl<F: Frame> Blocks<F> {
             line: line.map(|sticks| sticks.iter().map(|stick| stick.ends[1]).collect()),
             sticks,
             leaves,
+            objects,
+            steps: settled.get(),
             corners,
             fertile,
             length: all,

@@ -1,8 +1,9 @@
 //! Tests that runs agree with the same elements visited one by one.
 
 use std::convert::Infallible;
+use std::sync::Arc;
 
-use super::Run;
+use super::{KeptBlocks, Run};
 use crate::catalogue::{Catalogue, Shelf};
 use crate::document::Document;
 use crate::graph::Graph;
@@ -172,4 +173,22 @@ fn runs_down_to_a_length_are_the_elements_one_by_one() {
         }
     }
     assert!(runs > 10_000, "{runs}");
+}
+
+#[test]
+fn blocks_are_kept_by_their_limits() {
+    let catalogue = Catalogue::embedded();
+    let document = Document::read(&catalogue.rule("koch").unwrap(), &catalogue).unwrap();
+    let graph = document.resolve(&[]).unwrap().0.compile(8).unwrap();
+    let kept = KeptBlocks::default();
+    let of = |longest, shortest| kept.of(&graph, longest, shortest);
+    let first = of(64, None);
+    assert!(Arc::ptr_eq(&first, &of(64, None)));
+    assert!(!Arc::ptr_eq(&first, &of(32, None)));
+    assert!(!Arc::ptr_eq(&first, &of(64, Some(0.01))));
+    assert!(Arc::ptr_eq(&first, &of(64, None)));
+    for longest in 1..8 {
+        of(longest, None);
+    }
+    assert!(!Arc::ptr_eq(&first, &of(64, None)));
 }

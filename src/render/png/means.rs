@@ -88,7 +88,7 @@ fn sprites<'a>(
             return None;
         }
     }
-    Sprites::new(scene, all, mask.painted(scene, pass))
+    Sprites::new(scene, pass, all, mask.painted(scene, pass))
 }
 
 /// Returns the kinds of the paths that are drawn.

@@ -15,7 +15,7 @@ mod colonies;
 mod runs;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
 use crate::fast_hash::FastMap;
 use crate::geometry::{DAffine2, DMat2, DVec2};
@@ -83,8 +83,69 @@ pub(in crate::render) struct Sprites<'a> {
     reach: Reach,
     runs: Option<Runs>,
     colonies: Option<Colonies<'a>>,
+    tables: Arc<SpriteTables>,
+}
+
+/// Sprites that have been drawn for a pass.
+struct SpriteTables {
     tables: Vec<RwLock<FastMap<Key, Arc<Places>>>>,
-    bytes: AtomicUsize,
+    /// Number of bytes of these sprites, and of those of other passes that are kept with them.
+    bytes: Arc<AtomicUsize>,
+}
+
+impl SpriteTables {
+    fn of_bytes(bytes: &Arc<AtomicUsize>) -> Arc<Self> {
+        Arc::new(Self {
+            tables: (0..TABLES).map(|_| RwLock::default()).collect(),
+            bytes: Arc::clone(bytes),
+        })
+    }
+}
+
+/// Sprites of all passes, for scenes of one picture that differ in the window only.
+#[derive(Default)]
+pub(in crate::render) struct KeptSprites {
+    passes: Mutex<Vec<(Pass, Arc<SpriteTables>)>>,
+    bytes: Arc<AtomicUsize>,
+}
+
+impl KeptSprites {
+    fn of(&self, pass: Pass) -> Arc<SpriteTables> {
+        let mut passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, tables)) = passes.iter().find(|(known, _)| *known == pass) {
+            return Arc::clone(tables);
+        }
+        let tables = SpriteTables::of_bytes(&self.bytes);
+        passes.push((pass, Arc::clone(&tables)));
+        tables
+    }
+}
+
+impl SpriteTables {
+    /// Returns the sprites of a key by position in a pixel, if there is memory for them.
+    fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
+        let number = match key.of {
+            Of::Run(number) => number,
+            Of::Colony(kind) => kind as u64,
+        };
+        let table = &self.tables[usize::try_from(number % TABLES).unwrap_or(0)];
+        let known = table.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(places) = known.get(key) {
+            return Some(Arc::clone(places));
+        }
+        drop(known);
+        if !self.take(count * size_of::<OnceLock<Option<Arc<Sprite>>>>()) {
+            return None;
+        }
+        let made = || (0..count).map(|_| OnceLock::new()).collect();
+        let mut table = table.write().unwrap_or_else(PoisonError::into_inner);
+        Some(Arc::clone(table.entry(key.clone()).or_insert_with(made)))
+    }
+
+    /// Reserves memory. Returns whether any was left.
+    fn take(&self, bytes: usize) -> bool {
+        self.bytes.fetch_add(bytes, Ordering::Relaxed) < MAX_MEMORY
+    }
 }
 
 /// Extent of the descendants of elements about the centres of their frames.
@@ -133,6 +194,7 @@ impl<'a> Sprites<'a> {
     /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.
     pub(super) fn new(
         scene: &'a Scene<'a>,
+        pass: Pass,
         paint: SpritePaint,
         painted: Option<Painted>,
     ) -> Option<Self> {
@@ -157,8 +219,10 @@ impl<'a> Sprites<'a> {
             reach,
             runs,
             colonies,
-            tables: (0..TABLES).map(|_| RwLock::default()).collect(),
-            bytes: AtomicUsize::new(0),
+            tables: match &scene.sprites {
+                Some(kept) => kept.of(pass),
+                None => SpriteTables::of_bytes(&Arc::default()),
+            },
         })
     }
 
@@ -198,43 +262,20 @@ impl Sprites<'_> {
             drawn(DVec2::from_array(phase)).map(Arc::new)
         };
         let number = usize::try_from(phase[0] + count * phase[1]).ok()?;
-        let places = self.places(key, usize::try_from(count * count).ok()?);
-        let known = places.as_deref().map(|places| &places[number]);
+        let places = self
+            .tables
+            .places(key, usize::try_from(count * count).ok()?);
+        let known = places.as_deref().and_then(|places| places.get(number));
         let sprite = known.and_then(OnceLock::get).cloned().unwrap_or_else(|| {
             let sprite = drawn();
             let bytes = sprite.as_ref().map_or(0, |sprite| sprite.bytes());
-            if let Some(known) = known.filter(|_| self.take(bytes)) {
+            if let Some(known) = known.filter(|_| self.tables.take(bytes)) {
                 let _ = known.set(sprite.clone());
             }
             sprite
         });
         let sprite = sprite?;
         Some(PlacedSprite { sprite, pixel })
-    }
-
-    /// Returns the sprites of a key by position in a pixel, if there is memory for them.
-    fn places(&self, key: &Key, count: usize) -> Option<Arc<Places>> {
-        let number = match key.of {
-            Of::Run(number) => number,
-            Of::Colony(kind) => kind as u64,
-        };
-        let table = &self.tables[usize::try_from(number % TABLES).unwrap_or(0)];
-        let known = table.read().unwrap_or_else(PoisonError::into_inner);
-        if let Some(places) = known.get(key) {
-            return Some(Arc::clone(places));
-        }
-        drop(known);
-        if !self.take(count * size_of::<OnceLock<Option<Arc<Sprite>>>>()) {
-            return None;
-        }
-        let made = || (0..count).map(|_| OnceLock::new()).collect();
-        let mut table = table.write().unwrap_or_else(PoisonError::into_inner);
-        Some(Arc::clone(table.entry(key.clone()).or_insert_with(made)))
-    }
-
-    /// Reserves memory. Returns whether any was left.
-    fn take(&self, bytes: usize) -> bool {
-        self.bytes.fetch_add(bytes, Ordering::Relaxed) < MAX_MEMORY
     }
 
     /// Draws a sprite with a linear map at a position in a pixel, inside a disc relative to that position.

@@ -16,7 +16,7 @@ impl Visitor for Sketcher<'_> {
     type Error = io::Error;
 
     fn takes_runs(&self) -> bool {
-        !self.scene.culling.is_bounded()
+        true
     }
 
     fn longest_run(&self) -> u64 {
@@ -51,7 +51,9 @@ impl Visitor for Sketcher<'_> {
     #[inline]
     fn enter(&mut self, subtree: &Subtree) -> Enter {
         match self.scene.culling.enter(subtree) {
-            Enter::Replace if !self.mask.may_paint(self.scene, subtree) => Enter::Skip,
+            Enter::Replace | Enter::Divide if !self.mask.may_paint(self.scene, subtree) => {
+                Enter::Skip
+            }
             enter => enter,
         }
     }

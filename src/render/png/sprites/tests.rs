@@ -1,6 +1,7 @@
 //! Tests of sprites: pictures with sprites, against pictures in which every element is drawn.
 
 use std::num::NonZero;
+use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
 use crate::document::Document;
@@ -69,6 +70,13 @@ fn is_stamped(name: &str, steps: Option<u32>, style: impl FnOnce(&mut Style)) {
     let shows = placed != one_by_one || ["square-filled", "t-square"].contains(&name);
     assert!(shows, "{name}: nothing is stamped");
     assert!(placed == drawn(&scene, 3), "{name} on three threads");
+    scene.sprites = Some(Arc::default());
+    for _ in 0..2 {
+        assert!(
+            placed == drawn(&scene, 1),
+            "{name} with sprites that are kept"
+        );
+    }
     let (most, mean, of_means) = difference(&placed, &one_by_one);
     let is_near = most <= 40 && mean < 1.6 && of_means < 0.5;
     assert!(is_near, "{name}: {most}, {mean}, {of_means}");
