@@ -413,8 +413,8 @@ fn mistakes_on_the_command_line_are_told_in_its_own_words() {
         ),
         (
             &["grow", "koch", "--size", "10ft"],
-            "a side is a whole number of pixels from 1 to 1000000, or a length of whole tenths of a millimetre up to \
-             100000mm: 200mm, 21cmx29.7cm, 8.5inx11in; papers are a0 to a6",
+            "a side is a whole number of pixels from 1 to 1000000, with --tiles to 1073741824, or a length of whole tenths of a \
+             millimetre up to 100000mm: 200mm, 21cmx29.7cm, 8.5inx11in; papers are a0 to a6",
         ),
         (
             &["grow", "koch", "--stroke", "nonee"],

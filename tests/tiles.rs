@@ -343,6 +343,60 @@ fn bad_input_is_refused_before_anything_is_written() {
     }
 }
 
+/// A sample of the tiles has about the size that all of them turn out to have, and a picture is not changed by it.
+#[test]
+fn many_tiles_have_an_estimate() {
+    const LINE: &str = "dragon --detail 4 --size 4096 --tile-size 64 --shard 2/3";
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let said = grow(folder, &format!("{LINE} --tiles noted"));
+    let note = said.lines().next().unwrap();
+    let (count, rest) = { note.strip_prefix("note: up to ").unwrap() }
+        .split_once(" tiles of 64 pixels are drawn, in about ")
+        .unwrap();
+    assert!(rest.contains(" s, to about "), "{note}");
+    let bytes = rest.split(", to about ").nth(1).unwrap();
+    let (bytes, unit) = bytes.split_once(' ').unwrap();
+    let unit = match unit {
+        "kB" => 1e3,
+        "MB" => 1e6,
+        other => panic!("{other}"),
+    };
+    let bytes = bytes.parse::<f64>().unwrap() * unit;
+    grow(folder, &format!("{LINE} --quiet --tiles quiet"));
+    let tiles = |folder: &Path| {
+        let mut files = files(folder);
+        files.retain(|name, _| name.ends_with(".png"));
+        files
+    };
+    let tiles = [folder.join("noted"), folder.join("quiet")].map(|it| tiles(&it));
+    assert!(tiles[0] == tiles[1]);
+    let all: usize = tiles[0].values().map(Vec::len).sum();
+    let ratio = bytes / all as f64;
+    assert!((0.5..2.0).contains(&ratio), "{note}, and {all} bytes");
+    let count: usize = count.replace(',', "").parse().unwrap();
+    assert!(count > tiles[0].len(), "{count}");
+}
+
+/// Only tiles have more than a million pixels on a side.
+#[test]
+fn pyramids_have_up_to_a_billion_pixels_a_side() {
+    const LINE: &str = "carpet --detail 1 --size 1073741824";
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (status, said) = run(folder, LINE);
+    assert_eq!(status, Some(2), "{said}");
+    assert!(
+        said.contains("at most 1000000 pixels; --tiles allows 1073741824"),
+        "{said}"
+    );
+    let part = "--level 30 --shard 1234567890/4294967295 --tile-size 1024";
+    grow(folder, &format!("{LINE} {part} --tiles t"));
+    let drawn = files(&folder.join("t"));
+    let drawn = drawn.keys().filter(|name| name.ends_with(".png")).count();
+    assert!((30..100).contains(&drawn), "{drawn}");
+}
+
 /// Rules that pictures hold are drawn as tiles, and folders of tiles hold their rule.
 #[test]
 fn tiles_and_pictures_hold_their_rule() {

@@ -110,8 +110,8 @@ pub(super) struct Arguments {
     /// The other side follows from the shape. If both sides are given, the shape is fitted into them. A PNG
     /// of more than 17 million pixels is drawn in bands, in less than 300 MB of memory. PNG does not support lengths and
     /// papers (a0 to a6, b4, b5, letter, legal, tabloid; upright, or -landscape). With these, and in PDF and the formats
-    /// of plotters always, a pixel is 1/96 inch.
-    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper)]
+    /// of plotters always, a pixel is 1/96 inch. Sides have up to a million pixels, and with --tiles up to 2³⁰.
+    #[arg(long, value_name = "SIZE", default_value = "1024", value_parser = length::paper_or_tiles)]
     #[arg(help_heading = "Picture")]
     size: Paper,
     #[command(flatten)]

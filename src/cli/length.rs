@@ -111,12 +111,20 @@ pub(super) struct Paper {
     pub(super) unit: Unit,
 }
 
+/// Largest side of a picture in pixels, or in tenths of a millimetre.
 const MAX_UNITS: u32 = 1_000_000;
+
+/// Largest side in pixels of a picture that is drawn in tiles.
+const MAX_OF_TILES: u32 = 1 << 30;
 
 /// Parses the size of a picture in pixels.
 pub(super) fn size(text: &str) -> Result<Size, String> {
+    size_up_to(text, MAX_UNITS)
+}
+
+fn size_up_to(text: &str, most: u32) -> Result<Size, String> {
     let side = |text: &str| match text.parse::<u32>() {
-        Ok(side) if (1..=MAX_UNITS).contains(&side) => Ok(side),
+        Ok(side) if (1..=most).contains(&side) => Ok(side),
         _ => Err(format!(
             "a side is a whole number of pixels from 1 to {MAX_UNITS}"
         )),
@@ -167,7 +175,16 @@ fn tenths(millimetres: f64) -> Option<u32> {
 
 /// Parses the size of a picture: in pixels, in millimetres, centimetres or inches, or the name of a paper.
 pub(super) fn paper(text: &str) -> Result<Paper, String> {
-    if let Ok(size) = size(text) {
+    paper_up_to(text, MAX_UNITS)
+}
+
+/// Parses the size of a picture that may be drawn in tiles, which may then have more pixels.
+pub(super) fn paper_or_tiles(text: &str) -> Result<Paper, String> {
+    paper_up_to(text, MAX_OF_TILES)
+}
+
+fn paper_up_to(text: &str, most: u32) -> Result<Paper, String> {
+    if let Ok(size) = size_up_to(text, most) {
         let unit = Unit::Pixel;
         return Ok(Paper { size, unit });
     }
@@ -175,6 +192,10 @@ pub(super) fn paper(text: &str) -> Result<Paper, String> {
     if let Some(size) = named(text) {
         return Ok(Paper { size, unit });
     }
+    let more = match most > MAX_UNITS {
+        true => format!(", with --tiles to {most}"),
+        false => String::new(),
+    };
     let side = |text: &str| {
         let side = physical(text).and_then(|(number, unit)| {
             let millimetres = number * unit;
@@ -185,7 +206,7 @@ pub(super) fn paper(text: &str) -> Result<Paper, String> {
         });
         side.ok_or_else(|| {
             format!(
-                "a side is a whole number of pixels from 1 to {MAX_UNITS}, or a length of whole tenths of a millimetre up \
+                "a side is a whole number of pixels from 1 to {MAX_UNITS}{more}, or a length of whole tenths of a millimetre up \
                  to {}mm: 200mm, 21cmx29.7cm, 8.5inx11in; papers are a0 to a6, b4, b5, letter, legal and tabloid, upright \
                  or as a4-landscape",
                 MAX_UNITS / 10
@@ -199,6 +220,22 @@ fn sides(text: &str, side: impl Fn(&str) -> Result<u32, String>) -> Result<Size,
     match text.split_once('x') {
         Some((width, height)) => Ok(Size::Exactly(side(width)?, side(height)?)),
         None => Ok(Size::Long(side(text)?)),
+    }
+}
+
+impl Paper {
+    /// Returns an error if a single picture of this size is too large.
+    pub(super) fn check_single(&self) -> Result<(), String> {
+        let sides = match self.size {
+            Size::Long(side) => [side; 2],
+            Size::Exactly(width, height) => [width, height],
+        };
+        if sides.into_iter().all(|side| side <= MAX_UNITS) {
+            return Ok(());
+        }
+        Err(format!(
+            "--size {self}: the side of a picture is at most {MAX_UNITS} pixels; --tiles allows {MAX_OF_TILES}"
+        ))
     }
 }
 

@@ -320,11 +320,11 @@ impl Plan {
     }
 }
 
-/// Refuses options that do not apply to pyramids of tiles, if one is asked for.
+/// Refuses options that do not apply to pyramids of tiles, if one is asked for, and sizes that need one otherwise.
 fn refuse_beside_tiles(arguments: &Arguments, is_chaos: bool) -> Result<(), Failure> {
     let pyramid = &arguments.pyramid;
     if !pyramid.is_asked() {
-        return Ok(());
+        return arguments.size.check_single().map_err(Failure::Usage);
     }
     refuse(
         arguments.growth.held.is_some(),

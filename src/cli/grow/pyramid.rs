@@ -6,41 +6,36 @@
 mod folder;
 mod levels;
 mod page;
+mod work;
 
-use std::io;
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::AtomicU64;
 
 use anyhow::anyhow;
 use clap::ValueHint;
 
 use crate::fractal::Goal;
 use crate::graph::Graph;
-use crate::parallel::for_each;
-use crate::render::{self, Canvas, Format, Labels, Picture, RenderError, Size, Unit};
+use crate::render::{self, Canvas, Format, Picture, RenderError, Size};
 use crate::style::{ColorBy, Named, View};
 
 use super::super::rule::{Loaded, name_of};
 use super::super::shard::Shard;
 use super::super::steps::Several;
-use super::super::{Failure, number, output, progress, readable};
+use super::super::{Failure, number, output, readable};
 use super::Arguments;
 use super::drawing::Drawing;
 use super::plan::ShownPart;
 
-use folder::{Tally, TileFolder, write_file};
+use folder::TileFolder;
 use levels::{Pyramid, Tile};
+use work::Work;
 
 /// Default side of a tile in pixels.
 const SIDE: u32 = 256;
 
 /// Default limit of the number of tiles.
 const MAX_TILES: u64 = 1_000_000;
-
-/// Number of tiles from which a note precedes the work.
-const MANY: u64 = 1_000;
 
 /// Long side in pixels of the picture that is surveyed for the frame of a larger one that is grown to a detail. Its margin
 /// has room for the difference.
@@ -115,38 +110,6 @@ impl PyramidArguments {
     }
 }
 
-/// Pyramid that is drawn.
-struct Work<'a> {
-    drawing: &'a Drawing<'a>,
-    options: render::Options,
-    pyramid: Pyramid,
-    folder: TileFolder,
-    shard: Shard,
-    levels: Vec<u32>,
-    /// Number of tiles of this run.
-    count: u64,
-    /// Number of tiles that are done.
-    done: AtomicU64,
-}
-
-/// Reason why tiles are not drawn.
-enum Trouble {
-    Drawing(RenderError),
-    Folder(Failure),
-}
-
-impl From<RenderError> for Trouble {
-    fn from(error: RenderError) -> Self {
-        Self::Drawing(error)
-    }
-}
-
-impl From<Failure> for Trouble {
-    fn from(failure: Failure) -> Self {
-        Self::Folder(failure)
-    }
-}
-
 /// Draws the tiles of a set in the plane. Returns the path of the page, or that of a folder that is not complete yet, with a
 /// summary and the number of bytes.
 pub(super) fn write(
@@ -180,9 +143,10 @@ pub(super) fn write(
     }
     drawing.check_first(&graph, &options, &pyramid)?;
     let shard = asked.shard.unwrap_or(Shard::ALL);
-    let count = pyramid
-        .count(levels.iter().copied())
-        .div_ceil(shard.count.into());
+    let of_levels = levels.iter();
+    let count = of_levels
+        .map(|level| pyramid.count_of_part(*level, shard))
+        .sum();
     check_count(asked, &pyramid, count)?;
     let description = page::description(&pyramid, &options.labels.provenance)?;
     let work = Work {
@@ -200,7 +164,7 @@ pub(super) fn write(
         let page = page::write(place, &name, &work.pyramid, &work.options)?;
         return Ok((page, "complete already".into(), 0));
     }
-    work.note();
+    work.announce(graph.clone())?;
     work.run(graph)?;
     let Some(tally) = work.folder.finish(deepest)? else {
         let summary = format!(
@@ -361,140 +325,5 @@ fn scaled(size: Size, share: f64) -> Size {
     match size {
         Size::Long(side) => Size::Long(part(side)),
         Size::Exactly(width, height) => Size::Exactly(part(width), part(height)),
-    }
-}
-
-impl Work<'_> {
-    /// Reports the number of tiles beforehand, if there are many.
-    fn note(&self) {
-        if self.count < MANY {
-            return;
-        }
-        self.drawing.arguments.growth.note(&format!(
-            "note: up to {} of {} pixels are drawn",
-            readable::counted(&self.count.into(), "tile"),
-            self.pyramid.side()
-        ));
-    }
-
-    /// Draws the tiles of all levels, as far as they are not drawn yet.
-    fn run(&self, graph: Graph) -> Result<(), Failure> {
-        let drawing = self.drawing;
-        let growth = &drawing.arguments.growth;
-        let describe = || {
-            let done = self.done.load(Ordering::Relaxed);
-            let count = readable::counted(&self.count.into(), "tile");
-            format!("{} of {count}", readable::grouped(&done.into()))
-        };
-        let mut failure = None;
-        let drawn = progress::watched_as(!growth.quiet, describe, || {
-            let compile = |steps| drawing.loaded.graph(steps);
-            drawing.goal.reach(graph, compile, |graph, steps| {
-                self.done.store(0, Ordering::Relaxed);
-                for level in &self.levels {
-                    self.draw_level(*level, graph, steps)
-                        .map_err(|trouble| match trouble {
-                            Trouble::Drawing(error) => error,
-                            Trouble::Folder(other) => {
-                                failure = Some(other);
-                                RenderError::Io(io::ErrorKind::Other.into())
-                            }
-                        })?;
-                }
-                Ok(())
-            })
-        });
-        match failure {
-            Some(failure) => Err(failure),
-            None => drawn.map_err(|error| drawing.explain(error)),
-        }
-    }
-
-    /// Draws the part of a level that belongs to this run.
-    fn draw_level(&self, level: u32, graph: &Graph, steps: u32) -> Result<(), Trouble> {
-        let Shard { number, count } = self.shard;
-        let tiles = || self.pyramid.part(level, number - 1, count);
-        let own = tiles().count();
-        if self.folder.done(level, self.shard)?.is_some() {
-            self.done.fetch_add(own as u64, Ordering::Relaxed);
-            return Ok(());
-        }
-        self.folder.make_level(level)?;
-        let threads = self.options.threads;
-        // A few tiles are drawn by all threads together.
-        let (outer, inner) = match own < threads.get() {
-            true => (1, threads),
-            false => (threads.get(), NonZero::<usize>::MIN),
-        };
-        let tally = Mutex::new(Tally::default());
-        let trouble = Mutex::new(None);
-        let is_over = AtomicBool::new(false);
-        for_each(
-            tiles().take_while(|_| !is_over.load(Ordering::Relaxed)),
-            outer,
-            |tile| {
-                match self.draw(tile, graph, steps, inner) {
-                    Ok(more) => *tally.lock().unwrap_or_else(PoisonError::into_inner) += more,
-                    Err(error) => {
-                        is_over.store(true, Ordering::Relaxed);
-                        let mut trouble = trouble.lock().unwrap_or_else(PoisonError::into_inner);
-                        trouble.get_or_insert(error);
-                    }
-                }
-                self.done.fetch_add(1, Ordering::Relaxed);
-            },
-        );
-        if let Some(trouble) = trouble.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            return Err(trouble);
-        }
-        let tally = tally.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok(self.folder.note(level, self.shard, &tally)?)
-    }
-
-    /// Draws a tile, unless it is there.
-    fn draw(
-        &self,
-        tile: Tile,
-        graph: &Graph,
-        steps: u32,
-        threads: NonZero<usize>,
-    ) -> Result<Tally, Trouble> {
-        let mut tally = Tally::default();
-        if let Some(bytes) = self.folder.written(tile) {
-            (tally.written, tally.bytes) = (1, bytes);
-            return Ok(tally);
-        }
-        let (view, size) = self.pyramid.place(tile);
-        let options = render::Options {
-            view,
-            size,
-            threads,
-            labels: Labels::default(),
-            unit: Unit::Pixel,
-            ..self.options.clone()
-        };
-        let growth = self
-            .drawing
-            .arguments
-            .growth
-            .drawn_as(&options, steps, None);
-        let pixels = render::pixels(graph, &growth, &options)?;
-        if pixels.are_blank(options.style.background) {
-            tally.empty = 1;
-            return Ok(tally);
-        }
-        let png = pixels.into_png(options.png)?;
-        write_file(&self.folder.tile(tile), &png)?;
-        (tally.written, tally.bytes) = (1, png.len() as u64);
-        Ok(tally)
-    }
-
-    /// Returns the numbers of the tiles of this run.
-    fn tally(&self) -> Result<Tally, Failure> {
-        let mut all = Tally::default();
-        for level in &self.levels {
-            all += self.folder.done(*level, self.shard)?.unwrap_or_default();
-        }
-        Ok(all)
     }
 }

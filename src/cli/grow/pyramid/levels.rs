@@ -3,6 +3,8 @@
 use crate::render::{Canvas, Size};
 use crate::style::View;
 
+use super::super::super::shard::Shard;
+
 /// Pyramid of levels, each of which is half as large as the next one. The first one is a single pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pyramid {
@@ -67,21 +69,21 @@ impl Pyramid {
         counts.sum()
     }
 
-    /// Returns the tiles of a level with every so many between them: those of part `number`, from 0, of `count`.
-    pub(super) fn part(
-        &self,
-        level: u32,
-        number: u32,
-        count: u32,
-    ) -> impl Iterator<Item = Tile> + Send + use<> {
+    /// Returns the number of tiles of a part of a level.
+    pub(super) fn count_of_part(&self, level: u32, shard: Shard) -> u64 {
+        (self.count([level]) + u64::from(shard.count - shard.number)) / u64::from(shard.count)
+    }
+
+    /// Returns a tile of a part of a level, whose tiles are as many places apart as there are parts.
+    pub(super) fn tile_of_part(&self, level: u32, shard: Shard, number: u64) -> Tile {
+        let place = u64::from(shard.number - 1) + number * u64::from(shard.count);
         let columns = u64::from(self.tiles(level)[0]);
-        let places = (u64::from(number)..self.count([level])).step_by(count as usize);
         let whole = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
-        places.map(move |place| Tile {
+        Tile {
             level,
             column: whole(place % columns),
             row: whole(place / columns),
-        })
+        }
     }
 
     /// Returns the part of the plane that a tile shows, and its size.
@@ -119,7 +121,7 @@ impl Pyramid {
 
 #[cfg(test)]
 mod tests {
-    use super::{Pyramid, Tile};
+    use super::{Pyramid, Shard, Tile};
     use crate::render::{Canvas, Size};
     use crate::style::View;
 
@@ -173,11 +175,18 @@ mod tests {
     #[test]
     fn parts_share_the_tiles() {
         let pyramid = pyramid(1000, 300, 0);
-        let mut all: Vec<_> = (0..3).flat_map(|part| pyramid.part(10, part, 3)).collect();
+        let tiles = |level, number, count| {
+            let shard = Shard { number, count };
+            let own = 0..pyramid.count_of_part(level, shard);
+            own.map(move |tile| pyramid.tile_of_part(level, shard, tile))
+        };
+        let mut all: Vec<_> = (1..=3).flat_map(|part| tiles(10, part, 3)).collect();
         assert_eq!(all.len(), 8);
         all.sort_by_key(|tile| (tile.row, tile.column));
-        let whole: Vec<_> = pyramid.part(10, 0, 1).collect();
+        let whole: Vec<_> = tiles(10, 1, 1).collect();
         assert_eq!(all, whole);
-        assert_eq!(pyramid.part(3, 2, 3).count(), 0);
+        assert_eq!(tiles(10, 8, 8).count(), 1);
+        assert_eq!(tiles(10, 9, 9).count(), 0);
+        assert_eq!(tiles(3, 3, 3).count(), 0);
     }
 }
