@@ -53,6 +53,25 @@ pub(super) struct Drawing<'a> {
     /// Names of base elements by number and appearance.
     outlines: BTreeMap<(usize, Dress), u64>,
     names: u64,
+    /// Layers of every class, in order.
+    layers: &'static [Layer],
+}
+
+/// Returns the layers of every class, in order.
+fn layers(graph: &Graph, style: &Style) -> &'static [Layer] {
+    let drawn = graph.objects().iter().filter(|object| object.visible);
+    let [mut open, mut closed] = [false; 2];
+    for object in drawn {
+        let is_closed = graph.base_elements()[object.base_element].is_closed();
+        closed |= is_closed;
+        open |= !is_closed;
+    }
+    match (open, closed) {
+        (_, false) => &[Layer::Lines],
+        (true, true) => &[Layer::Both],
+        (false, true) if style.outlines_polygons() => &[Layer::Areas, Layer::Outlines],
+        (false, true) => &[Layer::Areas],
+    }
 }
 
 impl<'a> Drawing<'a> {
@@ -74,6 +93,7 @@ impl<'a> Drawing<'a> {
             named: BTreeMap::new(),
             outlines: BTreeMap::new(),
             names: 0,
+            layers: layers(graph, style),
         }
     }
 
@@ -124,7 +144,7 @@ impl<'a> Drawing<'a> {
         }
         let mut expanded = 0.0;
         for (class, aspects) in classes {
-            for &layer in self.layers() {
+            for &layer in self.layers {
                 text.clear();
                 for of in &aspects {
                     for fractal in initiator.fractals() {
@@ -221,7 +241,7 @@ impl<'a> Drawing<'a> {
         };
         let stroke = match (is_closed, style.outlines_polygons()) {
             (false, _) => own("stroke", self.tint(appearance, style.lines())),
-            (true, _) if self.layers() != [Layer::Both] => None,
+            (true, _) if self.layers != [Layer::Both] => None,
             (true, true) => own("stroke", style.stroke),
             (true, false) => Some(r#" stroke="none""#.into()),
         };
@@ -318,23 +338,6 @@ impl<'a> Drawing<'a> {
 
     fn has_tints(&self) -> bool {
         self.style.color_by == ColorBy::Tint && self.graph.tints()
-    }
-
-    /// Returns the layers of every class, in order.
-    fn layers(&self) -> &'static [Layer] {
-        let drawn = self.graph.objects().iter().filter(|object| object.visible);
-        let [mut open, mut closed] = [false; 2];
-        for object in drawn {
-            let is_closed = self.graph.base_elements()[object.base_element].is_closed();
-            closed |= is_closed;
-            open |= !is_closed;
-        }
-        match (open, closed) {
-            (_, false) => &[Layer::Lines],
-            (true, true) => &[Layer::Both],
-            (false, true) if self.style.outlines_polygons() => &[Layer::Areas, Layer::Outlines],
-            (false, true) => &[Layer::Areas],
-        }
     }
 
     /// Returns the attribute for the stroke width in an appearance: relative to the length of elements in the
