@@ -115,7 +115,7 @@ impl Culling {
         links(graph, graph.longest_after(growth.steps).max(self.shortest))
     }
 
-    /// Restricts the sight to a part of the window, if it has one. Elements that are drawn there are those of the whole window.
+    /// Restricts the sight to a part of the window, if it has one. Runs remain those of the whole window.
     pub(super) fn moved_to(&self, bounds: &Bounds) -> Self {
         let mut moved = self.clone();
         if let Some(window) = &mut moved.window {

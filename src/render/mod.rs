@@ -16,8 +16,8 @@
 //! pixel, and neither threads nor timing show in any byte. A window is the crop of the whole picture of the same scale
 //! and number of steps but for rounding: places are in hundredths of a pixel, and edges are cut at the border. Where a
 //! detail decides the number of steps, it is that of the whole, and so are colours by step and age, but for random elements and
-//! seeds placed as the initiator. In PNGs, small runs of elements in equal positions may be drawn as sprites, with small differences: see `png::sprites`. Code for
-//! pixels alone lies in `png`, behind one method of surfaces.
+//! seeds placed as the initiator. In PNGs, small runs of elements in equal positions may be drawn as sprites, with small
+//! differences: see `png::sprites`. Code for pixels alone lies in `png`, behind one method of surfaces.
 
 mod bands;
 mod blended;

@@ -24,7 +24,7 @@ impl<F: Frame> Default for KeptBlocks<F> {
 }
 
 impl<F: Frame> KeptBlocks<F> {
-    /// Returns the blocks of a graph, which is always the one graph, as [`Blocks::of`] does.
+    /// Returns the blocks that [`Blocks::of`] returns. All calls have the same graph.
     pub(in crate::grow) fn of(
         &self,
         graph: &Graph<F>,

@@ -20,7 +20,7 @@ use super::levels::{Pyramid, Tile};
 /// Number of tiles from which a note precedes the work.
 const MANY: u64 = 1_000;
 
-/// Number of tiles from which the time and the size of many are estimated.
+/// Number of tiles that are drawn for an estimate of the time and the size.
 const SAMPLE: u32 = 128;
 
 /// Pyramid that is drawn.
