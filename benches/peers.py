@@ -118,6 +118,11 @@ ALONE = [
     ("info snow-crystal --steps 2000 --json", ["info", "snow-crystal", "--steps", "2000", "--json"], 20),
     ("list", ["list"], 10),
     ("Menger step 60 to USDA", ["grow", "menger", "--steps", "60", "--format", "usda", "-o", "-", "--quiet"], 20),
+    (
+        "3·10⁹ blades of grass to PNG 1024²",
+        ["grow", "autumn", "--set", "meadow=15", "--size", "1024", "--format", "png", "-o", "-", "--quiet"],
+        2000,
+    ),
 ]
 
 

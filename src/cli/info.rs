@@ -17,6 +17,7 @@ use crate::geometry::{Bounds, Homothety, Point};
 use crate::graph::{Forecast, Graph, Level};
 use crate::measure::exact::{self, Effort, dimensions_of_graph_within};
 use crate::measure::similarity_dimension;
+use crate::parallel::{all_cores, both};
 use crate::render::Options;
 
 use super::dim::hausdorff;
@@ -262,7 +263,11 @@ fn info<'a, F: Bounded>(
     bounds: Option<Bounds<F::Point>>,
     estimate: impl FnMut(u32, &Forecast<'_, F>) -> Option<SizeEstimate>,
 ) -> Info<'a> {
-    let rows = rows(graph, steps, estimate);
+    // Both take long where there are many objects. Exact dimensions of random rules may need many integrals.
+    let exact = || (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
+    let sizes = || (rows(graph, steps, estimate), limit.limit_bounds());
+    let (exact, (rows, limit_bounds)) = both(all_cores().get(), exact, sizes);
+    let exact = exact.and_then(|known| known.dimensions);
     let measures = |measure| measures(rows.as_deref(), measure);
     let estimates = |part: fn(&SizeEstimate) -> f64| {
         let rows = rows.as_ref().filter(|rows| rows[0].estimate.is_some())?;
@@ -284,9 +289,6 @@ fn info<'a, F: Bounded>(
         counts.map(Some)
     });
     let similarity = similarity_dimension(limit);
-    // Exact dimensions of random rules may need many integrals.
-    let exact = (!limit.draws()).then(|| dimensions_of_graph_within(limit, Effort::Quick));
-    let exact = exact.and_then(|known| known.dimensions);
     let metadata = loaded.model.metadata();
     let params = metadata.parameters.iter();
     Info {
@@ -311,7 +313,7 @@ fn info<'a, F: Bounded>(
         seconds,
         instanced_svg_bytes: None,
         bounds: bounds.map(|bounds| corners(&place.bounds(&bounds))),
-        limit_bounds: (limit.limit_bounds()).map(|bounds| corners(&place.bounds(&bounds))),
+        limit_bounds: limit_bounds.map(|bounds| corners(&place.bounds(&bounds))),
         dimension: Dimension {
             similarity: similarity.value,
             note: similarity.note,

@@ -20,8 +20,10 @@ pub(super) const STRIDE: usize = SIDE + 2 * MARGIN;
 pub(super) const CLASS_BITS: u32 = 10;
 /// Largest class.
 pub(super) const MAX_CLASS: u16 = (1 << CLASS_BITS) - 1;
+/// Depth of the far end.
+pub(super) const LAST_DEPTH: i32 = (1 << 22) - 2;
 /// Number of steps of depth between the near and the far end.
-pub(super) const STEPS: f64 = ((1u32 << 22) - 2) as f64;
+pub(super) const STEPS: f64 = LAST_DEPTH as f64;
 /// Key of a sample that shows nothing.
 pub(super) const EMPTY: u32 = u32::MAX;
 
@@ -66,6 +68,11 @@ impl Buffer {
     /// Returns the keys of the samples in a row of the tile.
     pub(super) fn row(&self, y: usize) -> &[u32] {
         &self.keys[place(y)..place(y) + SIDE]
+    }
+
+    /// Returns the keys in the rows of samples of a row of pixels.
+    pub(super) fn rows_of_pixels(&self, y: usize) -> [&[u32]; SAMPLES] {
+        std::array::from_fn(|row| self.row(y * SAMPLES + row))
     }
 
     /// Returns the keys of the samples in a row of the tile, to be changed. [`refresh`](Self::refresh) has to
@@ -119,12 +126,9 @@ impl Buffer {
 
     /// Returns the least rectangle within one that contains its samples which are not strictly nearer than a depth;
     /// `None` if there are none.
-    pub(super) fn open(
-        &self,
-        [left, top, right, bottom]: [usize; 4],
-        depth: u32,
-    ) -> Option<[usize; 4]> {
+    pub(super) fn open(&self, rectangle: [usize; 4], depth: u32) -> Option<[usize; 4]> {
         let least = depth << CLASS_BITS;
+        let [left, top, right, bottom] = self.open_rows(rectangle, least)?;
         if right - left <= PIECE {
             return self.open_of_narrow([left, top, right, bottom], least);
         }
@@ -144,6 +148,24 @@ impl Buffer {
         let is_open = |y: &usize| first_open(&self.row(*y)[first..last], least).is_some();
         let lower = (upper?..bottom).rev().find(is_open)?;
         Some([first, upper?, last, lower + 1])
+    }
+
+    /// Leaves out the rows above and below the blocks that have a key of at least `least`; `None` if there are none.
+    fn open_rows(&self, [left, top, right, bottom]: [usize; 4], least: u32) -> Option<[usize; 4]> {
+        let columns = left / BLOCK..right.div_ceil(BLOCK);
+        let is_open = |row: &usize| {
+            let blocks = &self.blocks(*row)[columns.clone()];
+            blocks.iter().any(|key| *key >= least)
+        };
+        let mut rows = top / BLOCK..bottom.div_ceil(BLOCK);
+        let first = rows.clone().find(is_open)?;
+        let last = rows.rfind(is_open)?;
+        Some([
+            left,
+            top.max(first * BLOCK),
+            right,
+            bottom.min((last + 1) * BLOCK),
+        ])
     }
 
     /// Returns the least rectangle within one of at most [`PIECE`] columns that contains its keys of at least `least`.
@@ -169,12 +191,16 @@ impl Buffer {
 
     /// Updates the pyramid after samples of a rectangle have been changed, which may reach into the margin: it is
     /// counted from the corner of that.
-    pub(super) fn refresh_with_margin(&mut self, [left, top, right, bottom]: [usize; 4]) {
-        let [left, top, right, bottom] =
-            [left, top, right, bottom].map(|at| at.saturating_sub(MARGIN).min(SIDE));
-        if left < right && top < bottom {
-            self.refresh([left, top, right, bottom]);
+    pub(super) fn refresh_with_margin(&mut self, rectangle: [usize; 4]) {
+        if let Some(rectangle) = within(rectangle) {
+            self.refresh(rectangle);
         }
+    }
+
+    /// Returns whether a rectangle, counted from the corner of the margin, has a sample of the tile that is not strictly nearer
+    /// than a depth, as far as [`hides`](Self::hides) knows.
+    pub(super) fn shows_with_margin(&self, rectangle: [usize; 4], depth: u32) -> bool {
+        within(rectangle).is_some_and(|rectangle| !self.hides(rectangle, depth))
     }
 
     /// Updates the pyramid after samples of a rectangle have been changed.
@@ -217,6 +243,12 @@ impl Buffer {
             }
         }
     }
+}
+
+/// Returns the part within the tile of a rectangle that is counted from the corner of the margin; `None` if it is empty.
+fn within(rectangle: [usize; 4]) -> Option<[usize; 4]> {
+    let [left, top, right, bottom] = rectangle.map(|at| at.saturating_sub(MARGIN).min(SIDE));
+    (left < right && top < bottom).then_some([left, top, right, bottom])
 }
 
 /// Returns the place of the first of some keys that is at least `least`.

@@ -4,17 +4,18 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use crate::geometry::{DAffine3, DVec3};
+use crate::instancing::Appearance;
 
-use super::buffer::{Buffer, MAX_CLASS, SIDE};
+use super::buffer::{Buffer, SIDE};
 use super::copies::Copies;
-use super::forms::{Form, Forms, class};
-use super::lit::{Classes, FINE, Lit, intensity};
-use super::scene::{ClassBy, End, Part, ends};
-use super::solid::{Pencil, View};
-use super::stamp::Stamp;
+use super::forms::{Form, class};
+use super::gathered::Gathered;
+use super::lit::{Classes, FINE, intensity};
+use super::roots::Roots;
+use super::scene::{ClassBy, ends};
+use super::solid::{Body, Pencil, View};
+use super::stamp::{Placed, Stamp, WHOLE};
 use super::tints::Tints;
-use super::turned::Turned;
-use crate::style::Colour;
 
 /// Samples along a side from which instances are visited from near to far, one by one.
 const LARGE: usize = SIDE / 2;
@@ -24,10 +25,10 @@ const MAX_LARGE: usize = 1 << 14;
 
 /// Properties on which the colour of an instance depends.
 #[derive(Clone, Copy, Default)]
-struct Paint {
-    class: u16,
+pub(super) struct Paint {
+    pub(super) class: u16,
     /// Number of its appearance, where colours are by tints.
-    appearance: u32,
+    pub(super) appearance: u32,
 }
 
 /// An instance that may be seen on the tile.
@@ -108,53 +109,6 @@ pub(super) struct Descent {
     pub(super) deepest: u32,
 }
 
-/// Parts of the graph into which all tiles descend.
-pub(super) struct Roots<'a> {
-    pub(super) parts: &'a [Part],
-    pub(super) forms: &'a Forms,
-    pub(super) end: End,
-    pub(super) class_by: ClassBy,
-    /// Light on faces.
-    pub(super) lit: Option<Lit>,
-    /// Colours of the classes, or of what has no tint.
-    pub(super) inks: &'a [Colour],
-    /// Samples by which flat solids may exceed the hulls of their objects.
-    pub(super) pad: f64,
-    /// Whether instances may lie in equal positions.
-    pub(super) overlap: bool,
-    /// Stamps of turned instances, where there are any.
-    pub(super) turned: Option<&'a Turned>,
-}
-
-impl Roots<'_> {
-    /// Returns the instances of the initiator that may be seen in the row of tiles of a view.
-    pub(super) fn start(&self, view: &View<'_>) -> Vec<usize> {
-        let may_be_seen = |number: &usize| {
-            let step = &self.forms.start[*number];
-            let half = self.forms.known[step.form].half;
-            let pad = self.pad / view.scale_of_box(step.offset.z + half.z);
-            view.has_in_row(step.offset, half + pad)
-        };
-        (0..self.forms.start.len()).filter(may_be_seen).collect()
-    }
-
-    /// Returns whether the classes of samples are colours that are found tile by tile.
-    pub(super) fn finds_colours(&self) -> bool {
-        let by_face = self.lit.is_some_and(|lit| lit.bits().is_none());
-        self.class_by == ClassBy::Tint || by_face
-    }
-
-    /// Returns the class of an element; `outer` is that of the instance that contains it.
-    pub(super) fn class(&self, form: &Form, outer: u16) -> u16 {
-        let class = match self.class_by {
-            ClassBy::Step => u16::try_from(form.level).unwrap_or(MAX_CLASS),
-            ClassBy::FirstMap => class(self.parts[form.object].origin),
-            ClassBy::LastMap | ClassBy::Nothing | ClassBy::Tint | ClassBy::Normal => outer,
-        };
-        class.min(MAX_CLASS)
-    }
-}
-
 impl Descent {
     /// Draws all that is seen on a tile. `start` are the instances of the initiator that may be seen there.
     pub(super) fn run(
@@ -174,9 +128,9 @@ impl Descent {
         let forms = roots.forms;
         for step in start.iter().map(|number| &forms.start[*number]) {
             let form = &forms.known[step.form];
-            let form = (form, step.form);
-            if let Some(mut node) = node(roots, view, buffer, form, step.offset) {
-                node.paint = self.paint(roots, Paint::default(), form.0.object, None);
+            let named = (step.form, form.half);
+            if let Some(mut node) = node(roots, view, buffer, named, step.offset) {
+                node.paint = self.paint(roots, Paint::default(), roots.tint(form), None);
                 self.stack.push(node);
             }
         }
@@ -252,12 +206,28 @@ impl Descent {
         if copies.is_some_and(|copies| copies.knows(node.at, node.form, form.level, class)) {
             return;
         }
-        if !view.cuts_through(node.at, form.half)
-            && let Some(stamp) = Stamp::draw(roots, view, buffer, (form, node.at, class))
+        if let Some(stamps) = &form.stamps
+            && !view.cuts_through(node.at, form.half)
         {
-            self.drawn += stamp.elements;
-            self.deepest = self.deepest.max(stamp.deepest);
-            return;
+            let seen = match stamps.are_large {
+                true => buffer.open(node.rectangle, node.nearest),
+                false => Some(WHOLE),
+            };
+            let Some(seen) = seen else {
+                return;
+            };
+            let placed = Placed {
+                form,
+                number: node.form,
+                at: node.at,
+                paint: node.paint,
+                seen,
+            };
+            if let Some(stamp) = Stamp::draw(roots, view, (buffer, &mut self.tints), &placed) {
+                self.drawn += stamp.elements;
+                self.deepest = self.deepest.max(stamp.deepest);
+                return;
+            }
         }
         if self.draws_turned(roots, view, buffer, form, node) {
             return;
@@ -265,14 +235,18 @@ impl Descent {
         let Some(steps) = roots.forms.steps(form) else {
             return self.visit(roots, view, buffer, node, own);
         };
-        if form.is_small(&roots.end, view.scale_of_box(node.at.z + form.half.z)) {
+        let scale = view.scale_of_box(node.at.z + form.half.z);
+        if form.is_small(&roots.end, scale) {
             return self.draw(roots, view, buffer, form, node);
+        }
+        if let Some(gathered) = form.gathered(&roots.end, scale) {
+            return self.draw_gathered(roots, view, buffer, gathered, node);
         }
         for step in steps {
             let inner = &roots.forms.known[step.form];
             let at = node.at + step.offset;
-            if let Some(mut inside) = self::node(roots, view, buffer, (inner, step.form), at) {
-                inside.paint = self.paint(roots, node.paint, inner.object, step.class);
+            if let Some(mut inside) = self::node(roots, view, buffer, (step.form, inner.half), at) {
+                inside.paint = self.paint(roots, node.paint, roots.tint(inner), step.class);
                 self.stack.push(inside);
             }
         }
@@ -323,14 +297,14 @@ impl Descent {
             let inner = form.inner(roots.parts, child);
             let at = node.at + form.offset(child, &inner);
             let number = roots.forms.known.len() + own.len();
-            let Some(mut inside) = self::node(roots, view, buffer, (&inner, number), at) else {
+            let Some(mut inside) = self::node(roots, view, buffer, (number, inner.half), at) else {
                 continue;
             };
             let class = match (roots.class_by, level) {
                 (ClassBy::LastMap, 0) => Some(class(roots.parts[child.object].origin)),
                 _ => None,
             };
-            inside.paint = self.paint(roots, node.paint, child.object, class);
+            inside.paint = self.paint(roots, node.paint, roots.tint(&inner), class);
             self.inner.push((at.z + inner.half.z, inside));
             own.push(inner);
         }
@@ -343,21 +317,18 @@ impl Descent {
             .extend(self.inner.drain(..).map(|(_, node)| node));
     }
 
-    /// Returns what the colour of an instance of an object in another depends on; `class` is its class if it has
-    /// one of its own.
+    /// Returns what the colour of an instance in another depends on; `class` is its class if it has one of its own.
     fn paint(
         &mut self,
         roots: &Roots<'_>,
         outer: Paint,
-        object: usize,
+        appearance: Appearance,
         class: Option<u16>,
     ) -> Paint {
         Paint {
             class: class.unwrap_or(outer.class),
             appearance: match roots.class_by {
-                ClassBy::Tint => self
-                    .tints
-                    .inside(outer.appearance, roots.parts[object].appearance),
+                ClassBy::Tint => self.tints.inside(outer.appearance, appearance),
                 _ => outer.appearance,
             },
         }
@@ -372,14 +343,58 @@ impl Descent {
         form: &Form,
         node: &Node,
     ) {
+        self.draw_grown(roots, view, buffer, (form, node), 0.0);
+    }
+
+    /// Draws the forms that stand for all that is in an instance, within its box.
+    fn draw_gathered(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        gathered: &[Gathered],
+        node: &Node,
+    ) {
+        for own in gathered {
+            let form = &roots.forms.known[own.form];
+            let named = (own.form, form.half + own.reach());
+            let at = node.at + own.offset();
+            let Some(mut inside) = self::node(roots, view, buffer, named, at) else {
+                continue;
+            };
+            inside.paint = self.paint(roots, node.paint, own.appearance, own.class);
+            let [a, b] = [inside.rectangle, node.rectangle];
+            inside.rectangle = [
+                a[0].max(b[0]),
+                a[1].max(b[1]),
+                a[2].min(b[2]),
+                a[3].min(b[3]),
+            ];
+            let [left, top, right, bottom] = inside.rectangle;
+            if left < right && top < bottom {
+                self.draw_grown(roots, view, buffer, (form, &inside), own.reach());
+            }
+        }
+    }
+
+    /// Draws the solid of an instance, larger by a distance.
+    fn draw_grown(
+        &mut self,
+        roots: &Roots<'_>,
+        view: &View<'_>,
+        buffer: &mut Buffer,
+        (form, node): (&Form, &Node),
+        more: f64,
+    ) {
         let Some(rectangle) = buffer.open(node.rectangle, node.nearest) else {
             return;
         };
         if let Some(solid) = roots.parts[form.object].drawn(form.level, &roots.end) {
             let map = DAffine3::from_mat3_translation(form.linear, node.at - form.middle);
+            let body = Body::new(solid, &map).grown(more);
             let (pencil, tints) = (&mut self.pencil, &mut self.tints);
             let mut draw = |buffer: &mut Buffer, classes: Classes<'_>| {
-                pencil.draw(buffer, view, solid, &map, rectangle, classes);
+                pencil.draw(buffer, view, &body, rectangle, classes);
             };
             let class = match roots.class_by {
                 ClassBy::Tint => 0,
@@ -402,19 +417,34 @@ impl Descent {
                             ClassBy::Tint => tints.colour(node.paint.appearance, roots.inks[0]),
                             _ => roots.inks[usize::from(class) % roots.inks.len()],
                         };
-                        let faces = match solid.primitive() {
-                            Some(_) => 1 << FINE,
-                            None => solid.faces().len(),
-                        };
-                        tints.make_room(faces + view.cuts.len(), buffer);
+                        let is_round = solid.primitive().is_some();
                         if roots.class_by == ClassBy::Normal {
-                            let mut of = |normal| {
-                                let level = lit.level(normal, FINE);
-                                let colour = lit.colour_of_normal(normal, roots.inks);
-                                tints.class(colour.dimmed(intensity(level, FINE)))
+                            let mut draw = |tints: &mut Tints, most: usize, rectangle| {
+                                tints.make_room(most + view.cuts.len(), buffer);
+                                let mut of = |normal| {
+                                    let level = lit.level(normal, FINE);
+                                    let colour = lit.colour_of_normal(normal, roots.inks);
+                                    tints.class(colour.dimmed(intensity(level, FINE)))
+                                };
+                                let classes = Classes::OfNormals(&mut of);
+                                pencil.draw(buffer, view, &body, rectangle, classes);
                             };
-                            draw(buffer, Classes::OfNormals(&mut of));
+                            if is_round {
+                                // Each sample of a row may have a class of its own.
+                                let [left, top, right, bottom] = rectangle;
+                                for y in top..bottom {
+                                    draw(tints, right - left, [left, y, right, y + 1]);
+                                }
+                            } else {
+                                draw(tints, solid.faces().len(), rectangle);
+                            }
                         } else {
+                            let most = if is_round {
+                                1 << FINE
+                            } else {
+                                solid.faces().len()
+                            };
+                            tints.make_room(most + view.cuts.len(), buffer);
                             let mut known = [None; 1 << FINE];
                             let mut of = |level| {
                                 *known[usize::from(level)].get_or_insert_with(|| {
@@ -441,25 +471,25 @@ fn form<'f>(roots: &'f Roots<'_>, own: &'f [Form], number: usize) -> &'f Form {
         .unwrap_or_else(|| &own[number - known.len()])
 }
 
-/// Returns an instance of a form, which is given with its number, if it may be seen.
+/// Returns an instance of a form, which is given by its number and the half sides of its box, if it may be seen.
 fn node(
     roots: &Roots<'_>,
     view: &View<'_>,
     buffer: &Buffer,
-    (form, number): (&Form, usize),
+    (form, half): (usize, DVec3),
     at: DVec3,
 ) -> Option<Node> {
-    if view.cuts_off(at, form.half) {
+    if view.cuts_off(at, half) {
         return None;
     }
-    let near = at.z + form.half.z;
+    let near = at.z + half.z;
     let pad = roots.pad / view.scale_of_box(near);
-    let rectangle = view.rectangle(at, form.half + pad)?;
+    let rectangle = view.rectangle(at, half + pad)?;
     // One less for rounding.
     let nearest = view.depths.of(near + pad).saturating_sub(1);
     (!buffer.hides(rectangle, nearest)).then_some(Node {
         at,
-        form: number,
+        form,
         paint: Paint::default(),
         nearest,
         rectangle,

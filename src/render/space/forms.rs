@@ -2,27 +2,50 @@
 //!
 //! Instances of one form differ by a translation. A system has few forms where its maps have few linear parts:
 //! they are found before the descent, with their instances from far to near, and a parallel picture shows small
-//! ones as copies of one [stamp](super::stamp::Stamp).
+//! ones as copies of one [stamp](super::stamp::Stamp). Where they are too many, objects of few forms come first.
 
-use std::collections::HashMap;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
 use std::ops::Range;
-use std::sync::OnceLock;
 
+use crate::fast_hash::FastSet;
 use crate::geometry::{Bounds, DMat3, DVec3};
 
 use super::camera::{Placement, Projection};
+use super::gathered::{Gathered, gather};
 use super::scene::{Child, ClassBy, End, Part};
-use super::stamp::{PHASES, PIECE, REACH, Stamp};
+use super::stamp::{COARSE_PHASES, PHASES, PIECE, REACH, Stamps};
 use super::{buffer::MAX_CLASS, scene};
 
 /// Limit of the number of forms that are known before the descent.
 pub(super) const MAX_FORMS: usize = 1 << 12;
 
+/// Limit of the number of instances in all forms that are known.
+const MAX_STEPS: usize = 1 << 20;
+
 /// Limit of the number of elements of a stamp.
 const MAX_ELEMENTS: u64 = 1 << 12;
 
-/// Limit of the number of samples of all stamps, in one position each.
+/// Limit of the number of samples of all small stamps, in one position each.
 const MAX_SAMPLES: f64 = (1 << 16) as f64;
+
+/// Limit of the number of samples of all large stamps, in all positions.
+const MAX_LARGE_SAMPLES: f64 = (1 << 21) as f64;
+
+/// Largest half side of a form that has stamps as exact as those of small forms, in samples.
+const FINE_REACH: f64 = 48.0;
+
+/// Largest half side of a form that has stamps, in samples.
+const LARGE: f64 = 128.0;
+
+/// Number of instances from which a form has large stamps.
+const MANY: f64 = 256.0;
+
+/// Limit of the number of elements of a large stamp.
+const FEW: u64 = 64;
+
+/// Number of samples of a large stamp beside one of its elements, up to which a copy takes less than these.
+const MAX_SHARE: f64 = 4.0;
 
 /// Fraction of a sample by which equal forms may differ.
 const FINE: f64 = (1 << 24) as f64;
@@ -49,8 +72,14 @@ pub(super) struct Form {
     steps: Option<Range<usize>>,
     /// Number of elements of which it consists; 0 if it is not known to the last, or has too many.
     elements: u64,
-    /// Its pictures in all positions relative to a sample, if it is small enough to have them.
-    pub(super) stamps: Option<Box<[OnceLock<Stamp>]>>,
+    /// Number of samples of all its elements together.
+    area: f64,
+    /// Half of the longest side of its largest element, across the view.
+    reach: f64,
+    /// Its pictures in positions relative to a sample, if it has any.
+    pub(super) stamps: Option<Stamps>,
+    /// Forms that stand for what is in it, where they are far fewer and lie close together.
+    pub(super) gathered: Box<[Gathered]>,
 }
 
 impl Form {
@@ -80,7 +109,10 @@ impl Form {
             across: 2.0 * half.x.max(half.y),
             steps: None,
             elements: 0,
+            area: 0.0,
+            reach: 0.0,
             stamps: None,
+            gathered: Box::default(),
         }
     }
 
@@ -105,7 +137,7 @@ pub(super) struct Step {
     pub(super) class: Option<u16>,
 }
 
-/// The forms that are known before the descent, those of outer instances first.
+/// The forms that are known before the descent.
 pub(super) struct Forms {
     pub(super) known: Vec<Form>,
     steps: Vec<Step>,
@@ -122,6 +154,10 @@ struct Finder<'a> {
     /// Multiples of the unit in which linear parts are compared.
     fine: f64,
     names: Names,
+    /// Number of forms of each kind.
+    counts: Vec<usize>,
+    /// Forms to be expanded: those of kinds that have the fewest first, and of these, the first.
+    next: BinaryHeap<Reverse<(usize, usize)>>,
     forms: Forms,
 }
 
@@ -137,10 +173,11 @@ impl Forms {
         has_stamps: bool,
     ) -> Self {
         let [far, near] = placement.range;
-        let scale = match placement.projection {
-            Projection::Parallel => 1.0,
-            Projection::Central { focus, .. } if near < 0.0 => focus / -near,
-            Projection::Central { focus, .. } => focus / (near - far),
+        // The number of samples a unit at the near and at the far end.
+        let [scale, least] = match placement.projection {
+            Projection::Parallel => [1.0; 2],
+            Projection::Central { focus, .. } if near < 0.0 => [focus / -near, focus / -far],
+            Projection::Central { focus, .. } => [focus / (near - far); 2],
         };
         let reach = parts.iter().map(|part| part.hull.reach());
         let mut finder = Finder {
@@ -148,6 +185,8 @@ impl Forms {
             class_by,
             fine: FINE * scale * reach.fold(0.0, f64::max),
             names: Names::new(),
+            counts: vec![0; 2 * parts.len()],
+            next: BinaryHeap::new(),
             forms: Self {
                 known: Vec::new(),
                 steps: Vec::new(),
@@ -167,21 +206,24 @@ impl Forms {
         }
         finder.forms.start.reverse();
         sort(&mut finder.forms.start, &finder.forms.known);
-        let mut next = 0;
-        while next < finder.forms.known.len() && finder.forms.known.len() < MAX_FORMS {
-            let form = &finder.forms.known[next];
+        while finder.forms.known.len() < MAX_FORMS
+            && let Some(Reverse((_, number))) = finder.next.pop()
+        {
+            let form = &finder.forms.known[number];
             if !scene::ends(parts, form, end) && !form.is_small(end, scale) {
-                finder.expand(next);
+                finder.expand(number);
             }
-            next += 1;
         }
         let mut forms = finder.forms;
-        if let Projection::Parallel = placement.projection {
+        let is_parallel = matches!(placement.projection, Projection::Parallel);
+        if is_parallel {
             forms.tighten();
+        }
+        gather(&mut forms, parts, end, least);
+        if is_parallel && has_stamps {
             forms.count(parts, end);
-            if has_stamps {
-                forms.admit_stamps(pad);
-            }
+            forms.admit_stamps(pad);
+            forms.admit_large_stamps(pad, end);
         }
         forms
     }
@@ -192,11 +234,18 @@ impl Forms {
         form.steps.clone().map(|steps| &self.steps[steps])
     }
 
+    /// Returns the numbers of the forms, the inner ones first.
+    pub(super) fn inner_first(&self) -> Vec<usize> {
+        let mut numbers: Vec<usize> = (0..self.known.len()).rev().collect();
+        numbers.sort_by_key(|number| Reverse(self.known[*number].level));
+        numbers
+    }
+
     /// Replaces the boxes of forms by those around the boxes of their instances, the inner ones first: boxes of turned hulls are
     /// larger than what they contain. Parallel pictures never draw the hull of a form whose instances are known.
     fn tighten(&mut self) {
         let mut moved = vec![DVec3::ZERO; self.known.len()];
-        for number in (0..self.known.len()).rev() {
+        for number in self.inner_first() {
             let Some(range) = self.known[number].steps.clone().filter(|it| !it.is_empty()) else {
                 continue;
             };
@@ -224,49 +273,105 @@ impl Forms {
         sort(&mut self.start, &self.known);
     }
 
-    /// Counts the elements of all forms, the inner ones first.
+    /// Counts the elements of all forms, and adds up their areas, the inner ones first.
     fn count(&mut self, parts: &[Part], end: &End) {
-        for number in (0..self.known.len()).rev() {
+        for number in self.inner_first() {
             let form = &self.known[number];
-            let elements = match self.steps(form) {
-                Some(steps) => steps.iter().try_fold(0, |sum: u64, step| {
-                    let inner = self.known[step.form].elements;
-                    let sum = sum.checked_add(inner)?;
-                    (inner > 0 && sum <= MAX_ELEMENTS).then_some(sum)
-                }),
-                None if scene::ends(parts, form, end) || form.is_small(end, 1.0) => {
-                    // Stamps consist of planes.
-                    let drawn = parts[form.object].drawn(form.level, end);
-                    let is_round = drawn.is_some_and(|solid| solid.primitive().is_some());
-                    (!is_round).then_some(1)
-                }
-                None => None,
+            let (elements, area, reach) = if let Some(gathered) = form.gathered(end, 1.0) {
+                let halves = gathered
+                    .iter()
+                    .map(|own| self.known[own.form].half + own.reach());
+                let (area, reach) = of_elements(halves.map(|half| (area(half), across(half))));
+                (Some(gathered.len() as u64), area, reach)
+            } else if let Some(steps) = self.steps(form) {
+                let inner = || steps.iter().map(|step| &self.known[step.form]);
+                let elements = inner().try_fold(0, |sum: u64, inner| {
+                    let sum = sum.checked_add(inner.elements)?;
+                    (inner.elements > 0 && sum <= MAX_ELEMENTS).then_some(sum)
+                });
+                let (area, reach) = of_elements(inner().map(|inner| (inner.area, inner.reach)));
+                (elements, area, reach)
+            } else {
+                let is_last = scene::ends(parts, form, end) || form.is_small(end, 1.0);
+                (is_last.then_some(1), area(form.half), across(form.half))
             };
-            self.known[number].elements = elements.unwrap_or(0);
+            let form = &mut self.known[number];
+            (form.elements, form.area, form.reach) = (elements.unwrap_or(0), area, reach);
         }
     }
 
-    /// Admits stamps of forms as large as there is memory for.
+    /// Admits stamps of small forms, as large as there is memory for.
     fn admit_stamps(&mut self, pad: f64) {
         let mut reach = REACH;
         loop {
-            let fits =
-                |form: &Form| form.elements > 0 && form.half.x.max(form.half.y) + pad <= reach;
-            let samples = self.known.iter().filter(|form| fits(form)).map(|form| {
-                let sides = 2.0 * (form.half + pad + 1.0);
-                // Rows consist of pieces.
-                (sides.x + PIECE as f64) * sides.y
-            });
-            if samples.sum::<f64>() <= MAX_SAMPLES {
+            let fits = |form: &Form| form.elements > 0 && across(form.half) + pad <= reach;
+            let samples = self.known.iter().filter(|form| fits(form));
+            if samples.map(|form| samples_of(form, pad)).sum::<f64>() <= MAX_SAMPLES {
                 for form in self.known.iter_mut().filter(|form| fits(form)) {
-                    let stamps = (0..PHASES * PHASES).map(|_| OnceLock::new());
-                    form.stamps = Some(stamps.collect());
+                    form.stamps = Some(Stamps::new(PHASES, false));
                 }
                 return;
             }
             reach /= 2.0;
         }
     }
+
+    /// Admits stamps of larger forms that have many instances, where a copy takes less than its few elements, which are too large for
+    /// small stamps.
+    fn admit_large_stamps(&mut self, pad: f64, end: &End) {
+        let mut instances = vec![0.0; self.known.len()];
+        for step in &self.start {
+            instances[step.form] += 1.0;
+        }
+        let mut samples = 0.0;
+        for number in self.inner_first().into_iter().rev() {
+            let form = &self.known[number];
+            let is_gathered = form.gathered(end, 1.0).is_some();
+            let is_coarse = is_gathered || across(form.half) > FINE_REACH;
+            let phases = if is_coarse { COARSE_PHASES } else { PHASES };
+            let own = samples_of(form, pad) * (phases * phases) as f64;
+            let is_apt = instances[number] >= MANY
+                && (1..=FEW).contains(&form.elements)
+                && form.reach > REACH
+                && across(form.half) <= LARGE
+                && area(form.half) <= MAX_SHARE * form.area
+                && samples + own <= MAX_LARGE_SAMPLES;
+            if is_apt && form.stamps.is_none() {
+                samples += own;
+                self.known[number].stamps = Some(Stamps::new(phases, true));
+            } else if form.stamps.is_none() && !is_gathered {
+                // Instances inside stamps are not visited.
+                for step in form.steps.clone().into_iter().flatten() {
+                    let inner = self.steps[step].form;
+                    instances[inner] += instances[number];
+                }
+            }
+        }
+    }
+}
+
+/// Returns the sum of areas and the largest reach.
+fn of_elements(elements: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    elements.fold((0.0, 0.0), |(sum, most), (area, reach)| {
+        (sum + area, reach.max(most))
+    })
+}
+
+/// Returns half of the longest side of a box across the view.
+fn across(half: DVec3) -> f64 {
+    half.x.max(half.y)
+}
+
+/// Returns the number of samples in the picture of a box.
+fn area(half: DVec3) -> f64 {
+    4.0 * (half.x + 0.5) * (half.y + 0.5)
+}
+
+/// Returns the number of samples of a stamp, in one position.
+fn samples_of(form: &Form, pad: f64) -> f64 {
+    let sides = 2.0 * (form.half + pad + 1.0);
+    // Rows consist of pieces.
+    (sides.x + PIECE as f64) * sides.y
 }
 
 impl Finder<'_> {
@@ -285,6 +390,8 @@ impl Finder<'_> {
         let known = &mut self.forms.known;
         let name = (form.level, kind, linear);
         *self.names.entry(name).or_insert_with(|| {
+            self.next.push(Reverse((self.counts[kind], known.len())));
+            self.counts[kind] += 1;
             known.push(form);
             known.len() - 1
         })
@@ -293,8 +400,13 @@ impl Finder<'_> {
     /// Finds the instances in a form.
     fn expand(&mut self, number: usize) {
         let parts = self.parts;
+        let children = &parts[self.forms.known[number].object].children;
+        if self.forms.steps.len() + children.len() > MAX_STEPS {
+            return;
+        }
         let mut steps: Vec<Step> = Vec::new();
-        for child in &parts[self.forms.known[number].object].children {
+        let mut places = FastSet::default();
+        for child in children {
             let outer = &self.forms.known[number];
             let inner = outer.inner(parts, child);
             let offset = outer.offset(child, &inner);
@@ -303,9 +415,10 @@ impl Finder<'_> {
                 _ => None,
             };
             let form = self.number(inner);
-            let is_known =
-                |step: &Step| step.form == form && step.offset.abs_diff_eq(offset, 1.0 / FINE);
-            if !steps.iter().any(is_known) {
+            let place = offset
+                .to_array()
+                .map(|part| ((part * FINE).round() + 0.0).to_bits());
+            if places.insert((form, place)) {
                 steps.push(Step {
                     offset,
                     form,

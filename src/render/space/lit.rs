@@ -9,8 +9,8 @@ use crate::style::{Camera, CameraError, Colour, Light};
 use super::buffer::MAX_CLASS;
 use super::solid::whole;
 
-/// Least number of bits of levels of intensity that are parts of classes.
-const LEAST: u32 = 7;
+/// Least number of bits of levels of intensity that are parts of classes, and that of stamps.
+pub(super) const LEAST: u32 = 7;
 
 /// Bits of the levels of intensity of colours that are classes of a tile.
 pub(super) const FINE: u32 = 8;

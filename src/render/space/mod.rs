@@ -4,7 +4,7 @@
 //! lie beside the tile or strictly behind what is drawn already are left out, and the nearest are drawn first.
 //! The cost is that of the visible part, at any number of steps. Instances that differ by a translation only are
 //! copies of one small picture in a parallel view; small ones that turn are copies within a pixel. Elements smaller than a detail are not replaced,
-//! and drawn as the convex solid that the graph has for them.
+//! and drawn as the convex solid that the graph has for them. Of elements that differ by a translation of less than a detail, one is drawn.
 //!
 //! A pixel has 4 × 4 samples, whose depths are multiples of 2⁻²² of the exact range of the set; the nearer wins,
 //! and of two that are equally near the one of the first class. Threads and timing change no byte.
@@ -16,6 +16,7 @@ mod depth_map;
 mod descent;
 mod eye;
 mod forms;
+mod gathered;
 mod lit;
 mod occlusion;
 mod open;
@@ -24,6 +25,7 @@ mod place;
 mod planes;
 mod points;
 mod relief;
+mod roots;
 mod round;
 mod scene;
 mod shade;
@@ -31,6 +33,7 @@ mod shadows;
 mod slice;
 mod solid;
 mod stamp;
+mod tile;
 mod tints;
 mod turned;
 mod visible;
@@ -48,26 +51,26 @@ pub use crate::style::{Camera, CameraError, Light, Shade, Slice};
 
 use std::io::Write;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use tiny_skia::{Pixmap, PremultipliedColorU8};
+use tiny_skia::Pixmap;
 
-use crate::geometry::{Frame3, HalfSpace};
+use crate::geometry::Frame3;
 use crate::graph::Graph;
 use crate::grow::WalkError;
 use crate::parallel::with_team;
 use crate::style::{ColorBy, Colour};
 
-use self::buffer::{Buffer, SAMPLES, SIDE, TILE};
+use self::buffer::{SAMPLES, TILE};
 use self::camera::Placement;
-use self::descent::{Descent, Roots};
 use self::forms::Forms;
 use self::lit::Lit;
+use self::roots::Roots;
 use self::scene::{ClassBy, End, Part};
 use self::shade::Inks;
 use self::shadows::Shadows;
 use self::slice::Search;
-use self::solid::{Depths, View};
+use self::tile::{Scene, Tile};
 use self::turned::Turned;
 use super::png::TooManyPixels;
 use super::{Options, Picture, Pixels, RenderError, Size};
@@ -147,79 +150,14 @@ struct Drawn {
     placement: Placement,
 }
 
-/// Piece of work: a tile of the picture.
-struct Tile<'a> {
-    scene: &'a Scene<'a>,
-    /// Column and row of the tile.
-    at: [u32; 2],
-    /// Instances of the initiator that may be seen in the row.
-    start: Arc<[usize]>,
-    buffer: Buffer,
-    descent: Descent,
-    /// Premultiplied colours and depths of the pixels, in rows.
-    colours: Vec<[f64; 4]>,
-    depths: Vec<Option<u32>>,
-}
-
-/// State that all tiles share.
-struct Scene<'a> {
-    roots: Roots<'a>,
-    cuts: Vec<HalfSpace>,
+/// Picture before it is lit by its depths, and put on its background.
+struct Unlit {
+    /// Pixels, if colours are seen.
+    pixmap: Option<Pixmap>,
+    depths: Option<DepthMap>,
+    picture: Picture,
     placement: Placement,
-    inks: Inks,
-    cancel: Option<&'a AtomicBool>,
-}
-
-impl Scene<'_> {
-    fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|it| it.load(Ordering::Relaxed))
-    }
-
-    /// Returns the view of the tile in a column and a row.
-    fn view(&self, at: [u32; 2]) -> View<'_> {
-        #[expect(clippy::cast_precision_loss, reason = "a tile has few samples")]
-        let side = SIDE as f64;
-        View {
-            projection: self.placement.projection,
-            depths: Depths::new(self.placement.range),
-            cuts: &self.cuts,
-            corner: at.map(|tile| f64::from(tile) * side),
-        }
-    }
-}
-
-impl Tile<'_> {
-    fn draw(&mut self) {
-        let Scene { roots, inks, .. } = self.scene;
-        self.colours.clear();
-        self.depths.clear();
-        if self.scene.is_cancelled() {
-            return;
-        }
-        let view = self.scene.view(self.at);
-        self.buffer.clear();
-        self.descent.drawn = 0;
-        self.descent.deepest = 0;
-        self.descent
-            .run(roots, &view, &mut self.buffer, &self.start);
-        let is_tinted = roots.finds_colours();
-        if is_tinted {
-            self.descent.tints.settle(&mut self.buffer);
-        }
-        for y in 0..TILE {
-            let tints: Option<[&[Colour]; SAMPLES]> = is_tinted
-                .then(|| std::array::from_fn(|row| self.descent.tints.row(y * SAMPLES + row)));
-            let rows: [&[u32]; SAMPLES] =
-                std::array::from_fn(|row| self.buffer.row(y * SAMPLES + row));
-            for x in 0..TILE {
-                let samples = rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES]);
-                let tints = tints.map(|rows| rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES]));
-                let (colour, depth) = inks.pixel(samples, tints);
-                self.colours.push(colour);
-                self.depths.push(depth);
-            }
-        }
-    }
+    has_faces: bool,
 }
 
 /// Number of colours by normal.
@@ -252,6 +190,53 @@ fn draw(
     space: &SpaceOptions,
     cancel: Option<&AtomicBool>,
 ) -> Result<Drawn, RenderError> {
+    let Unlit {
+        pixmap,
+        depths,
+        picture,
+        placement,
+        has_faces,
+    } = draw_unlit(graph, steps, options, space, (true, cancel))?;
+    let size = placement.size;
+    let mut pixmap = pixmap.ok_or(TooManyPixels { size })?;
+    // The search for the extent ends with boxes of a size, whose set may lie beside a section.
+    if let Some(first) = space.within(0.0).first()
+        && pixmap.pixels().iter().all(|pixel| pixel.alpha() == 0)
+    {
+        return Err(place::nothing_left(graph, steps, first).into());
+    }
+    let shadows = match &depths {
+        Some(depths) if space.shadows => {
+            let seen = seen_by_light(graph, steps, options, space, cancel)?;
+            seen.map(|seen| Shadows::new(seen, depths))
+        }
+        _ => None,
+    };
+    let shadows = shadows.as_ref();
+    finish(
+        &mut pixmap,
+        depths.as_ref(),
+        shadows,
+        has_faces,
+        options,
+        space,
+    )?;
+    Ok(Drawn {
+        pixmap,
+        depths,
+        picture,
+        placement,
+    })
+}
+
+/// Draws the picture, with colours or without.
+fn draw_unlit(
+    graph: &Graph<Frame3>,
+    steps: Option<u32>,
+    options: &Options,
+    space: &SpaceOptions,
+    (has_colours, cancel): (bool, Option<&AtomicBool>),
+) -> Result<Unlit, RenderError> {
     const MAX_STEPS: u32 = 1_000_000;
     let style = &options.style;
     let parts = scene::parts(graph, steps);
@@ -296,7 +281,7 @@ fn draw(
     }
     let pad = solid::pad(graph);
     // Stamps are shared by tiles.
-    let has_stamps = class_by != ClassBy::Tint && lit.is_none_or(|lit| lit.bits().is_some());
+    let has_stamps = !by_normal;
     let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad, has_stamps);
     let is_turned = lit.is_none() && scene::is_similar(graph);
     let turned = { is_turned }
@@ -316,11 +301,12 @@ fn draw(
         },
         cuts: cuts.collect(),
         placement,
-        inks: Inks::new(&inks, lit.as_ref(), space.shade.unwrap_or_default()),
+        inks: has_colours.then(|| Inks::new(&inks, lit.as_ref(), space.shade.unwrap_or_default())),
         cancel,
     };
     let size @ [width, height] = placement.size;
-    let mut pixmap = Pixmap::new(width, height).ok_or(TooManyPixels { size })?;
+    let pixmap = has_colours.then(|| Pixmap::new(width, height).ok_or(TooManyPixels { size }));
+    let mut pixmap = pixmap.transpose()?;
     let mut depths = { space.needs_depths(has_faces) }.then(|| DepthMap::new(&scene.placement));
     let (mut drawn, mut deepest) = (0, 0);
     let mut take = |tile: &mut Tile<'_>| {
@@ -332,7 +318,9 @@ fn draw(
         if let Some(depths) = &mut depths {
             depths.add(tile.at, &tile.depths);
         }
-        copy(tile, &mut pixmap);
+        if let Some(pixmap) = &mut pixmap {
+            tile.copy(pixmap);
+        }
         Ok(())
     };
     with_team(options.threads, |team| {
@@ -340,15 +328,7 @@ fn draw(
         for row in 0..height.div_ceil(TILE_SIZE) {
             let start: Arc<[usize]> = scene.roots.start(&scene.view([0, row])).into();
             for column in 0..width.div_ceil(TILE_SIZE) {
-                let mut tile = line.spare().unwrap_or_else(|| Tile {
-                    scene: &scene,
-                    at: [0, 0],
-                    start: Arc::default(),
-                    buffer: Buffer::new(),
-                    descent: Descent::default(),
-                    colours: Vec::new(),
-                    depths: Vec::new(),
-                });
+                let mut tile = line.spare().unwrap_or_else(|| Tile::of(&scene));
                 tile.at = [column, row];
                 tile.start = Arc::clone(&start);
                 line.hand_on(tile, &mut take)?;
@@ -356,34 +336,13 @@ fn draw(
         }
         line.finish(&mut take)
     })?;
-    // The search for the extent ends with boxes of a size, whose set may lie beside a section.
-    if let Some(first) = space.within(0.0).first()
-        && pixmap.pixels().iter().all(|pixel| pixel.alpha() == 0)
-    {
-        return Err(place::nothing_left(graph, steps, first).into());
-    }
-    let shadows = match &depths {
-        Some(depths) if space.shadows => {
-            let seen = seen_by_light(graph, steps, options, space, cancel)?;
-            seen.map(|seen| Shadows::new(seen, depths))
-        }
-        _ => None,
-    };
-    let shadows = shadows.as_ref();
-    finish(
-        &mut pixmap,
-        depths.as_ref(),
-        shadows,
-        has_faces,
-        options,
-        space,
-    )?;
     let picture = described(size, steps.unwrap_or(deepest), drawn);
-    Ok(Drawn {
+    Ok(Unlit {
         pixmap,
         depths,
         picture,
         placement: scene.placement,
+        has_faces,
     })
 }
 
@@ -410,7 +369,7 @@ fn seen_by_light(
         .cuts(space.cuts.clone())
         .shade(Some(Shade::None))
         .keeps_depths(true);
-    Ok(draw(graph, steps, &options, &space, cancel)?.depths)
+    Ok(draw_unlit(graph, steps, &options, &space, (false, cancel))?.depths)
 }
 
 /// Lights the pixels by their depths, and puts them on the background.
@@ -451,21 +410,6 @@ fn described(size: [u32; 2], steps: u32, elements: u64) -> Picture {
 
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
 const TILE_SIZE: u32 = TILE as u32;
-
-/// Copies the pixels of a tile into the picture.
-fn copy(tile: &Tile<'_>, pixmap: &mut Pixmap) {
-    let [width, height] = [pixmap.width(), pixmap.height()];
-    let [left, top] = tile.at.map(|at| at * TILE_SIZE);
-    let columns = TILE_SIZE.min(width - left) as usize;
-    let pixels: &mut [PremultipliedColorU8] = pixmap.pixels_mut();
-    for row in 0..TILE_SIZE.min(height - top) as usize {
-        let start = (top as usize + row) * width as usize + left as usize;
-        let colours = &tile.colours[row * TILE..row * TILE + columns];
-        for (pixel, colour) in pixels[start..start + columns].iter_mut().zip(colours) {
-            *pixel = shade::premultiplied(*colour);
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests;

@@ -17,22 +17,15 @@ use super::solid::{Depths, View};
 
 use self::rays::{Ray, Shape, cut, least, most, nearest_cut, span, square};
 
-/// Draws the image of a primitive under a map that is not singular. `rectangle` contains what is seen of it on the
-/// tile.
+/// Draws a primitive in its place. `rectangle` contains what is seen of it on the tile.
 pub(super) fn draw(
     buffer: &mut Buffer,
     view: &View<'_>,
-    primitive: Round,
-    place: &DAffine3,
+    surface: &Surface,
     rectangle @ [left, top, right, bottom]: [usize; 4],
     classes: &mut Classes<'_>,
     (row, planes): (&mut Row, &mut Planes),
 ) {
-    let surface = Surface {
-        primitive,
-        inverse: place.matrix3.inverse(),
-        middle: place.translation,
-    };
     let is_long = right - left >= LONG && surface.find_sides(view, planes, right - left);
     let mut draw = |keys: &mut [u32], at| surface.draw_row(view, (keys, at), row, classes);
     if is_long {
@@ -72,13 +65,30 @@ struct Touching {
 }
 
 /// A primitive in its place.
-struct Surface {
+pub(super) struct Surface {
     primitive: Round,
     inverse: DMat3,
     middle: DVec3,
 }
 
 impl Surface {
+    /// Creates the image of a primitive under a map that is not singular.
+    pub(super) fn new(primitive: Round, place: &DAffine3) -> Self {
+        Self {
+            primitive,
+            inverse: place.matrix3.inverse(),
+            middle: place.translation,
+        }
+    }
+
+    /// Returns the z of the surface at a point of a parallel picture, and a vector outwards across it; `None` beyond its outline.
+    pub(super) fn meet(&self, at: [f64; 2]) -> Option<(f64, DVec3)> {
+        let inside = self.inside(self.ray(Projection::Parallel, at));
+        let [low, high] = self.span(inside);
+        let is_met = low <= high;
+        is_met.then(|| (self.middle.z + high, self.normal_inside(inside, high)))
+    }
+
     /// Draws the part of a row of samples whose first one is given.
     #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
     fn draw_row(
@@ -201,15 +211,20 @@ impl Surface {
         let inside = self.inside(seen);
         let [low, high] = self.span(inside);
         if view.cuts.is_empty() || low <= way && way <= high {
-            let point = inside.start + inside.along * way;
-            let shape = Shape::of(self.primitive);
-            let normal = match self.primitive {
-                Round::Ball => shape.normal::<false>(point),
-                _ => shape.normal::<true>(point),
-            };
-            return self.inverse.transpose() * normal;
+            return self.normal_inside(inside, way);
         }
         nearest_cut(view.cuts, seen.start + seen.along * way)
+    }
+
+    /// Returns a vector outwards across the surface where a ray, in the coordinates of the primitive, meets it.
+    fn normal_inside(&self, inside: Ray, way: f64) -> DVec3 {
+        let point = inside.start + inside.along * way;
+        let shape = Shape::of(self.primitive);
+        let normal = match self.primitive {
+            Round::Ball => shape.normal::<false>(point),
+            _ => shape.normal::<true>(point),
+        };
+        self.inverse.transpose() * normal
     }
 
     /// Returns the part of a ray, in the coordinates of the primitive, within it; it may be empty.

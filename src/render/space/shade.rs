@@ -98,10 +98,7 @@ impl Inks {
         rows: [&[u32]; SAMPLES],
         tints: Option<[&[Colour]; SAMPLES]>,
     ) -> ([f64; 4], Option<u32>) {
-        let mut nearest = EMPTY;
-        for row in rows {
-            nearest = row.iter().fold(nearest, |nearest, key| nearest.min(*key));
-        }
+        let nearest = nearest(rows);
         if nearest == EMPTY {
             return ([0.0; 4], None);
         }
@@ -145,6 +142,19 @@ impl Inks {
             ink[3] * SAMPLES_A_PIXEL,
         ])
     }
+}
+
+/// Returns what belongs to the samples of a pixel, in rows, of what belongs to those of a row of pixels.
+#[inline]
+pub(super) fn samples<T>(rows: [&[T]; SAMPLES], x: usize) -> [&[T]; SAMPLES] {
+    rows.map(|row| &row[x * SAMPLES..(x + 1) * SAMPLES])
+}
+
+/// Returns the key of the nearest sample.
+#[inline]
+pub(super) fn nearest(rows: [&[u32]; SAMPLES]) -> u32 {
+    let keys = rows.into_iter().flatten();
+    keys.fold(EMPTY, |nearest, key| nearest.min(*key))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "there are few classes")]

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, HalfSpace, Solid, eigen};
+use crate::geometry::{DAffine3, DMat3, DVec3, Frame3, HalfSpace, Round, Solid, eigen};
 use crate::graph::Graph;
 
 use super::buffer::{Buffer, CLASS_BITS, EMPTY, SIDE, STEPS};
@@ -11,7 +11,7 @@ use super::camera::Projection;
 use super::lit::Classes;
 use super::open::draw_open;
 use super::planes::{Planes, draw_row};
-use super::round;
+use super::round::{self, Surface};
 
 /// Least thickness of a solid, in samples: what is flat would fall between them.
 const THINNEST: f64 = 1.5;
@@ -30,10 +30,12 @@ pub(super) struct Depths {
 }
 
 impl Depths {
-    /// Creates the depths of a range of z.
+    /// Creates the depths of a range of z, which are all equal if it is flat.
     pub(super) fn new([far, near]: [f64; 2]) -> Self {
+        // Samples of which a smaller range is rounding.
+        const FLAT: f64 = 1e-6;
         let range = near - far;
-        let steps = if range > 0.0 { STEPS / range } else { 0.0 };
+        let steps = if range > FLAT { STEPS / range } else { 0.0 };
         Self { near, steps }
     }
 
@@ -71,26 +73,79 @@ pub(super) fn whole(value: f64) -> u32 {
     (below + LARGE).to_bits() as u32
 }
 
-/// Returns the map of a solid before it is placed to the coordinates of the projection, at least as thick as a
-/// sample.
-fn placed(solid: &Solid, map: &DAffine3, view: &View<'_>) -> DAffine3 {
-    let place = *map * *solid.place();
-    let least = THINNEST / 2.0 / view.scale(place.translation.z);
-    DAffine3::from_mat3_translation(thickened(&place.matrix3, least), place.translation)
+/// A solid in its place in the coordinates of the projection.
+#[derive(Clone, Copy)]
+pub(super) struct Body<'a> {
+    solid: &'a Solid,
+    place: DAffine3,
+    /// Distance by which it is larger, about.
+    more: f64,
 }
 
-/// Returns the half-spaces n · x ≤ d of a solid under a map to the coordinates of the projection.
-pub(super) fn faces(
-    solid: &Solid,
-    map: &DAffine3,
-    view: &View<'_>,
-) -> impl Iterator<Item = (DVec3, f64)> {
-    let place = placed(solid, map, view);
-    let inverse = place.matrix3.inverse().transpose();
-    solid.faces().iter().map(move |face| {
-        let normal = inverse * face.normal;
-        (normal, face.distance + normal.dot(place.translation))
-    })
+impl<'a> Body<'a> {
+    /// Creates the image of a solid under a map.
+    pub(super) fn new(solid: &'a Solid, map: &DAffine3) -> Self {
+        Self {
+            solid,
+            place: *map * *solid.place(),
+            more: 0.0,
+        }
+    }
+
+    /// Returns the solid, larger by a distance about its middle.
+    pub(super) fn grown(self, more: f64) -> Self {
+        Self {
+            more: self.more + more,
+            ..self
+        }
+    }
+
+    /// Returns the map to its place, at least as thick as a sample.
+    fn thick(&self, view: &View<'_>) -> DAffine3 {
+        let at = self.place.translation;
+        let least = THINNEST / 2.0 / view.scale(at.z);
+        DAffine3::from_mat3_translation(thickened(&self.place.matrix3, least), at)
+    }
+
+    /// Returns the half-spaces n · x ≤ d.
+    pub(super) fn faces(&self, view: &View<'_>) -> impl Iterator<Item = (DVec3, f64)> {
+        let place = self.thick(view);
+        let inverse = place.matrix3.inverse().transpose();
+        let more = self.more;
+        self.solid.faces().iter().map(move |face| {
+            let normal = inverse * face.normal;
+            let distance = face.distance + normal.dot(place.translation);
+            // Without this choice, every face would need a root.
+            match more > 0.0 {
+                true => (normal, distance + more * normal.length()),
+                false => (normal, distance),
+            }
+        })
+    }
+
+    /// Returns the surface, if it is round.
+    pub(super) fn surface(&self, view: &View<'_>) -> Option<Surface> {
+        let primitive = self.solid.primitive()?;
+        let place = self.thick(view);
+        let place = match self.more > 0.0 {
+            true => grown(primitive, &place, self.more),
+            false => place,
+        };
+        Some(Surface::new(primitive, &place))
+    }
+}
+
+/// Returns the map to the place of a larger primitive, about its middle.
+fn grown(primitive: Round, place: &DAffine3, more: f64) -> DAffine3 {
+    // Half the height, and the middle: all primitives but the ball reach from y = 0 to y = 1.
+    let (half, middle) = match primitive {
+        Round::Ball => (1.0, DVec3::ZERO),
+        _ => (0.5, DVec3::Y / 2.0),
+    };
+    let unit = DMat3::from_diagonal(DVec3::new(1.0, half, 1.0));
+    let matrix = with_values(&(place.matrix3 * unit), |value| value + more) * unit.inverse();
+    let at = place.translation + place.matrix3 * middle - matrix * middle;
+    DAffine3::from_mat3_translation(matrix, at)
 }
 
 /// Draws solids; the lists are reused.
@@ -101,33 +156,22 @@ pub(super) struct Pencil {
 }
 
 impl Pencil {
-    /// Draws a solid under a map to the coordinates of the projection. `rectangle` contains what is seen of it on
-    /// the tile.
+    /// Draws a solid. `rectangle` contains what is seen of it on the tile.
     pub(super) fn draw(
         &mut self,
         buffer: &mut Buffer,
         view: &View<'_>,
-        solid: &Solid,
-        map: &DAffine3,
+        body: &Body<'_>,
         rectangle: [usize; 4],
         mut classes: Classes<'_>,
     ) {
-        if let Some(primitive) = solid.primitive() {
-            let place = placed(solid, map, view);
+        if let Some(surface) = body.surface(view) {
             let memory = (&mut self.row, &mut self.planes);
-            round::draw(
-                buffer,
-                view,
-                primitive,
-                &place,
-                rectangle,
-                &mut classes,
-                memory,
-            );
+            round::draw(buffer, view, &surface, rectangle, &mut classes, memory);
             return;
         }
-        let faces =
-            faces(solid, map, view).chain(view.cuts.iter().map(|cut| (cut.normal, cut.distance)));
+        let cuts = view.cuts.iter().map(|cut| (cut.normal, cut.distance));
+        let faces = body.faces(view).chain(cuts);
         self.planes.set(view.projection, faces, &mut classes);
         let planes = &mut self.planes;
         let [left, top, right, bottom] = rectangle;
@@ -277,11 +321,23 @@ fn thickened(matrix: &DMat3, least: f64) -> DMat3 {
     if is_thick(matrix) || volume >= least * square / 2.0 && volume > 0.0 {
         return *matrix;
     }
+    // The sum of squares of the inverse is that of the inverse values, of which the largest is that of the least.
+    let pairs =
+        x.cross(y).length_squared() + y.cross(z).length_squared() + z.cross(x).length_squared();
+    if volume >= least * pairs.sqrt() && volume > 0.0 {
+        return *matrix;
+    }
+    with_values(matrix, |value| value.max(least))
+}
+
+/// Returns a matrix with other singular values.
+fn with_values(matrix: &DMat3, change: impl Fn(f64) -> f64) -> DMat3 {
     let (squares, inner) = eigen(&(matrix.transpose() * *matrix));
+    let largest = squares.max_element().max(0.0).sqrt();
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| squares[*b].total_cmp(&squares[*a]));
     let mut outer = [DVec3::ZERO; 3];
-    let mut thick = DMat3::ZERO;
+    let mut changed = DMat3::ZERO;
     for (number, &axis) in order.iter().enumerate() {
         let image = *matrix * inner.col(axis);
         let value = image.length();
@@ -291,21 +347,21 @@ fn thickened(matrix: &DMat3, least: f64) -> DMat3 {
             across -= *known * across.dot(*known);
         }
         let unit = match number {
-            _ if across.length() > 1e-9 * square.sqrt() => across.normalize(),
+            _ if across.length() > 1e-9 * largest => across.normalize(),
             0 => DVec3::Z,
             1 => outer[0].any_orthonormal_vector(),
             _ => outer[0].cross(outer[1]),
         };
         outer[number] = unit;
         let direction = inner.col(axis);
-        let image = unit * value.max(least);
-        thick += DMat3::from_cols(
+        let image = unit * change(value);
+        changed += DMat3::from_cols(
             image * direction.x,
             image * direction.y,
             image * direction.z,
         );
     }
-    thick
+    changed
 }
 
 /// Returns the samples by which solids may exceed the hulls of their objects: flat ones are drawn thicker than

@@ -3,7 +3,9 @@
 use std::num::NonZero;
 use std::sync::Arc;
 
-use super::buffer::EMPTY;
+use tiny_skia::PremultipliedColorU8;
+
+use super::buffer::{Buffer, EMPTY, SIDE};
 use super::*;
 use crate::catalogue::Catalogue;
 use crate::diagnostic::Source;
@@ -14,7 +16,10 @@ use crate::model::Model;
 use crate::render::Size;
 use crate::style::View as Window;
 
+mod first_tile;
 mod slices;
+
+pub(super) use first_tile::{FirstTile, Short};
 
 fn model(text: &str) -> Model {
     let source = Source::new("test", text.to_owned());
@@ -162,59 +167,21 @@ fn a_descent_agrees_with_drawing_everything() {
     ] {
         for perspective in [None, Some(50.0)] {
             let camera = Camera::default().perspective(perspective);
-            let parts = scene::parts(&graph, Some(steps));
-            let search = Search {
-                parts: &parts,
-                start: &scene::start(&graph),
-                steps: Some(steps),
-            };
-            let placement =
-                place::place(&graph, &search, &camera, &[], Size::Long(24), 0.0).unwrap();
-            let view = View {
-                projection: placement.projection,
-                depths: Depths::new(placement.range),
-                cuts: &[],
-                corner: [0.0; 2],
-            };
-            let within = scene::seen(&graph, &placement.map);
-            let start = scene::start(&within);
-            let pad = solid::pad(&graph);
-            let end = End {
-                steps,
-                detail: 0.0,
-                unit: graph.unit(),
-            };
-            let forms = Forms::find(
-                &parts,
-                &start,
-                &end,
-                ClassBy::Nothing,
-                &placement,
-                pad,
-                true,
-            );
-            let roots = Roots {
-                parts: &parts,
-                forms: &forms,
-                end,
-                class_by: ClassBy::Nothing,
-                lit: None,
-                inks: &[Colour::BLACK],
-                pad,
-                overlap: false,
-                turned: None,
-            };
-            let mut descended = Buffer::new();
-            let start = roots.start(&view);
-            Descent::default().run(&roots, &view, &mut descended, &start);
+            let (end, picture) = (Some(steps), (&camera, 24, 0.0));
+            let FirstTile {
+                buffer: descended,
+                view,
+                seen: within,
+                ..
+            } = FirstTile::draw(&graph, end, picture, Short::Cut);
             let mut all = Buffer::new();
             let mut pencil = solid::Pencil::default();
             for element in Elements::of(&within, &Growth::steps(steps)) {
                 let (_, element) = element.unwrap();
                 let solid = within.drawn(element.object).unwrap();
-                let map = element.frame.map();
+                let body = solid::Body::new(solid, element.frame.map());
                 let class = lit::Classes::One(0);
-                pencil.draw(&mut all, &view, solid, map, [0, 0, 96, 96], class);
+                pencil.draw(&mut all, &view, &body, [0, 0, 96, 96], class);
             }
             let (mut ink, mut other) = (0, 0);
             for y in 0..SIDE {

@@ -5,18 +5,23 @@
 //! of a size near to theirs: of all their points, none is drawn more than a pixel from its place, and most within a
 //! quarter of a pixel. Elements that are replaced because they are larger than the detail are never drawn so.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::OnceLock;
 
 use crate::geometry::{DAffine3, DMat3, DQuat, DVec3};
 
-use super::buffer::{Buffer, CLASS_BITS, EMPTY, MARGIN, MAX_CLASS, SAMPLES, STEPS, STRIDE};
+use super::buffer::{
+    Buffer, CLASS_BITS, EMPTY, LAST_DEPTH, MARGIN, MAX_CLASS, SAMPLES, STEPS, STRIDE,
+};
 use super::camera::{Placement, Projection};
-use super::descent::Roots;
 use super::forms::{Form, Forms, MAX_FORMS};
 use super::lit::Classes;
 use super::planes::{Planes, draw_row};
+use super::roots::Roots;
 use super::scene::{Child, ClassBy, End, Part, ends};
-use super::solid::{Depths, View, faces};
+use super::solid::{Body, Depths, View};
 use super::stamp::{PIECE, WIDTH};
 
 /// Longest side of the box of an instance that is a copy, in samples.
@@ -51,17 +56,28 @@ const BEND: f64 = 0.27;
 #[expect(clippy::cast_precision_loss, reason = "stamps are small")]
 const REACH: f64 = WIDTH as f64 / 2.0;
 
+/// Depth of samples of a stamp that show nothing.
+const NOTHING: u16 = u16::MAX;
+
+/// Number of steps of depth of a stamp between its near and its far end.
+const FINE: u16 = NOTHING - 1;
+
 /// The stamps of all objects, which are drawn when they are needed.
 pub(super) struct Turned {
     /// Number of the stamps of each object.
     sets: Vec<usize>,
-    stamps: Vec<OnceLock<TurnedStamp>>,
+    least_sizes: [f64; SIZES],
+    stamps: Vec<OnceLock<Box<TurnedStamp>>>,
 }
 
 /// Picture of an object in an orientation.
 pub(super) struct TurnedStamp {
-    /// Keys with depths of its own range, in rows.
-    keys: Vec<u32>,
+    /// Depths, in steps of its own range, in rows; [`NOTHING`] where nothing is shown.
+    depths: Vec<u16>,
+    /// Classes of these samples; empty if all are 0.
+    classes: Vec<u16>,
+    /// The least depth.
+    nearest: u16,
     columns: usize,
     /// Corner of what is stored, and the end of what shows something, in samples.
     corner: [usize; 2],
@@ -70,6 +86,12 @@ pub(super) struct TurnedStamp {
     pub(super) elements: u64,
     /// Number of steps of its deepest element.
     pub(super) deepest: u32,
+}
+
+/// Returns the sides above which sizes are those of cells, from the largest cell on.
+#[expect(clippy::cast_precision_loss, reason = "the numbers are small")]
+fn least_sizes() -> [f64; SIZES] {
+    std::array::from_fn(|size| SIDE * libm::exp(-RATIO * (size as f64 + 1.0)))
 }
 
 /// Orientation and size of an instance, rounded.
@@ -120,6 +142,7 @@ impl Turned {
         let sets: Vec<usize> = sets.collect();
         (names.len() <= MAX_OBJECTS).then(|| Self {
             sets,
+            least_sizes: least_sizes(),
             stamps: (0..CELLS * names.len()).map(|_| OnceLock::new()).collect(),
         })
     }
@@ -137,14 +160,14 @@ impl Turned {
         if size > SIDE || size <= roots.end.detail {
             return None;
         }
-        let cell = Cell::of(&form.linear, form.length, size)?;
+        let cell = Cell::of(&form.linear, form.length, size, &self.least_sizes)?;
         let number = self.sets[form.object] * CELLS + cell.number();
         // Stamps have the hull in their middle.
         let at = at - form.middle + form.centre;
         let stamp = self.stamps[number].get_or_init(|| {
             let length = cell.size() / roots.end.unit;
             let form = Form::new(roots.parts, (form.object, 0), cell.turn() * length, length);
-            Builder::build(roots, &form)
+            Box::new(Builder::build(roots, &form))
         });
         let class = match roots.class_by {
             ClassBy::Step => form.level,
@@ -161,16 +184,19 @@ impl Turned {
             let at = at.clamp(0, (STRIDE - WIDTH).cast_signed());
             at.cast_unsigned() + stamp.corner[axis]
         });
-        if !stamp.keys.is_empty() {
-            let copy = Copy {
-                base: view.depths.exact(at.z + REACH).floor() as i32,
-                scale: (2.0 * REACH * view.depths.steps() / STEPS) as f32,
-                class,
-            };
+        let end = [0, 1].map(|axis| corner[axis] + stamp.end[axis] - stamp.corner[axis]);
+        let base = view.depths.exact(at.z + REACH).floor() as i32;
+        let scale = 2.0 * REACH * view.depths.steps() / f64::from(FINE);
+        let copy = Copy::new(base, scale, class);
+        let area = [corner[0], corner[1], end[0], end[1]];
+        if !stamp.depths.is_empty() && buffer.shows_with_margin(area, copy.depth(stamp.nearest)) {
             let keys = &mut buffer.with_margin()[corner[1] * STRIDE + corner[0]..];
-            if blit(keys, stamp.columns, &stamp.keys, &copy) {
-                let end = [0, 1].map(|axis| corner[axis] + stamp.end[axis] - stamp.corner[axis]);
-                buffer.refresh_with_margin([corner[0], corner[1], end[0], end[1]]);
+            let is_seen = match stamp.classes.is_empty() {
+                true => blit::<false>(keys, stamp, &copy),
+                false => blit::<true>(keys, stamp, &copy),
+            };
+            if is_seen {
+                buffer.refresh_with_margin(area);
             }
         }
         Some(stamp)
@@ -178,14 +204,15 @@ impl Turned {
 }
 
 impl Cell {
-    /// Returns the cell of a similarity, whose stretch is given, and of the longest side of its box.
+    /// Returns the cell of a similarity, whose stretch is given, and of the longest side of its box, by the
+    /// [least sides](least_sizes) of cells.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         clippy::cast_precision_loss,
         reason = "the numbers are small"
     )]
-    fn of(linear: &DMat3, length: f64, size: f64) -> Option<Self> {
+    fn of(linear: &DMat3, length: f64, size: f64, least_sizes: &[f64; SIZES]) -> Option<Self> {
         let is_mirrored = linear.determinant() < 0.0;
         let scale = if is_mirrored { -1.0 } else { 1.0 } / length;
         let parts = DQuat::from_mat3(&(*linear * scale)).to_array();
@@ -202,7 +229,7 @@ impl Cell {
             let step = (bent + 1.0) / 2.0 * TURNS as f64;
             (step as usize).min(TURNS - 1)
         });
-        let size = (libm::log(SIDE / size) / RATIO) as usize;
+        let size = least_sizes.iter().filter(|least| size <= **least).count();
         (size < SIZES).then_some(Self {
             is_mirrored,
             chart,
@@ -242,35 +269,63 @@ impl Cell {
 struct Copy {
     /// Depth of what has the depth 0.
     base: i32,
-    /// Depths of the picture in one of the stamp.
-    scale: f32,
+    /// Depths of the picture in one of the stamp, as a multiple of a power of 2: whole numbers are multiplied at once.
+    scale: u32,
+    shift: u32,
     class: u32,
 }
 
-/// Draws a copy, whose corner is that of `keys`; returns whether it is seen.
+impl Copy {
+    /// Creates a copy; `scale` is the number of depths of the picture in one of the stamp.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts from floats saturate"
+    )]
+    fn new(base: i32, scale: f64, class: u32) -> Self {
+        /// Bits of the factor, which leave room in 32 bits for depths of 16 bits and the base.
+        const BITS: u32 = 14;
+        const FAR: i32 = 1 << 30;
+        let largest = f64::from((1 << BITS) - 1);
+        let mut shifts = (0..=BITS).rev();
+        let shift = shifts.find(|shift| scale * f64::from(1 << shift) <= largest);
+        let shift = shift.unwrap_or(0);
+        Self {
+            base: base.clamp(-FAR, FAR),
+            scale: (scale * f64::from(1 << shift)).min(largest) as u32,
+            shift,
+            class,
+        }
+    }
+
+    /// Returns the depth in the picture of a depth of the stamp.
+    #[inline(always)]
+    fn depth(&self, own: u16) -> u32 {
+        let depth = ((u32::from(own) * self.scale) >> self.shift).cast_signed();
+        (depth + self.base).clamp(0, LAST_DEPTH).cast_unsigned()
+    }
+}
+
+/// Draws a copy of a stamp, which has classes if it is `CLASSED`; its corner is that of `keys`. Returns whether it is seen.
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss,
-    reason = "the numbers are clamped"
-)]
-fn blit(keys: &mut [u32], columns: usize, stamp: &[u32], copy: &Copy) -> bool {
-    const LAST: i32 = STEPS as i32;
+fn blit<const CLASSED: bool>(keys: &mut [u32], stamp: &TurnedStamp, copy: &Copy) -> bool {
     let mut seen = 0;
-    for (row, stamp) in keys.chunks_mut(STRIDE).zip(stamp.chunks_exact(columns)) {
-        let pieces = row.chunks_exact_mut(PIECE).zip(stamp.chunks_exact(PIECE));
-        for (keys, stamp) in pieces {
-            for (key, own) in keys.iter_mut().zip(stamp) {
-                let depth = ((own >> CLASS_BITS) as i32 as f32 * copy.scale) as i32;
-                let depth = (depth + copy.base).clamp(0, LAST) as u32;
-                let class = (own & u32::from(MAX_CLASS)) + copy.class;
-                let new = if *own == EMPTY {
-                    EMPTY
-                } else {
-                    depth << CLASS_BITS | class
-                };
+    let columns = stamp.columns;
+    let rows = keys
+        .chunks_mut(STRIDE)
+        .zip(stamp.depths.chunks_exact(columns));
+    for (y, (row, depths)) in rows.enumerate() {
+        let classes = if CLASSED {
+            &stamp.classes[y * columns..(y + 1) * columns]
+        } else {
+            depths
+        };
+        let own = depths.chunks_exact(PIECE).zip(classes.chunks_exact(PIECE));
+        for (keys, (depths, classes)) in row.chunks_exact_mut(PIECE).zip(own) {
+            for (key, (own, class)) in keys.iter_mut().zip(depths.iter().zip(classes)) {
+                let class = if CLASSED { u32::from(*class) } else { 0 };
+                let key_of_own = copy.depth(*own) << CLASS_BITS | (class + copy.class);
+                let new = if *own == NOTHING { EMPTY } else { key_of_own };
                 seen |= u32::from(new < *key);
                 *key = (*key).min(new);
             }
@@ -336,11 +391,13 @@ impl<'a> Builder<'a> {
             return;
         };
         let map = DAffine3::from_mat3_translation(form.linear, at - form.middle);
-        let faces = faces(solid, &map, &self.view)
-            .map(|(normal, distance)| (normal, distance + SPREAD * normal.length()));
+        let body = Body::new(solid, &map).grown(SPREAD);
         let class = self.roots.class(form, 0);
-        self.planes
-            .set(Projection::Parallel, faces, &mut Classes::One(class));
+        self.planes.set(
+            Projection::Parallel,
+            body.faces(&self.view),
+            &mut Classes::One(class),
+        );
         for y in top..bottom.min(WIDTH) {
             let row = &mut self.keys[y * WIDTH..(y + 1) * WIDTH];
             let row = &mut row[left.min(WIDTH)..right.min(WIDTH)];
@@ -349,6 +406,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the stamp, without what shows nothing around what is shown.
+    #[expect(clippy::cast_possible_truncation, reason = "classes are the low bits")]
     fn stamp(self) -> TurnedStamp {
         let shown = { self.keys.iter().enumerate() }
             .filter(|(_, key)| **key != EMPTY)
@@ -365,10 +423,20 @@ impl<'a> Builder<'a> {
         let columns = (end[0] - corner[0]).next_multiple_of(PIECE);
         let corner = [corner[0].min(WIDTH - columns), corner[1]];
         let rows = self.keys.chunks_exact(WIDTH).take(end[1]).skip(corner[1]);
+        let keys = rows.flat_map(|row| &row[corner[0]..corner[0] + columns]);
+        let depths: Vec<u16> = keys.clone().map(|key| depth_in_stamp(*key)).collect();
+        let classes = keys.map(|key| match *key {
+            EMPTY => 0,
+            key => key as u16 & MAX_CLASS,
+        });
+        let classes: Vec<u16> = classes.collect();
+        let has_classes = classes.iter().any(|class| *class > 0);
         TurnedStamp {
-            keys: { rows.flat_map(|row| &row[corner[0]..corner[0] + columns]) }
-                .copied()
-                .collect(),
+            nearest: depths
+                .iter()
+                .fold(NOTHING, |nearest, own| nearest.min(*own)),
+            depths,
+            classes: if has_classes { classes } else { Vec::new() },
             columns,
             corner,
             end,
@@ -378,123 +446,15 @@ impl<'a> Builder<'a> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::super::buffer::SIDE as TILE_SIDE;
-    use super::super::descent::Descent;
-    use super::super::slice::Search;
-    use super::super::solid::depth_of;
-    use super::super::tests::graph_of;
-    use super::super::{place, scene, solid};
-    use super::*;
-    use crate::geometry::{Bounds, Frame3, Solid};
-    use crate::graph::Graph;
-    use crate::render::Size;
-    use crate::style::{Camera, Colour};
-
-    /// Greatest distance of a point from its place, in samples, before it is rounded to samples.
-    const AWAY: f64 = SAMPLES as f64 - std::f64::consts::FRAC_1_SQRT_2;
-
-    #[test]
-    fn cells_are_near_to_what_they_stand_for() {
-        let corners = Solid::cuboid(&Bounds::new(DVec3::splat(-0.5), DVec3::splat(0.5)));
-        let (mut farthest, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
-        for number in 0..20_000 {
-            let part = |step: u32| (f64::from(number) * 0.618_034 * f64::from(step)).fract() - 0.5;
-            let turn = DQuat::from_xyzw(part(1), part(2), part(3), part(4));
-            let size = 4.01 + (SIDE - 4.01) * (part(5) + 0.5);
-            let sign = if number % 2 == 0 { size } else { -size };
-            let linear = DMat3::from_quat(turn.normalize()) * sign;
-            let cell = Cell::of(&linear, size, size).unwrap();
-            let own = cell.turn() * cell.size();
-            for corner in corners.corners() {
-                let away = (own * *corner - linear * *corner).length();
-                farthest = farthest.max(away);
-                sum += away;
-                count += 1.0;
-            }
-        }
-        assert!(farthest < AWAY && sum < 1.5 * count, "{farthest}, {sum}");
-    }
-
-    fn drawn(graph: &Graph<Frame3>, is_turned: bool) -> (Buffer, f64) {
-        let parts = scene::parts(graph, None);
-        let search = Search {
-            parts: &parts,
-            start: &scene::start(graph),
-            steps: None,
-        };
-        let camera = Camera::default();
-        let placement = place::place(graph, &search, &camera, &[], Size::Long(64), 0.0).unwrap();
-        let view = View {
-            projection: placement.projection,
-            depths: Depths::new(placement.range),
-            cuts: &[],
-            corner: [0.0; 2],
-        };
-        let start = scene::start(&scene::seen(graph, &placement.map));
-        let end = End {
-            steps: 1000,
-            detail: SAMPLES as f64,
-            unit: graph.unit(),
-        };
-        let pad = solid::pad(graph);
-        let class_by = ClassBy::Nothing;
-        let forms = Forms::find(&parts, &start, &end, class_by, &placement, pad, true);
-        let turned = Turned::of(&parts, &start, &forms, &end, class_by, &placement);
-        let roots = Roots {
-            parts: &parts,
-            forms: &forms,
-            end,
-            class_by,
-            lit: None,
-            inks: &[Colour::BLACK],
-            pad,
-            overlap: false,
-            turned: turned.as_ref().filter(|_| is_turned),
-        };
-        assert!(turned.is_some());
-        let mut buffer = Buffer::new();
-        let start = roots.start(&view);
-        Descent::default().run(&roots, &view, &mut buffer, &start);
-        (buffer, view.depths.steps())
-    }
-
-    /// Samples of copies have one of a similar depth within half a pixel of the exact picture. The other way, copies
-    /// close gaps that are finer than a pixel.
-    #[test]
-    fn copies_are_drawn_where_they_belong() {
-        const NEAR: usize = SAMPLES / 2;
-        for text in [
-            include_str!("../../../library/ifs/lotus.yaml"),
-            include_str!("../../../library/ifs/romanesco.yaml"),
-        ] {
-            let graph = graph_of(text);
-            let (exact, steps) = drawn(&graph, false);
-            let (copied, _) = drawn(&graph, true);
-            for (one, other, share) in [(&copied, &exact, 0.02), (&exact, &copied, 0.08)] {
-                let (mut ink, mut away) = (0, 0);
-                for y in 0..TILE_SIDE {
-                    for x in 0..TILE_SIDE {
-                        let Some(depth) = depth_of(one.row(y)[x]) else {
-                            continue;
-                        };
-                        ink += 1;
-                        let around =
-                            |at: usize| at.saturating_sub(NEAR)..(at + NEAR + 1).min(TILE_SIDE);
-                        let is_near = around(y).any(|y| {
-                            { other.row(y)[around(x)].iter() }
-                                .filter_map(|key| depth_of(*key))
-                                .any(|own| f64::from(own.abs_diff(depth)) < steps * NEAR as f64)
-                        });
-                        away += usize::from(!is_near);
-                    }
-                }
-                assert!(
-                    ink > 20_000 && (away as f64) < share * ink as f64,
-                    "{away} of {ink}"
-                );
-            }
-        }
+/// Returns the depth of a key in steps of a stamp.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the numbers are small"
+)]
+fn depth_in_stamp(key: u32) -> u16 {
+    match key {
+        EMPTY => NOTHING,
+        key => (f64::from(key >> CLASS_BITS) * f64::from(FINE) / STEPS) as u16,
     }
 }

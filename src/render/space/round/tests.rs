@@ -1,7 +1,7 @@
 //! Tests of rays that meet balls, cylinders and cones.
 
 use super::super::buffer::SIDE;
-use super::super::solid::{Depths, Pencil, depth_of};
+use super::super::solid::{Body, Depths, Pencil, depth_of};
 use super::*;
 use crate::geometry::{DMat2, DVec2, Solid};
 
@@ -93,7 +93,7 @@ fn depths_of_ellipsoids_are_analytic() {
         let map = DAffine3::from_mat3_translation(linear, middle);
         let all = [0, 0, SIDE, SIDE];
         let class = Classes::One(5);
-        Pencil::default().draw(&mut buffer, &view, &ball, &map, all, class);
+        Pencil::default().draw(&mut buffer, &view, &Body::new(&ball, &map), all, class);
         let square = linear * linear.transpose();
         let shadow = DMat2::from_cols(square.x_axis.truncate(), square.y_axis.truncate()).inverse();
         let across = shadow * square.z_axis.truncate();

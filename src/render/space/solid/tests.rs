@@ -66,7 +66,8 @@ proptest! {
                     true => Classes::OfNormals(&mut of),
                     false => Classes::One(u16::try_from(number).unwrap_or(0)),
                 };
-                pencil.draw(buffer, &view, solid, map, rectangle, classes);
+                let body = Body::new(solid, map);
+                pencil.draw(buffer, &view, &body, rectangle, classes);
             };
             draw(&mut whole, [0, 0, SIDE, SIDE]);
             for left in (0..SIDE).step_by(8) {

@@ -1,6 +1,7 @@
 //! Tests of slices and cuts.
 
 use super::*;
+use crate::geometry::HalfSpace;
 
 fn sliced(graph: &Graph<Frame3>, slice: Slice, side: u32, up: Option<DVec3>) -> Pixmap {
     let options = Options::default().size(Size::Long(side));

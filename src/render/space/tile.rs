@@ -1,0 +1,129 @@
+//! Tiles of a picture in space, each of which is drawn by one thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use tiny_skia::{Pixmap, PremultipliedColorU8};
+
+use crate::geometry::HalfSpace;
+use crate::style::Colour;
+
+use super::TILE_SIZE;
+use super::buffer::{Buffer, SAMPLES, SIDE, TILE};
+use super::camera::Placement;
+use super::descent::Descent;
+use super::roots::Roots;
+use super::shade::{self, Inks};
+use super::solid::{self, Depths, View};
+
+/// Piece of work: a tile of the picture.
+pub(super) struct Tile<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    /// Column and row of the tile.
+    pub(super) at: [u32; 2],
+    /// Instances of the initiator that may be seen in the row.
+    pub(super) start: Arc<[usize]>,
+    buffer: Buffer,
+    pub(super) descent: Descent,
+    /// Premultiplied colours of the pixels, in rows, if the scene has inks.
+    colours: Vec<[f64; 4]>,
+    /// Depths of the pixels.
+    pub(super) depths: Vec<Option<u32>>,
+}
+
+/// State that all tiles share.
+pub(super) struct Scene<'a> {
+    pub(super) roots: Roots<'a>,
+    pub(super) cuts: Vec<HalfSpace>,
+    pub(super) placement: Placement,
+    /// Inks, if colours are seen.
+    pub(super) inks: Option<Inks>,
+    pub(super) cancel: Option<&'a AtomicBool>,
+}
+
+impl Scene<'_> {
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|it| it.load(Ordering::Relaxed))
+    }
+
+    /// Returns the view of the tile in a column and a row.
+    pub(super) fn view(&self, at: [u32; 2]) -> View<'_> {
+        #[expect(clippy::cast_precision_loss, reason = "a tile has few samples")]
+        let side = SIDE as f64;
+        View {
+            projection: self.placement.projection,
+            depths: Depths::new(self.placement.range),
+            cuts: &self.cuts,
+            corner: at.map(|tile| f64::from(tile) * side),
+        }
+    }
+}
+
+impl<'a> Tile<'a> {
+    /// Creates a tile to be drawn.
+    pub(super) fn of(scene: &'a Scene<'a>) -> Self {
+        Self {
+            scene,
+            at: [0, 0],
+            start: Arc::default(),
+            buffer: Buffer::new(),
+            descent: Descent::default(),
+            colours: Vec::new(),
+            depths: Vec::new(),
+        }
+    }
+
+    pub(super) fn draw(&mut self) {
+        let Scene { roots, inks, .. } = self.scene;
+        self.colours.clear();
+        self.depths.clear();
+        if self.scene.is_cancelled() {
+            return;
+        }
+        let view = self.scene.view(self.at);
+        self.buffer.clear();
+        self.descent.drawn = 0;
+        self.descent.deepest = 0;
+        self.descent
+            .run(roots, &view, &mut self.buffer, &self.start);
+        let Some(inks) = inks else {
+            for y in 0..TILE {
+                let rows = self.buffer.rows_of_pixels(y);
+                let pixels = (0..TILE).map(|x| shade::nearest(shade::samples(rows, x)));
+                self.depths.extend(pixels.map(solid::depth_of));
+            }
+            return;
+        };
+        let is_tinted = roots.finds_colours();
+        if is_tinted {
+            self.descent.tints.settle(&mut self.buffer);
+        }
+        for y in 0..TILE {
+            let tints: Option<[&[Colour]; SAMPLES]> = is_tinted
+                .then(|| std::array::from_fn(|row| self.descent.tints.row(y * SAMPLES + row)));
+            let rows = self.buffer.rows_of_pixels(y);
+            for x in 0..TILE {
+                let samples = shade::samples(rows, x);
+                let tints = tints.map(|rows| shade::samples(rows, x));
+                let (colour, depth) = inks.pixel(samples, tints);
+                self.colours.push(colour);
+                self.depths.push(depth);
+            }
+        }
+    }
+
+    /// Copies the pixels into the picture.
+    pub(super) fn copy(&self, pixmap: &mut Pixmap) {
+        let [width, height] = [pixmap.width(), pixmap.height()];
+        let [left, top] = self.at.map(|at| at * TILE_SIZE);
+        let columns = TILE_SIZE.min(width - left) as usize;
+        let pixels: &mut [PremultipliedColorU8] = pixmap.pixels_mut();
+        for row in 0..TILE_SIZE.min(height - top) as usize {
+            let start = (top as usize + row) * width as usize + left as usize;
+            let colours = &self.colours[row * TILE..row * TILE + columns];
+            for (pixel, colour) in pixels[start..start + columns].iter_mut().zip(colours) {
+                *pixel = shade::premultiplied(*colour);
+            }
+        }
+    }
+}
