@@ -3,7 +3,7 @@
 //! The picture is divided into tiles, each of which is drawn from the whole graph, by any thread: instances that
 //! lie beside the tile or strictly behind what is drawn already are left out, and the nearest are drawn first.
 //! The cost is that of the visible part, at any number of steps. Instances that differ by a translation only are
-//! copies of one small picture in a parallel view; small ones that turn are copies within a pixel. Elements smaller than a detail are not replaced,
+//! copies of one picture in a parallel view; small ones that turn are copies within a pixel. Elements smaller than a detail are not replaced,
 //! and drawn as the convex solid that the graph has for them. Of elements that differ by a translation of less than a detail, one is drawn.
 //!
 //! A pixel has 4 × 4 samples, whose depths are multiples of 2⁻²² of the exact range of the set; the nearer wins,

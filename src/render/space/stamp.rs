@@ -37,7 +37,7 @@ fn spread(phases: usize) -> f64 {
     0.5 / phases as f64
 }
 
-/// Samples along a side of a small stamp.
+/// Samples along a side of small stamps, but for the rounding of their sides.
 pub(super) const WIDTH: usize = MARGIN;
 
 /// Largest half side of a form that has stamps, in samples, whatever it consists of.

@@ -14,7 +14,7 @@ use crate::graph::Graph;
 use crate::render::Size;
 use crate::style::{Camera, Colour};
 
-/// First tile of a parallel picture.
+/// First tile of a picture.
 pub(in crate::render::space) struct FirstTile {
     pub(in crate::render::space) buffer: Buffer,
     pub(in crate::render::space) view: View<'static>,
