@@ -1,7 +1,8 @@
 //! Instances that lie so close together that few stand for many, as the blades of a distant meadow do.
 //!
-//! A form may have any number of instances inside another. Where these lie within a detail, along each axis, and are
-//! more than the forms, each form is drawn once: in that middle, and grown by their distance from it, so that it covers about what they do.
+//! A form may have any number of instances inside another. Where the middles of all that have one form lie within a detail, along each
+//! axis, and the instances are more than the forms, each form is drawn once: in the middle of its instances, and grown by their
+//! distance from it, so that it covers about what they do.
 
 use crate::geometry::{Bounds, DVec3};
 use crate::instancing::Appearance;
@@ -63,7 +64,7 @@ pub(super) fn gather(forms: &mut Forms, parts: &[Part], end: &End, scale: f64) {
     }
 }
 
-/// Returns what is in a form; `None` if that is not known to the last, too many forms, or farther apart than `reach` about a middle.
+/// Returns the content of a form; `None` if it is not known to the last, has too many forms, or lies farther than `reach` from its middles.
 fn content(
     forms: &Forms,
     parts: &[Part],
