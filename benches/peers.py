@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""kfrac beside Context Free, flam3, numba, l-system-fractals, trimesh and POV-Ray: ratios of time, peak memory, and the
-targets.
+"""kfrac beside Context Free, flam3, numba, l-system-fractals, trimesh, POV-Ray and Mitsuba: ratios of time, peak memory, and
+the targets.
 
 On a fresh Debian:
 
@@ -13,6 +13,7 @@ On a fresh Debian:
     python3 -m pip install trimesh scipy    # to compare voxels with trimesh
     cargo install --locked l-system-fractals     # for the Koch curve as an L-system
     apt-get install --no-install-recommends povray    # for the sponge in space; 4 GB of memory
+    python3 -m pip install mitsuba      # for a deeper sponge in space
 
 Whole commands run alternately, and their medians are compared: on a machine with other load only the
 ratios are meaningful. Outputs are files in a temporary folder (set by TMPDIR; a folder in memory
@@ -74,6 +75,9 @@ STRINGS = 18
 
 # Levels of the sponge, and the smallest ratio of times to POV-Ray.
 SPONGE = (5, 8)
+
+# Level of the sponge, of which two levels are instanced by hand in Mitsuba, and the smallest ratio of times.
+DEEP_SPONGE = (7, 3)
 
 # Sets in space, sides of pictures, the largest number of seconds on one thread; and the smallest ratio on two.
 SPACE = [
@@ -329,6 +333,26 @@ def beside_pov(kfrac, folder, quick):
     )
 
 
+def beside_mitsuba(kfrac, folder, quick):
+    """Compares a deep step of the Menger sponge with instances of a mesh in Mitsuba, as whole commands."""
+    levels, ratio = (5, DEEP_SPONGE[1]) if quick else DEEP_SPONGE
+    print()
+    row("beside Mitsuba", "kfrac", "Mitsuba", "ratio", "target", "", "memory", "its memory")
+    ours = [kfrac, "grow", "menger", "--steps", levels, "--threads", 1, "-o", folder / "ours.png", "--quiet"]
+    theirs = [sys.executable, HERE / "peers/mitsuba_sponge.py", levels, folder / "theirs.png"]
+    (seconds, memory), (peer, its) = in_turn([ours, theirs], 1)
+    row(
+        f"Menger level {levels} to PNG 1024²",
+        f"{seconds:.3f} s",
+        f"{peer:.2f} s",
+        f"{peer / seconds:.1f} x",
+        f"{ratio} x",
+        verdict(peer / seconds >= ratio),
+        f"{memory:.0f} MiB",
+        f"{its:.0f} MiB",
+    )
+
+
 def film_of(peer, name, folder, quick):
     """Returns a command that makes a film with a peer, its environment, and its number of frames."""
     draw = ["cfdg", "-q", "-w", 640, "-h", 480, "-m", 100_000_000, "-x", 0.0001, "-v", "AAAAAA"]
@@ -473,6 +497,8 @@ def main():
             beside_strings(kfrac, Path(folder), arguments.quick)
         if shutil.which("povray") is not None:
             beside_pov(kfrac, Path(folder), arguments.quick)
+        if importlib.util.find_spec("mitsuba") is not None:
+            beside_mitsuba(kfrac, Path(folder), arguments.quick)
         films(kfrac, Path(folder), arguments.quick)
         in_space(kfrac, Path(folder), arguments.quick)
         streamed(kfrac, Path(folder), arguments.quick)

@@ -11,12 +11,14 @@ use std::ops::Range;
 use std::sync::Arc;
 
 mod render;
+#[cfg(feature = "snippets")]
+mod snippet;
 mod source;
 mod suggest;
 
 pub use source::{Place, Source};
 pub use suggest::did_you_mean;
-pub(crate) use suggest::{listed, nearest};
+pub(crate) use suggest::{MAX_CANDIDATES, listed, nearest};
 
 /// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +170,8 @@ impl Diagnostics {
         Self(all)
     }
 
-    /// Renders the diagnostics as text for a person, with ANSI colours if `color` is set.
+    /// Renders the diagnostics as text for a person, with ANSI colours if `color` is set. Without the feature `snippets`,
+    /// there are no colours, and places are named without the lines of the file.
     ///
     /// Diagnostics are sorted by source (in order of first occurrence) and position; diagnostics
     /// without a span come last. Adjacent duplicates are omitted. The first 100 diagnostics are shown

@@ -198,6 +198,107 @@ pub(crate) fn all_loops_shrink(
     })
 }
 
+/// Loop with a large mean of the values of its vertices.
+#[derive(Debug)]
+pub(crate) struct LargeLoop {
+    /// Vertices in the order in which edges lead to them.
+    pub(crate) vertices: Vec<usize>,
+    /// Mean of the values of the vertices.
+    pub(crate) mean: f64,
+    /// Upper bound of the means of all loops; infinite if the search took too long.
+    pub(crate) most: f64,
+}
+
+/// Returns a loop with the largest mean of the values of its vertices, by policy iteration (Howard, "Dynamic Programming
+/// and Markov Processes", 1960, as by Dasdan, "Experimental analysis of the fastest optimum cycle ratio and mean
+/// algorithms", 2004). `targets` lists the vertices to which the edges of each vertex lead. `None` if a vertex has none.
+pub(crate) fn loop_of_largest_mean(values: &[f64], targets: &[Vec<usize>]) -> Option<LargeLoop> {
+    /// Limit of the number of vertices and edges that are looked at.
+    const MAX_WORK: usize = 10_000_000;
+    /// Least value that is distinguished from others: below the logarithm of any number.
+    const LEAST: f64 = -1e4;
+    let bounded: Vec<f64> = values.iter().map(|value| value.max(LEAST)).collect();
+    // The choice of each vertex among its targets.
+    let chosen: Option<Vec<usize>> = targets.iter().map(|all| all.first().copied()).collect();
+    let mut chosen = chosen?;
+    let work = targets.len() + targets.iter().map(Vec::len).sum::<usize>();
+    let mut sums = bounded.clone();
+    let mut best = largest_chosen(&bounded, &chosen)?;
+    for _ in 0..(MAX_WORK / work).max(1) {
+        // The sums along the chosen edges as far as the loop, less the mean at every vertex.
+        let mut leading: Vec<Vec<usize>> = vec![Vec::new(); chosen.len()];
+        for (vertex, target) in chosen.iter().enumerate() {
+            leading[*target].push(vertex);
+        }
+        let root = best.vertices[0];
+        let mut open = vec![root];
+        while let Some(target) = open.pop() {
+            for &vertex in leading[target].iter().filter(|vertex| **vertex != root) {
+                sums[vertex] = bounded[vertex] - best.mean + sums[target];
+                open.push(vertex);
+            }
+        }
+        let largest = sums.iter().fold(1.0, |most: f64, sum| most.max(sum.abs()));
+        let rounding = 4.0 * f64::EPSILON * largest;
+        let mut is_better = false;
+        for (vertex, all) in targets.iter().enumerate() {
+            for &target in all {
+                let sum = bounded[vertex] - best.mean + sums[target];
+                if sum > sums[vertex] {
+                    is_better |= sum > sums[vertex] + rounding;
+                    sums[vertex] = sum;
+                    chosen[vertex] = target;
+                }
+            }
+        }
+        if !is_better {
+            best.most = best.mean + 2.0 * rounding;
+            break;
+        }
+        let next = largest_chosen(&bounded, &chosen)?;
+        if next.mean >= best.mean {
+            best = next;
+        }
+    }
+    let exact = best.vertices.iter().map(|vertex| values[*vertex]);
+    best.mean = exact.sum::<f64>() / best.vertices.len() as f64;
+    Some(best)
+}
+
+/// Returns the loop of largest mean if one edge leads from each vertex.
+fn largest_chosen(values: &[f64], targets: &[usize]) -> Option<LargeLoop> {
+    const NONE: usize = usize::MAX;
+    let mut best: Option<LargeLoop> = None;
+    // The first vertex from which each was met.
+    let mut met = vec![NONE; targets.len()];
+    for first in 0..targets.len() {
+        let mut vertex = first;
+        while met[vertex] == NONE {
+            met[vertex] = first;
+            vertex = targets[vertex];
+        }
+        if met[vertex] != first {
+            continue;
+        }
+        let mut vertices = vec![vertex];
+        let mut next = targets[vertex];
+        while next != vertex {
+            vertices.push(next);
+            next = targets[next];
+        }
+        let sum: f64 = vertices.iter().map(|vertex| values[*vertex]).sum();
+        let mean = sum / vertices.len() as f64;
+        if best.as_ref().is_none_or(|best| mean > best.mean) {
+            best = Some(LargeLoop {
+                vertices,
+                mean,
+                most: f64::INFINITY,
+            });
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::collection::vec;
@@ -237,7 +338,74 @@ mod tests {
         assert_eq!(longest_paths(&ring(5_000.0), 0.0, f64::INFINITY), None);
     }
 
+    #[test]
+    fn the_largest_mean_of_long_loops_is_found() {
+        let ring = |length: usize| -> Vec<Vec<usize>> {
+            (0..length)
+                .map(|vertex| vec![(vertex + 1) % length])
+                .collect()
+        };
+        let found = loop_of_largest_mean(&vec![0.0; 20_000], &ring(20_000)).unwrap();
+        assert_eq!((found.vertices.len(), found.mean), (20_000, 0.0));
+        assert!(found.most < 1e-14);
+        // Chords across a ring that shrinks, and one short loop that does not.
+        let mut targets = ring(5_000);
+        targets.iter_mut().enumerate().for_each(|(vertex, all)| {
+            all.push(vertex * 7 % 5_000);
+        });
+        let mut values: Vec<f64> = (0..5_000)
+            .map(|vertex| -1.0 - f64::from(vertex % 13))
+            .collect();
+        targets[4_000].push(3_999);
+        (values[3_999], values[4_000]) = (-3.0, 3.5);
+        let found = loop_of_largest_mean(&values, &targets).unwrap();
+        let mut vertices = found.vertices.clone();
+        vertices.sort_unstable();
+        assert_eq!((vertices, found.mean), (vec![3_999, 4_000], 0.25));
+        assert!(found.most < 0.25 + 1e-9);
+        assert!(loop_of_largest_mean(&[0.0], &[vec![]]).is_none());
+        // A loop with a zero.
+        let found = loop_of_largest_mean(&[f64::NEG_INFINITY, 1.0], &ring(2)).unwrap();
+        assert_eq!(found.mean, f64::NEG_INFINITY);
+    }
+
     proptest! {
+        #[test]
+        fn the_largest_mean_is_that_of_all_loops(
+            rows in vec(vec(any::<bool>(), 7), 1..7),
+            values in vec(-4..4i32, 7),
+        ) {
+            let values: Vec<f64> = values.into_iter().map(f64::from).collect();
+            let size = rows.len();
+            let targets = rows.iter().enumerate().map(|(vertex, row)| {
+                let mut targets: Vec<usize> = (0..size).filter(|to| row[*to]).collect();
+                if targets.is_empty() {
+                    targets.push((vertex + 1) % size);
+                }
+                targets
+            });
+            let targets: Vec<Vec<usize>> = targets.collect();
+            let found = loop_of_largest_mean(&values[..size], &targets).unwrap();
+            // The largest sums along closed ways of each length (Karp 1978).
+            let mut largest = f64::NEG_INFINITY;
+            for start in 0..size {
+                let mut sums = vec![f64::NEG_INFINITY; size];
+                sums[start] = 0.0;
+                for length in 1..=size {
+                    let mut next = vec![f64::NEG_INFINITY; size];
+                    for (from, all) in targets.iter().enumerate() {
+                        for to in all {
+                            next[*to] = next[*to].max(sums[from] + values[from]);
+                        }
+                    }
+                    sums = next;
+                    largest = largest.max(sums[start] / length as f64);
+                }
+            }
+            prop_assert!((found.mean - largest).abs() < 1e-9, "{found:?} {largest}");
+            prop_assert!(found.most >= largest && found.most < largest + 1e-9);
+        }
+
         #[test]
         fn post_order_follows_targets(rows in vec(vec(any::<bool>(), 12), 1..12)) {
             // Edges lead to larger numbers only, but for loops of a vertex, so that there are no other loops.

@@ -15,13 +15,12 @@
 //! A PNG takes a byte for about every thousand pixels of one colour, the maximum that its compression makes
 //! of runs, and about three bytes for every pixel of an edge between two colours.
 
+use std::cell::{Cell, OnceCell};
 use std::f64::consts::{FRAC_2_PI, PI};
-use std::io::{self, Write};
 
 use crate::geometry::{Bounds, DVec2};
 use crate::graph::{Forecast, Graph, Population};
-use crate::grow::Growth;
-use crate::render::{self, Canvas, Format, Options};
+use crate::render::{self, Canvas, Options};
 use crate::rule::{BaseElement, Piece};
 use crate::style::{ColorBy, ColorProperty, Width};
 
@@ -63,7 +62,8 @@ const PATH: f64 = 14.0;
 const WIDE_PATH: f64 = 34.0;
 
 /// Estimates the bytes of an SVG of nested instances by writing one of at most 32 steps to a counter. Returns
-/// `None` where the file cannot be made, or not without growing more than 20,000 elements.
+/// `None` where the file cannot be made, or not with little work: if symbols instance more than 2²⁰ elements and symbols, or
+/// if more than 20,000 elements would have to be grown.
 #[must_use]
 pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
     /// Beyond twice this number of steps, the size is extrapolated linearly from the last `SPAN` steps.
@@ -78,50 +78,127 @@ pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f
 }
 
 fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
-    const MAX_GROWN: u64 = 20_000;
-    struct Length(u64);
-    impl Write for Length {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0 += bytes.len() as u64;
-            Ok(bytes.len())
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-    let options = Options {
-        format: Format::Svg,
-        instanced: true,
-        ..options.clone()
-    };
-    let growth = Growth {
-        max_elements: MAX_GROWN,
-        ..Growth::steps(steps)
-    };
-    let mut length = Length(0);
-    render::write(graph, &growth, &options, &mut length).ok()?;
+    let length = render::instanced_length(graph, options, steps)?;
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-    Some(DOCUMENT + length.0 as f64)
+    Some(DOCUMENT + length as f64)
 }
 
+/// Maximum number of sides of a base element of which estimates are made, each of which stands for as many others.
+const SIDES: usize = 256;
+
+/// Maximum number of sides for which the estimates of one estimator are made: those of the base elements of all populations.
+const MAX_WORK: usize = 1 << 20;
+
 /// Estimates the cost of pictures of a graph.
+///
+/// The work of all estimates is bounded: none is made after them.
 pub struct Estimator<'a> {
     graph: &'a Graph,
     options: &'a Options,
+    /// Sides of the base elements, by number, as far as they were asked for.
+    outlines: Vec<OnceCell<Sides>>,
+    /// Number of sides for which estimates have been made.
+    work: Cell<usize>,
+}
+
+/// Sides of a base element, or a sample of them.
+struct Sides {
+    /// Lengths of the lines, and of the three sides of the control polygons of curves, as multiples of the element's length.
+    all: Vec<Side>,
+    /// Number of sides for which each stands.
+    weight: f64,
+    /// Length of the outline; curves count as their chords.
+    around: f64,
+    /// Number of sides, those of control polygons included, and 1 for the element.
+    work: usize,
+}
+
+/// Lengths of the sides of a piece.
+#[derive(Clone, Copy)]
+enum Side {
+    Line(f64),
+    Cubic([f64; 3]),
+}
+
+impl Side {
+    fn longest(self) -> f64 {
+        match self {
+            Self::Line(length) => length,
+            Self::Cubic(sides) => sides.into_iter().fold(0.0, f64::max),
+        }
+    }
+}
+
+impl Sides {
+    /// Measures the sides of a base element. Of many sides in the order of their lengths, some at equal distances are kept.
+    fn of(base_element: &BaseElement) -> Self {
+        let mut pen = base_element.start();
+        let mut around = 0.0;
+        let mut all = Vec::with_capacity(base_element.pieces().len());
+        for piece in base_element.pieces() {
+            let side = |point: DVec2| (point - pen).length();
+            around += side(piece.end());
+            all.push(match *piece {
+                Piece::Line(end) => Side::Line(side(end)),
+                Piece::Cubic(a, b, end) => Side::Cubic([a, b, end].map(side)),
+            });
+            pen = piece.end();
+        }
+        // The letter that closes a path draws its last line.
+        if base_element.is_closed() && matches!(all.last(), Some(Side::Line(_))) {
+            all.pop();
+        }
+        let mut weight = 1.0;
+        if all.len() > SIDES {
+            all.sort_by(|a, b| a.longest().total_cmp(&b.longest()));
+            #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+            {
+                weight = all.len() as f64 / SIDES as f64;
+            }
+            let middle = |place: usize| all[(2 * place + 1) * all.len() / (2 * SIDES)];
+            all = (0..SIDES).map(middle).collect();
+        }
+        let sides = all.iter().map(|side| match side {
+            Side::Line(_) => 1,
+            Side::Cubic(_) => 3,
+        });
+        Self {
+            work: 1 + sides.sum::<usize>(),
+            all,
+            weight,
+            around,
+        }
+    }
 }
 
 impl<'a> Estimator<'a> {
     /// Creates an estimator of pictures that are made with these options.
     #[must_use]
     pub fn new(graph: &'a Graph, options: &'a Options) -> Self {
-        Self { graph, options }
+        Self {
+            graph,
+            options,
+            outlines: graph
+                .base_elements()
+                .iter()
+                .map(|_| OnceCell::new())
+                .collect(),
+            work: Cell::new(0),
+        }
+    }
+
+    /// Returns the sides of an object's base element; `None` if it is not drawn.
+    fn sides(&self, object: usize) -> Option<&Sides> {
+        let base_element = self.graph.drawn(object)?;
+        let number = self.graph.objects()[object].base_element;
+        Some(self.outlines[number].get_or_init(|| Sides::of(base_element)))
     }
 
     /// Estimates the cost of an approximant whose box, without strokes, is known approximately.
     ///
-    /// Returns `None` where lengths depend on draws, where the canvas has no room for a picture, or where
-    /// numbers exceed the range of a double.
+    /// Returns `None` where lengths depend on draws, where the canvas has no room for a picture, where numbers exceed the
+    /// range of a double, or where this and the estimates before take much work: more than 2²⁰ sides of the base elements of
+    /// all objects, of which at most 256 count for each.
     #[must_use]
     pub fn at(&self, forecast: &Forecast<'_>, bounds: &Bounds) -> Option<SizeEstimate> {
         let view = &self.options.view;
@@ -130,6 +207,15 @@ impl<'a> Estimator<'a> {
             Bounds::new(corner, corner + DVec2::new(width, height))
         });
         let canvas = Canvas::fit(&shown, self.options.size, view.pad()).ok()?;
+        let work = forecast.populations()?.map(|population| {
+            let sides = self.sides(population.object);
+            sides.map_or(1, |sides| sides.work)
+        });
+        let work = self.work.get() + work.sum::<usize>();
+        if work > MAX_WORK {
+            return None;
+        }
+        self.work.set(work);
         let populations = forecast.populations()?;
         let fractals = forecast.fractals().to_f64();
         let mut bytes = DOCUMENT + PATH * fractals;
@@ -146,11 +232,9 @@ impl<'a> Estimator<'a> {
                 return None;
             }
             elements += population.count;
-            bytes += self.population(&population, &canvas);
-            let object = &self.graph.objects()[population.object];
-            if object.visible {
-                let base_element = &self.graph.base_elements()[object.base_element];
-                outlines += population.length * canvas.scale() * around(base_element);
+            if let Some(sides) = self.sides(population.object) {
+                bytes += self.population(&population, sides, &canvas);
+                outlines += population.length * canvas.scale() * sides.around;
             }
         }
         let classes = self.classes(forecast.step(), fractals);
@@ -200,12 +284,12 @@ impl<'a> Estimator<'a> {
     }
 
     /// Estimates the bytes that the elements of one object take.
-    fn population(&self, population: &Population, canvas: &Canvas) -> f64 {
-        let object = &self.graph.objects()[population.object];
-        if !object.visible || population.count == 0.0 {
+    fn population(&self, population: &Population, sides: &Sides, canvas: &Canvas) -> f64 {
+        if population.count == 0.0 {
             return 0.0;
         }
-        let base_element = &self.graph.base_elements()[object.base_element];
+        let number = self.graph.objects()[population.object].base_element;
+        let is_closed = self.graph.base_elements()[number].is_closed();
         // Elements of different colours are drawn in different walks.
         let parted = match self.options.style.color_by {
             ColorBy::Step => population.parted,
@@ -218,52 +302,34 @@ impl<'a> Estimator<'a> {
         let deviations = [(-3.0f64.sqrt(), 1.0), (0.0, 4.0), (3.0f64.sqrt(), 1.0)];
         let sum = deviations.iter().map(|(deviation, weight)| {
             let length = mean * libm::exp(deviation * variance.sqrt() - variance / 2.0);
-            weight * element(base_element, length * canvas.scale() * FINE, apart, canvas)
+            let length = length * canvas.scale() * FINE;
+            weight * element(sides, is_closed, length, apart, canvas)
         });
         population.count * sum.sum::<f64>() / 6.0
     }
 }
 
-/// Returns the length of an outline as a multiple of its element's length; curves count as their chords.
-fn around(base_element: &BaseElement) -> f64 {
-    let mut pen = base_element.start();
-    let sides = base_element.pieces().iter().map(|piece| {
-        let side = (piece.end() - pen).length();
-        pen = piece.end();
-        side
-    });
-    sides.sum()
-}
-
 /// Estimates the bytes of an element of a length in hundredths of a pixel; `apart` is the probability that a
 /// new line begins with it.
-fn element(base_element: &BaseElement, length: f64, apart: f64, canvas: &Canvas) -> f64 {
+fn element(sides: &Sides, is_closed: bool, length: f64, apart: f64, canvas: &Canvas) -> f64 {
     let [width, height] = canvas.size().map(f64::from);
     // M, two numbers, a space, and the letter of the next command.
     let start = 3.5 + digits_below(width * FINE) + digits_below(height * FINE);
-    let mut pen = base_element.start();
-    let mut bytes = if base_element.is_closed() {
+    let own = if is_closed {
         start + 1.0
     } else {
         apart * start
     };
-    let mut pieces = base_element.pieces();
-    if let ([rest @ .., Piece::Line(_)], true) = (pieces, base_element.is_closed()) {
-        pieces = rest;
-    }
-    for piece in pieces {
-        let side = |point: DVec2| (point - pen).length() * length;
-        bytes += match *piece {
-            Piece::Line(end) => moves(side(end)) * pair(side(end)),
-            Piece::Cubic(a, b, end) => {
-                let sides = [a, b, end].map(side);
-                let longest = sides.into_iter().fold(0.0, f64::max);
-                moves(longest) * sides.map(pair).iter().sum::<f64>()
-            }
-        };
-        pen = piece.end();
-    }
-    bytes
+    let bytes = |side: &Side| match *side {
+        Side::Line(side) => moves(side * length) * pair(side * length),
+        Side::Cubic(sides) => {
+            let sides = sides.map(|side| side * length);
+            let longest = sides.into_iter().fold(0.0, f64::max);
+            moves(longest) * sides.map(pair).iter().sum::<f64>()
+        }
+    };
+    let drawn = sides.all.iter().map(bytes).sum::<f64>();
+    own + sides.weight * drawn
 }
 
 /// Returns the probability that a side of a length ends in another hundredth of a pixel than it starts.

@@ -61,11 +61,12 @@
 //! | `studio` | yes | the studio, a page in the browser; enables `cli` |
 //! | `jpeg` | with `cli` | JPEG, besides PNG, among the pictures that are measured |
 //! | `meshes` | with `cli` | meshes from files as sets in space |
-//! | `simd` | with `cli` | random iteration with AVX2 where the processor has it: the same points, sooner |
+//! | `simd` | with `cli` | vectors of AVX2 and AVX-512 where the processor has them: the same points and pictures, sooner |
+//! | `snippets` | with `cli` | lines of the file in messages about its mistakes |
 //! | `tables` | with `cli` | tables of points in CSV that are measured |
 //! | `threemf` | with `cli` | scenes as 3MF files |
 //!
-//! With `default-features = false` the library draws, measures and converts, has fewer than 50 dependencies, none
+//! With `default-features = false` the library draws, measures and converts, has fewer than 45 dependencies, none
 //! of which concerns terminals, signals or temporary files, and compiles for `wasm32-unknown-unknown`. There, it
 //! runs in one thread, and files exist only in the embedded library.
 //!

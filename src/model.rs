@@ -24,6 +24,7 @@ use crate::lsystem::{LSystem, LSystemInSpace};
 use crate::metadata::Metadata;
 use crate::rule::Rule;
 use crate::style::{Shade, SpaceView};
+use crate::symmetry::Symmetry;
 use crate::tween::Growing;
 use place::Extent;
 
@@ -103,6 +104,11 @@ const MOST_CHECKED: u64 = 20_000;
 pub(crate) trait OfKind {
     /// Returns the metadata of the file.
     fn metadata(&self) -> &Metadata;
+
+    /// Returns why a model is not compiled for a number of steps, as far as that is predicted without any work.
+    fn too_deep(&self, _steps: u32, _max_elements: u64) -> Option<CompileError> {
+        None
+    }
 
     /// Compiles a model of the plane as [`Model::compile_for`] does.
     fn compile(&self, _steps: u32, _seed: u64, _max_elements: u64) -> Result<Graph, CompileError> {
@@ -285,15 +291,32 @@ impl Model {
 
     /// Joins a graph of the model with its images under the model's [symmetry](Symmetry), if it has one.
     fn with_images(&self, graph: Graph, max_elements: u64) -> Result<Graph, CompileError> {
+        let group = self.check_images(&graph, max_elements)?;
+        Ok(match group {
+            Some(group) => graph.with_images(&group.isometries()),
+            None => graph,
+        })
+    }
+
+    /// Returns the model's symmetry, if it has one.
+    ///
+    /// # Errors
+    ///
+    /// If the images of the graph under it have more than `max_elements` elements.
+    fn check_images(
+        &self,
+        graph: &Graph,
+        max_elements: u64,
+    ) -> Result<Option<&Symmetry>, CompileError> {
         let Some(group) = &self.metadata().symmetry else {
-            return Ok(graph);
+            return Ok(None);
         };
         let most = max_elements.clamp(1, Self::MAX_LISTED);
         if !graph.has_room_for_images(group.order().into(), most) {
             let group = group.to_string();
             return Err(CompileError::TooManyImages { group, most });
         }
-        Ok(graph.with_images(&group.isometries()))
+        Ok(Some(group))
     }
 
     /// Returns the model whose graph has the limit set: the model itself, except for an L-system that does not
@@ -406,12 +429,23 @@ impl Model {
         }
     }
 
+    /// Returns why the model is not compiled for a number of steps, as far as that is predicted without any work. Words have at
+    /// most `max_elements` modules.
+    #[must_use]
+    pub fn too_deep(&self, steps: u32, max_elements: u64) -> Option<CompileError> {
+        self.as_kind().too_deep(steps, max_elements)
+    }
+
     /// Returns a mistake that shows only where elements are replaced, by compiling the model for a few steps.
     pub(crate) fn mistake(&self) -> Option<Diagnostic> {
         let steps = self.metadata().steps.unwrap_or(1).min(16);
+        // Images under a symmetry have no mistakes of their own, but there may be too many of them.
         let compile = |steps| match self.graph_in_space_for(steps, 0, MOST_CHECKED) {
             Some(graph) => graph.map(drop),
-            None => self.compile_for(steps, 0, MOST_CHECKED).map(drop),
+            None => {
+                let graph = self.compile_listed(steps, 0, MOST_CHECKED)?;
+                self.check_images(&graph, Self::MAX_LISTED).map(drop)
+            }
         };
         let compiled = compile(steps).or_else(|error| error.deepest().map_or(Err(error), compile));
         compiled.err().map(|error| self.diagnostic(&error))

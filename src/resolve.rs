@@ -37,8 +37,11 @@ use crate::model::Model;
 use instancing::OfInstancing;
 use rule::OfRule;
 
-/// Number of mistakes after which expressions and names are not checked further.
+/// Number of mistakes after which expressions are not checked further.
 const MAX_MISTAKES: usize = 1000;
+
+/// Number of mistakes after which no similar names are searched: only 100 mistakes are shown.
+const MAX_SUGGESTIONS: usize = 200;
 
 impl Document {
     /// Reads a file of any kind from a text.
@@ -178,6 +181,8 @@ struct Resolver<K> {
     varies: bool,
     /// Number of lines, curves and sides in all sets that are fractals.
     pieces: usize,
+    /// Number of convex pieces of all polygons in space.
+    triangles: usize,
     kind: K,
 }
 
@@ -204,7 +209,7 @@ impl<K> Resolver<K> {
         name: &str,
         candidates: impl IntoIterator<Item = &'n str>,
     ) -> Option<String> {
-        if self.mistakes >= MAX_MISTAKES {
+        if self.mistakes >= MAX_SUGGESTIONS {
             return None;
         }
         did_you_mean(name, candidates)

@@ -11,6 +11,7 @@ mod slice;
 mod space;
 
 use std::fmt;
+use std::sync::LazyLock;
 
 use crate::geometry::{DVec2, DVec3, Homothety};
 
@@ -96,17 +97,31 @@ impl Colour {
     }
 }
 
-/// The named colours of CSS (W3C, CSS Color Module Level 4, section 6.1), a line each: name and `#rrggbb`.
-const NAMES: &str = include_str!("style/names.txt");
+/// The named colours of CSS (W3C, CSS Color Module Level 4, section 6.1) in alphabetical order: names and `#rrggbb`.
+static NAMES: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
+    let lines = include_str!("style/names.txt").lines();
+    lines.filter_map(|line| line.split_once(' ')).collect()
+});
+
+/// Length of the longest name of a colour.
+const LONGEST_NAME: usize = "lightgoldenrodyellow".len();
+
+/// Returns a named colour as `#rrggbb`.
+fn named(name: &str) -> Option<&'static str> {
+    if name.is_empty() || name.len() > LONGEST_NAME {
+        return None;
+    }
+    let name = name.to_ascii_lowercase();
+    let found = NAMES.binary_search_by_key(&name.as_str(), |(known, _)| known);
+    Some(NAMES[found.ok()?].1)
+}
 
 /// Replaces the names of CSS colours by their values, in any place: `oklch(from teal l c 0)`.
 fn without_names(text: &str) -> String {
     let end = |c: char| !c.is_ascii_alphabetic();
     let words = text.split_inclusive(end).map(|word| {
         let name = word.trim_end_matches(end);
-        let mut named = NAMES.lines().filter_map(|line| line.split_once(' '));
-        let value = named.find(|(known, _)| known.eq_ignore_ascii_case(name));
-        value.map_or(name, |(_, value)| value).to_owned() + &word[name.len()..]
+        named(name).unwrap_or(name).to_owned() + &word[name.len()..]
     });
     words.collect()
 }

@@ -5,7 +5,10 @@
 //! the diagnostics are written instead of compared.
 
 mod costly;
+mod estimates;
 mod hostile;
+mod lsystems;
+mod messages;
 mod mutations;
 
 use std::fs;

@@ -2,6 +2,7 @@
 
 use std::num::NonZero;
 
+use kfrac::Fractal;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Document;
@@ -11,6 +12,7 @@ use kfrac::grow::Growth;
 use kfrac::render::space::{Camera, Light, Shade, Slice, SpaceOptions, write_visible};
 use kfrac::render::{Options, Picture};
 use kfrac::style::Style;
+use resvg::{tiny_skia, usvg};
 
 fn compiled(text: &str) -> Graph<Frame3> {
     let source = Source::new("test.yaml", text);
@@ -155,5 +157,46 @@ fn threads_change_nothing() {
     for plot in [false, true] {
         let one = of(1, plot);
         assert!(one == of(2, plot) && one == of(5, plot));
+    }
+}
+
+/// Returns the share of pixels in which an SVG and a PNG of one set differ by a quarter of the range.
+fn difference(name: &str, steps: u32) -> f64 {
+    const SIDE: u32 = 480;
+    let fractal = Fractal::named(name).unwrap().steps(steps);
+    let png = tiny_skia::Pixmap::decode_png(&fractal.png(SIDE).unwrap()).unwrap();
+    let svg = fractal.svg().unwrap();
+    let tree = usvg::Tree::from_str(&svg, &usvg::Options::default()).unwrap();
+    let mut drawn = tiny_skia::Pixmap::new(png.width(), png.height()).unwrap();
+    drawn.fill(tiny_skia::Color::WHITE);
+    let [x, y] = [
+        png.width() as f32 / tree.size().width(),
+        png.height() as f32 / tree.size().height(),
+    ];
+    let to_pixels = tiny_skia::Transform::from_scale(x, y);
+    resvg::render(&tree, to_pixels, &mut drawn.as_mut());
+    let pixels = png.data().chunks_exact(4).zip(drawn.data().chunks_exact(4));
+    let differ = pixels.filter(|(a, b)| { a.iter().zip(*b) }.any(|(a, b)| a.abs_diff(*b) > 64));
+    differ.count() as f64 / f64::from(png.width() * png.height())
+}
+
+/// The order of faces is that of the depth buffer: an SVG, drawn by another program, shows what a PNG shows, but for outlines.
+#[test]
+fn faces_hide_each_other_as_in_pixels() {
+    let all = [
+        ("menger-cubes", 2),
+        ("koch-cube", 2),
+        ("koch-surface", 2),
+        ("koch-icosahedron-inwards", 2),
+        ("octahedra", 3),
+        ("tree-of-boxes", 6),
+        ("hart-tree-lsystem", 3),
+        ("hilbert-in-space", 2),
+        ("mountain", 4),
+        ("pound-sign-in-space", 3),
+    ];
+    for (name, steps) in all {
+        let share = difference(name, steps);
+        assert!(share < 0.035, "{name}: {share}");
     }
 }

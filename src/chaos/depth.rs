@@ -183,7 +183,7 @@ impl Counter for Nearest {
     }
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn walk_single(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,
@@ -193,7 +193,7 @@ fn walk_single(
     walk_in::<f32>(course, window, wave, tally)
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn walk_double(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,

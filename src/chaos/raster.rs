@@ -24,7 +24,7 @@ pub(super) fn walk(
     }
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn walk_single(
     course: &Course<'_, DAffine2>,
     size: [u32; 2],
@@ -34,7 +34,7 @@ fn walk_single(
     walk_in::<f32>(course, size, wave, tally)
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn walk_double(
     course: &Course<'_, DAffine2>,
     size: [u32; 2],

@@ -11,6 +11,7 @@ use crate::document::Document;
 use crate::model::Model;
 
 use super::component::Component;
+use super::info::MAX_LISTED;
 use super::{Failure, animate, help, output, rule, text};
 
 /// Reports all errors in rule files
@@ -103,8 +104,22 @@ pub(crate) fn checked(
     let document = Document::read(source, catalogue)?;
     let (model, mut diagnostics) = document.resolve(&[])?;
     diagnostics.extend(model.mistake());
+    diagnostics.extend(too_deep(&document, &model));
     diagnostics.extend(animate::mistakes(&document));
     Ok((document, model, diagnostics))
+}
+
+/// Returns a warning where a file proposes a number of steps whose sizes are too large to be forecast by `kfrac info`, as far
+/// as that is predicted.
+fn too_deep(document: &Document, model: &Model) -> Option<Diagnostic> {
+    let steps = document.metadata().steps.as_ref()?;
+    let error = model.too_deep(model.metadata().steps?, MAX_LISTED)?;
+    let hint = match error.deepest() {
+        Some(step) => format!("steps: {step}, or fewer symbols and shorter words"),
+        None => "fewer symbols and shorter words".into(),
+    };
+    let warning = Diagnostic::warning(error.to_string());
+    Some(warning.at(&steps.place).hint(hint))
 }
 
 pub(super) fn row<'a>(file: &'a str, diagnostic: &'a Diagnostic) -> DiagnosticRow<'a> {

@@ -347,6 +347,9 @@ pub(super) fn png_estimate(
     Estimator::new(graph, options).at(&forecast, &bounds)
 }
 
+/// Number of elements of the smaller approximant whose box stands for that of a large one.
+const FEW: u64 = 20_000;
+
 /// Boxes of approximants: from the graph, or else by a walk that is not too long.
 pub(super) struct Boxes<'g> {
     graph: &'g Graph,
@@ -376,24 +379,33 @@ impl<'g> Boxes<'g> {
     /// determine it.
     pub(super) fn roughly_at(&self, steps: u32) -> Option<Bounds> {
         self.known(steps)
-            .or_else(|| match self.graph.check_size(steps, 20_000) {
-                Ok(_) => self.walked(steps),
-                Err(error) => self.at(error.deepest?),
+            .or_else(|| match self.graph.check_fits(steps, FEW) {
+                Ok(()) => self.walked(steps),
+                Err(deepest) => self.at(deepest?),
             })
+    }
+
+    /// Returns the box of [`roughly_at`](Self::roughly_at) where [`at`](Self::at) has found none, without the same walk
+    /// again.
+    pub(super) fn of_fewer(&self, steps: u32) -> Option<Bounds> {
+        self.at(self.graph.check_fits(steps, FEW).err()??)
     }
 
     /// Returns the bounding box of an approximant by a walk, if it draws nothing at random and has few elements.
     fn walked(&self, steps: u32) -> Option<Bounds> {
         const MAX_ELEMENTS: u64 = 1_000_000;
-        /// Number of choices that take as long as the rest of an element.
+        /// Numbers of choices, and of pieces of an outline, that take as long as the rest of an element.
         const CHOICES: u64 = 8;
+        const PIECES: u64 = 32;
         let graph = self.graph;
-        let max_elements = MAX_ELEMENTS / (graph.choices() / CHOICES).max(1);
+        let pieces = { graph.base_elements().iter() }.map(|outline| outline.pieces().len() as u64);
+        let slow = (graph.choices() / CHOICES).max(1) * (pieces.max().unwrap_or(0) / PIECES).max(1);
+        let max_elements = MAX_ELEMENTS / slow;
         let growth = Growth {
             max_elements,
             ..Growth::steps(steps)
         };
-        let small = !graph.draws() && graph.check_size(steps, max_elements).is_ok();
+        let small = !graph.draws() && graph.check_fits(steps, max_elements).is_ok();
         let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
     }

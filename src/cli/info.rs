@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::readable::{self, decimal};
 use crate::catalogue::Catalogue;
 use crate::count::Count;
+use crate::diagnostic::Diagnostic;
 use crate::estimate::{Estimator, SizeEstimate, instanced_bytes};
 use crate::extent::Bounded;
 use crate::geometry::{Bounds, Homothety, Point};
@@ -48,7 +49,7 @@ pub(super) struct Arguments {
     ///
     /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two digits for
     /// each step: the size of an SVG in the rule's own style, 1024 pixels large, and the time to draw it;
-    /// null where the rule does not determine them or they exceed a double. In space, area and volume are the surface and
+    /// null where the rule does not determine them, they exceed a double or take too long. In space, area and volume are the surface and
     /// the volume of all elements: exact unless they overlap or touch. instanced_svg_bytes is the size
     /// of the last step with --svg instanced; null if that is not possible. limit_bounds is the bounding box
     /// of the limit set, if there is one. lyapunov_exponent is that of a system of maps that is not known to contract,
@@ -70,8 +71,11 @@ Examples:
 /// Largest number of steps: beyond, the numbers alone would fill a disk.
 const MAX_STEPS: u32 = 10_000;
 
+/// Limit of the number of digits of all counts of a forecast, which are held in memory.
+const MAX_DIGITS: usize = 200_000_000;
+
 /// Limit of the number of elements of a word.
-const MAX_LISTED: u64 = 1_000_000;
+pub(super) const MAX_LISTED: u64 = 1_000_000;
 
 #[derive(Serialize)]
 struct Info<'a> {
@@ -183,8 +187,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     let loaded = arguments.rule.load(catalogue, arguments.json)?;
     let loaded = loaded.listing(MAX_LISTED);
     let (info, unit) = if let Some(graph) = loaded.in_space(arguments.steps)? {
+        check_steps(arguments.steps)?;
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
-        check_steps(steps)?;
+        let steps = forecast_steps(arguments, &loaded, steps);
         let bounds = graph.bounds(steps);
         let limit = loaded.other_limit_in_space()?;
         let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
@@ -210,9 +215,11 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         };
         (info, graph.place().ratio())
     } else {
+        check_steps(arguments.steps)?;
         let (steps, known) = steps::choose_with_graph(arguments.steps, &loaded)?;
-        check_steps(steps)?;
-        let graph = known.map_or_else(|| loaded.compile(steps), Ok)?;
+        let most = steps.min(MAX_STEPS);
+        let graph = known.map_or_else(|| loaded.compile(most), Ok)?;
+        let steps = forecast_steps(arguments, &loaded, steps);
         let limit = loaded.other_limit(steps)?;
         let info = in_plane(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
         (info, graph.place().ratio())
@@ -220,12 +227,29 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
     output::print_as(arguments.json, &info, || described(&loaded, &info, unit))
 }
 
-fn check_steps(steps: u32) -> Result<(), Failure> {
-    if steps <= MAX_STEPS {
+fn check_steps(asked: Option<u32>) -> Result<(), Failure> {
+    if asked.is_none_or(|steps| steps <= MAX_STEPS) {
         return Ok(());
     }
     let message = format!("info forecasts no more than {MAX_STEPS} steps");
     Err(Failure::Usage(message))
+}
+
+/// Returns the number of steps that are forecast: as many as were asked for, or else those of the rule, unless they are too
+/// many, which a warning states.
+fn forecast_steps(arguments: &Arguments, loaded: &Loaded, steps: u32) -> u32 {
+    if arguments.steps.is_some() || steps <= MAX_STEPS {
+        return steps;
+    }
+    if !arguments.json {
+        let message = format!("only {MAX_STEPS} of {steps} steps are forecast: more take long");
+        let mut warning = Diagnostic::warning(message);
+        if let Some(written) = &loaded.document.kind().metadata().steps {
+            warning = warning.at(&written.place);
+        }
+        super::text::print_diagnostics(&warning.into());
+    }
+    MAX_STEPS
 }
 
 /// Collects the description of a set of the plane, with estimates of sizes of files and of times. `limit` is the graph
@@ -235,7 +259,7 @@ fn in_plane<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) ->
     const SETTLED: u32 = 12;
     let boxes = Boxes::of(graph);
     let bounds = boxes.at(steps);
-    let last = bounds.or_else(|| boxes.roughly_at(steps));
+    let last = bounds.or_else(|| boxes.of_fewer(steps));
     let options = Options::of(loaded.model.metadata());
     let estimator = Estimator::new(graph, &options);
     // Every estimate after one that exceeds the range of doubles exceeds it too.
@@ -356,7 +380,7 @@ struct ForecastRow {
     estimate: Option<SizeEstimate>,
 }
 
-/// Returns the forecast of all steps, with estimates; `None` if it takes too long.
+/// Returns the forecast of all steps, with estimates; `None` if it takes too long, or if its numbers have very many digits.
 fn rows<F: Bounded>(
     graph: &Graph<F>,
     steps: u32,
@@ -367,14 +391,19 @@ fn rows<F: Bounded>(
     }
     let mut forecast = graph.forecast()?;
     let mut rows = Vec::new();
+    let mut digits = 0;
     for step in 0..=steps {
         if step > 0 && !forecast.advance() {
             return None;
         }
-        rows.push(ForecastRow {
-            level: forecast.level(),
-            estimate: estimate(step, &forecast),
-        });
+        let level = forecast.level();
+        let counts = [&level.elements, &level.fertile, &level.fractals];
+        digits += counts.map(Count::digits).into_iter().sum::<usize>();
+        if digits > MAX_DIGITS {
+            return None;
+        }
+        let estimate = estimate(step, &forecast);
+        rows.push(ForecastRow { level, estimate });
     }
     Some(rows)
 }

@@ -48,7 +48,7 @@ impl Graph<Frame3> {
             numbers: BTreeMap::new(),
             keys: Vec::new(),
         };
-        for chain in &mut self.initiators {
+        for chain in self.initiators_mut() {
             made.distinguish(chain, &root);
         }
         let mut objects: Vec<Object<Frame3>> = Vec::new();

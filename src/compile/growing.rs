@@ -59,7 +59,8 @@ impl<F: Frame> Graph<F> {
         self.between = Some(Between { share, whole });
         let is_unresolved = objects.iter().any(Object::is_unresolved);
         self.depth = is_unresolved.then_some(steps);
-        (self.objects, self.initiators) = (objects, initiators);
+        self.objects = objects;
+        *self.initiators_mut() = initiators;
         self.source = self.source.map(|of| {
             Arc::new(LastGrows {
                 of,

@@ -53,9 +53,7 @@ impl<F: Bounded> Graph<F> {
         if limit.is_none() {
             initial.add_to(&mut whole, &F::UNIT, 0.0);
         }
-        let mut base_elements = graph.base_elements.to_vec();
-        base_elements[INITIAL] = initial;
-        graph.base_elements = base_elements.into();
+        Arc::make_mut(&mut graph.base_elements)[INITIAL] = initial;
         graph.set_extent(&whole);
         graph
     }
@@ -79,6 +77,7 @@ impl<F: Bounded> Graph<F> {
         graph.no_limit = diverges.then_some(NoLimit::OnAverage);
         graph.middle = middle(&graph);
         let limit = graph.limit_bounds();
+        graph.limit_bounds = Some(limit);
         (graph, limit)
     }
 }
@@ -187,17 +186,19 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         }
     }
 
-    fn run(&self) -> Graph<M::Frame> {
+    fn run(mut self) -> Graph<M::Frame> {
         let maps = self.ifs.maps().len();
-        let whole = self.successor(None, &self.maps);
+        let whole = Arc::new(self.successor(None, &self.maps));
+        let is_alike = self.ifs.is_alike();
+        // The whole is replaced by the same objects, too.
+        let as_whole = (is_alike && !self.by_last_map).then(|| Arc::clone(&whole));
         let mut objects = vec![Object {
-            replacement: Replacement::Fixed(Arc::new(whole)),
+            replacement: Replacement::Fixed(whole),
             ..self.object(INITIAL, None, None)
         }];
-        let is_alike = self.ifs.is_alike();
         for branch in 0..self.branches() {
             let last_map = self.by_last_map.then_some(branch);
-            let mut known = None;
+            let mut known = as_whole.clone();
             for map in 0..maps {
                 let new = || Arc::new(self.successor(Some((branch, map)), &self.before[map]));
                 let successor = match is_alike {
@@ -215,18 +216,18 @@ impl<'s, M: AffineMap> Compiler<'s, M> {
         }
         objects.extend(self.drawn_objects(None, None));
         self.number_behaviours(&mut objects);
-        let provisional = M::filling(None);
-        let outlines = self.sets.iter().chain(&self.others).cloned();
         let drawn = self.drawn_with_first();
         let drawn = drawn.map(|outline| instance(self.drawn(None, outline), &M::IDENTITY, 0));
         let root = instance(0, &M::IDENTITY, 0);
         let start = Chain::loose(std::iter::once(root).chain(drawn).collect());
-        let outlines = std::iter::once(provisional).chain(outlines);
+        let mut outlines = vec![M::filling(None)];
+        outlines.append(&mut self.sets);
+        outlines.append(&mut self.others);
         Graph {
             origins: maps,
             affine: true,
             tints: objects.iter().any(|object| object.tint.is_some()),
-            ..Graph::of(objects, outlines.collect::<Vec<_>>(), vec![start])
+            ..Graph::of(objects, outlines, vec![start])
         }
     }
 

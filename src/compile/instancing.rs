@@ -59,11 +59,12 @@ impl<F: Bounded> Graph<F> {
             true => graph.limit_bounds(),
             false => graph.draw_boxes::<M>(),
         };
-        let limit = limit.or_else(|| graph.bounds(0));
-        if let Some(bounds) = limit.filter(|bounds| !bounds.is_empty()) {
+        let extent = limit.or_else(|| graph.bounds(0));
+        if let Some(bounds) = extent.filter(|bounds| !bounds.is_empty()) {
             graph.set_extent(&bounds);
         }
         graph.draw_unions(structure, &canonical);
+        graph.limit_bounds = (!graph.draws).then_some(limit);
         graph
     }
 
@@ -84,10 +85,11 @@ impl<F: Bounded> Graph<F> {
             .for_each(|object| object.visible = true);
         let limits = self.limit_boxes();
         let whole = { limits.as_ref() }.and_then(|it| it.at(&self.initiator(0).instances));
-        let mut known = limits.as_ref().map(ObjectBoxes::of);
+        // If one box takes too long, the others do as well.
+        let is_cheap = |limits: &&LimitBoxes<F>| whole.is_some() || limits.looked() <= MAX_LOOKED;
+        let mut known = { limits.as_ref().filter(is_cheap) }.map(ObjectBoxes::of);
         let mut boxes: Vec<Option<Bounds<F::Point>>> = Vec::new();
         for (number, _) in self.behaviours_by_number() {
-            // If one box takes too long, the others do as well.
             let is_cheap = boxes.last().is_none_or(Option::is_some);
             let known = known.as_mut().filter(|_| is_cheap);
             boxes.push(known.and_then(|known| known.box_of(number)));

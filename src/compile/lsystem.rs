@@ -22,6 +22,7 @@ mod reader;
 mod similar;
 mod state;
 mod words;
+mod work;
 mod worn;
 
 pub(crate) use chords::Chords;
@@ -84,8 +85,10 @@ impl Graph {
                     frame.grown(GrowthStart::Chord, share)
                 })),
             (Ok(graph), None) => Ok(graph),
-            (Err(NotCompiled), None) => levels()
-                .or_else(|NotCompiled| Self::of_derived_word(system, steps, seed, max_elements)),
+            (Err(NotCompiled), None) => levels().or_else(|NotCompiled| {
+                let derived = Self::of_derived_word(system, steps, seed, max_elements);
+                derived.map_err(|error| large(system, steps, error))
+            }),
             (Err(NotCompiled), Some(_)) => Self::of_derived_word(system, steps, seed, max_elements),
         }
     }
@@ -205,7 +208,7 @@ impl Graph<Frame3> {
             (graph, _) if !graph.is_plain() => derived(system, word, system.tube())?,
             compiled => compiled,
         };
-        graph.initiators = vec![graph.initiator(steps).clone()];
+        *graph.initiators_mut() = vec![graph.initiator(steps).clone()];
         for object in &mut graph.objects {
             // Only what is left in the last word is drawn.
             object.visible = object.is_kept() || object.is_unresolved();
@@ -228,7 +231,24 @@ fn in_space(
     let effects = Effects::of_system(system, word.0);
     match effects.and_then(|effects| levels(effects, word.0, tube)) {
         Ok(compiled) => Ok(compiled),
-        Err(NotCompiled) => derived(system, word, tube),
+        Err(NotCompiled) => {
+            let derived = derived(system, word, tube);
+            derived.map_err(|error| large(&system.words, word.0, error))
+        }
+    }
+}
+
+/// Returns the error of a word that is derived because no graph is compiled, with the size of the graph if that is the
+/// reason.
+fn large(words: &LSystem, steps: u32, error: CompileError) -> CompileError {
+    match error {
+        CompileError::Word(
+            word @ (RewriteError::TooLong { .. } | RewriteError::TooMuchWork { .. }),
+        ) => match work::excess(words, steps) {
+            Some(work) => work::large(words, steps, work, word),
+            None => CompileError::Word(word),
+        },
+        error => error,
     }
 }
 
@@ -241,6 +261,14 @@ impl LSystem {
     /// The reason why they do not, or why that is not decided.
     pub fn check_growth(&self) -> Result<(), NoGrowth> {
         Limit::of(self, 0)?.graph().map(|_| ())
+    }
+
+    /// Returns why the system is not compiled for a number of steps: neither to a graph, unless it rewrites edges, nor from
+    /// its word; `None` if that is not predicted.
+    pub(crate) fn too_deep(&self, steps: u32, max_elements: u64) -> Option<CompileError> {
+        let work = work::excess(self, steps)?;
+        let word = self.unreadable(steps, max_elements)?;
+        Some(work::large(self, steps, work, word))
     }
 
     /// Converts the error to a diagnostic of the file from which the system was read.
@@ -282,6 +310,8 @@ enum Shape {
 /// Creates objects of the elements that turtles draw: one for every base element, colour and width.
 struct Strings<'s, F: TurtleFrame> {
     words: &'s LSystem,
+    /// Whether symbols change colours.
+    is_coloured: bool,
     tube: Option<Tube>,
     shapes: Vec<Shape>,
     objects: Vec<Object<F>>,
@@ -292,6 +322,7 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
     fn new(words: &'s LSystem, tube: Option<Tube>) -> Self {
         Self {
             words,
+            is_coloured: words.has_colours(),
             tube,
             shapes: Vec::new(),
             objects: Vec::new(),
@@ -321,7 +352,7 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
     }
 
     fn object(&mut self, placed: &Placed<F>, shape: Shape) -> usize {
-        let colour = self.words.has_colours().then_some(placed.colour);
+        let colour = self.is_coloured.then_some(placed.colour);
         let made = self.objects.len();
         // Tubes have their widths.
         let width = if self.tube.is_some() {

@@ -72,7 +72,7 @@ impl Graph<Frame3> {
                 object.replacement = Replacement::Fixed(Arc::clone(made));
             }
         }
-        for chain in &mut self.initiators {
+        for chain in self.initiators_mut() {
             add_to(chain, &others);
         }
         self.tints |= { self.objects.iter().chain(&added) }.any(|object| object.paint.is_some());

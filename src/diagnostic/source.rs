@@ -136,6 +136,7 @@ impl Source {
     }
 
     /// Returns the byte range of a line (counted from 0), without its line end.
+    #[cfg(feature = "snippets")]
     pub(super) fn line_range(&self, line: usize) -> Range<usize> {
         let start = self.line_starts[line];
         let end = self

@@ -4,7 +4,7 @@
 const MAX_CHARS: usize = 64;
 
 /// Maximum number of candidates that are compared with a name.
-const MAX_CANDIDATES: usize = 1000;
+pub(crate) const MAX_CANDIDATES: usize = 1000;
 /// Maximum number of names in a list.
 const MAX_LISTED: usize = 30;
 
@@ -40,79 +40,123 @@ pub(crate) fn nearest<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
-    let wanted: Vec<char> = folded(name)?.collect();
-    let letters = letter_set(wanted.iter().copied());
+    let mut letters = Vec::new();
+    fold(name, &mut letters)?;
+    let wanted = Wanted::new(&letters);
     let candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES).collect();
+    let mut best: Option<(usize, &str)> = None;
+    for &candidate in &candidates {
+        if candidate == name || fold(candidate, &mut letters).is_none() {
+            continue;
+        }
+        let longest = wanted.length.max(letters.len());
+        let most = (longest / 3).max(1);
+        let least = wanted.least_distance(&letters);
+        if least > most || best.is_some_and(|(distance, _)| least >= distance) {
+            continue;
+        }
+        let distance = wanted.distance(&letters);
+        // Otherwise every name of one letter would be near to every other.
+        let near = distance == 0 || (distance <= most && distance < longest);
+        if near && best.is_none_or(|(known, _)| distance < known) {
+            best = Some((distance, candidate));
+        }
+    }
     let beginning = || {
-        let same = |candidate: &&&str| {
+        let same = |candidate: &&str| {
             let letters = candidate.chars().zip(name.chars());
             letters.take_while(|(a, b)| a == b).count() >= SAME_BEGINNING
         };
-        candidates.iter().find(same).copied()
+        candidates.iter().copied().find(same)
     };
-    candidates
-        .iter()
-        .copied()
-        .filter(|candidate| *candidate != name)
-        .filter_map(|candidate| {
-            let known = folded(candidate)?;
-            let length = known.clone().count();
-            let longest = wanted.len().max(length);
-            let most = (longest / 3).max(1);
-            // The distance is at least the difference of the lengths, and an edit removes at most one letter.
-            let removed = letters & !letter_set(known.clone());
-            if wanted
-                .len()
-                .abs_diff(length)
-                .max(removed.count_ones() as usize)
-                > most
-            {
-                return None;
-            }
-            let distance = distance(&wanted, &known.collect::<Vec<_>>());
-            // Otherwise every name of one letter would be near to every other.
-            let near = distance == 0 || (distance <= most && distance < longest);
-            near.then_some((distance, candidate))
-        })
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-        .or_else(beginning)
+    best.map(|(_, candidate)| candidate).or_else(beginning)
 }
 
-/// Returns the optimal string alignment distance.
-fn distance(a: &[char], b: &[char]) -> usize {
-    // The rows of the distances of beginnings of `a` from all beginnings of `b`: this one and two before.
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    let (mut above, mut second) = (row.clone(), row.clone());
-    for i in 1..=a.len() {
-        (above, second, row) = (row, above, second);
-        row[0] = i;
-        for j in 1..=b.len() {
-            let replaced = above[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            row[j] = replaced.min(above[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                row[j] = row[j].min(second[j - 2] + 1);
+/// A name that others are compared with: its letters, each with the bits of its places.
+struct Wanted {
+    length: usize,
+    places: Vec<(char, u128)>,
+    set: u64,
+}
+
+impl Wanted {
+    /// Prepares a name of 1 to 128 letters.
+    fn new(letters: &[char]) -> Self {
+        let mut places: Vec<(char, u128)> = Vec::new();
+        for (place, letter) in letters.iter().enumerate() {
+            match places.iter_mut().find(|(known, _)| known == letter) {
+                Some((_, bits)) => *bits |= 1 << place,
+                None => places.push((*letter, 1 << place)),
             }
         }
+        Self {
+            length: letters.len(),
+            places,
+            set: letter_set(letters),
+        }
     }
-    row[b.len()]
+
+    /// Returns a lower bound of the distance from a name: an edit changes the length by at most one letter, and
+    /// adds and removes at most one.
+    fn least_distance(&self, name: &[char]) -> usize {
+        let set = letter_set(name);
+        let [removed, added] = [self.set & !set, set & !self.set].map(u64::count_ones);
+        let length = self.length.abs_diff(name.len());
+        length.max(removed.max(added) as usize)
+    }
+
+    /// Returns the optimal string alignment distance from a name.
+    ///
+    /// A step goes from one beginning of `name` to the next one. The bits of `up` and `down` are set where the distance
+    /// of a beginning of the wanted name is greater, or less, by 1 than that of the beginning before it (Hyyrö, "A
+    /// bit-vector algorithm for computing Levenshtein and Damerau edit distances", 2003).
+    fn distance(&self, name: &[char]) -> usize {
+        let last = self.length - 1;
+        let (mut up, mut down) = (!0_u128, 0_u128);
+        let (mut diagonal, mut before) = (0_u128, 0_u128);
+        let mut distance = self.length;
+        for letter in name {
+            let found = self.places.iter().find(|(known, _)| known == letter);
+            let places = found.map_or(0, |(_, places)| *places);
+            let transposed = ((!diagonal & places) << 1) & before;
+            let carried = (places & up).wrapping_add(up) ^ up;
+            diagonal = carried | places | down | transposed;
+            let (more, less) = (down | !(diagonal | up), diagonal & up);
+            distance += (more >> last & 1) as usize;
+            distance -= (less >> last & 1) as usize;
+            let (more, less) = (more << 1 | 1, less << 1);
+            (up, down) = (less | !(diagonal | more), more & diagonal);
+            before = places;
+        }
+        distance
+    }
 }
 
-/// Returns the characters of a name in lower case, with `_` for `-`. Empty and long names have none.
-fn folded(name: &str) -> Option<impl Iterator<Item = char> + Clone> {
-    let lower = name.chars().flat_map(char::to_lowercase);
-    (!name.is_empty() && name.chars().nth(MAX_CHARS).is_none())
-        .then(|| lower.map(|letter| if letter == '-' { '_' } else { letter }))
+/// Replaces `letters` by the characters of a name in lower case, with `_` for `-`. Empty and long names have none.
+fn fold(name: &str, letters: &mut Vec<char>) -> Option<()> {
+    letters.clear();
+    if name.is_empty() || name.chars().nth(MAX_CHARS).is_some() {
+        return None;
+    }
+    for letter in name.chars() {
+        match letter {
+            '-' => letters.push('_'),
+            _ if letter.is_ascii() => letters.push(letter.to_ascii_lowercase()),
+            // At most two characters.
+            _ => letters.extend(letter.to_lowercase()),
+        }
+    }
+    Some(())
 }
 
 /// Returns the set of the characters' numbers modulo 64, as bits.
-fn letter_set(letters: impl Iterator<Item = char>) -> u64 {
-    letters.fold(0, |set, letter| set | 1 << (u32::from(letter) % 64))
+fn letter_set(letters: &[char]) -> u64 {
+    { letters.iter() }.fold(0, |set, letter| set | 1 << (u32::from(*letter) % 64))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{did_you_mean, distance};
+    use super::{MAX_CHARS, Wanted, did_you_mean, fold};
 
     #[test]
     fn distances_are_of_optimal_string_alignment() {
@@ -128,8 +172,78 @@ mod tests {
             ("öffnen", "ofefnn", 3),
         ] {
             let [a, b] = [a, b].map(|text: &str| text.chars().collect::<Vec<_>>());
-            assert_eq!(distance(&a, &b), expected, "{a:?} {b:?}");
+            assert_eq!(plain_distance(&a, &b), expected, "{a:?} {b:?}");
+            if !a.is_empty() {
+                assert_eq!(Wanted::new(&a).distance(&b), expected, "{a:?} {b:?}");
+            }
         }
+    }
+
+    /// Returns the distance by its definition: from the distances of the names without their last letters.
+    fn plain_distance(a: &[char], b: &[char]) -> usize {
+        let mut rows = vec![vec![0; b.len() + 1]; a.len() + 1];
+        for i in 0..=a.len() {
+            for j in 0..=b.len() {
+                rows[i][j] = match (i, j) {
+                    (0, _) | (_, 0) => i + j,
+                    _ => {
+                        let replaced = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+                        let removed = rows[i - 1][j].min(rows[i][j - 1]) + 1;
+                        let is_swap =
+                            i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+                        let swapped = if is_swap {
+                            rows[i - 2][j - 2] + 1
+                        } else {
+                            usize::MAX
+                        };
+                        replaced.min(removed).min(swapped)
+                    }
+                };
+            }
+        }
+        rows[a.len()][b.len()]
+    }
+
+    #[test]
+    fn distances_of_long_names_are_those_of_the_definition() {
+        let mut state = 1_u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % below
+        };
+        for _ in 0..2000 {
+            let name = |random: &mut dyn FnMut(u32) -> u32| -> Vec<char> {
+                let length = random(128) + 1;
+                let letter = |_| char::from(b"abcd"[random(4) as usize]);
+                (0..length).map(letter).collect()
+            };
+            let a = name(&mut random);
+            let b = if random(2) == 0 {
+                name(&mut random)
+            } else {
+                // A few transpositions of the first name.
+                let mut b = a.clone();
+                for _ in 0..random(6) {
+                    let place = random(128) as usize % b.len();
+                    b.swap(place, (place + 1) % a.len());
+                }
+                b
+            };
+            let expected = plain_distance(&a, &b);
+            let wanted = Wanted::new(&a);
+            assert_eq!(wanted.distance(&b), expected, "{a:?} {b:?}");
+            assert!(wanted.least_distance(&b) <= expected, "{a:?} {b:?}");
+        }
+    }
+
+    #[test]
+    fn folded_names_have_at_most_128_letters() {
+        let mut letters = Vec::new();
+        let longest = |letter: char| letter.to_lowercase().count();
+        assert_eq!((char::MIN..=char::MAX).map(longest).max(), Some(2));
+        fold(&"\u{130}".repeat(MAX_CHARS), &mut letters).unwrap();
+        assert_eq!(letters.len(), 2 * MAX_CHARS);
+        assert_eq!(Wanted::new(&letters).distance(&letters), 0);
     }
 
     #[test]

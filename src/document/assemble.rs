@@ -21,11 +21,11 @@ use super::yaml::{Budget, Size};
 
 /// Maximum length of a chain of parents.
 const MAX_PARENTS: usize = 32;
-/// Number of missing components after which no more are looked up.
+/// Number of missing components after which no more are looked up, and the file is not read further.
 const MAX_MISSING: usize = 100;
 
 /// Inlines everything that the file in `source` names. Returns the result, its kind, and whether all
-/// names were resolved, or `None` if the text cannot be read as a file of any kind.
+/// names were resolved, or `None` if the text cannot be read as a file of any kind, or too many names are unknown.
 pub(super) fn assemble(
     source: &Arc<Source>,
     catalogue: &Catalogue,
@@ -71,6 +71,9 @@ fn assemble_within(
         stamps::add(&mut entries);
     }
     assembly.inline_all(&mut entries, KindDocument::table(kind).shape);
+    if assembly.missing >= MAX_MISSING {
+        return None;
+    }
     assembly.hoist_parameters(&mut entries);
     assembly.inline_data(&mut entries);
     let complete = assembly.complete;
@@ -357,7 +360,8 @@ impl Assembly<'_> {
                 known.generation = known.generation.max(generation);
                 known.node.clone()
             }
-            None if self.missing == MAX_MISSING => None,
+            // The file is not read further.
+            None if self.missing >= MAX_MISSING => return,
             None => {
                 let found = self.find(name, shelf, &node.place);
                 self.missing += usize::from(found.is_none());

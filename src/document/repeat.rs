@@ -181,7 +181,7 @@ impl Expansion<'_> {
                 place: entry.place.clone(),
                 value: Value::Mapping(keys),
             };
-            if !self.has_room(&copy, &entry.place) {
+            if !self.has_room(&copy, &entry.place, false) {
                 return;
             }
             all.push(self.node(&copy));
@@ -189,10 +189,16 @@ impl Expansion<'_> {
         }
     }
 
-    /// Returns whether the limit of the size admits another copy. Exceeding the limit is reported once.
-    fn has_room(&mut self, copy: &Node, place: &Place) -> bool {
+    /// Returns whether the limit of the size admits another copy, which is to be repeated further if it `is_outer`.
+    /// Exceeding the limit is reported once.
+    fn has_room(&mut self, copy: &Node, place: &Place, is_outer: bool) -> bool {
         let room = self.budget.component(Size::of(copy), place);
-        if let Err(error) = room {
+        if let Err(mut error) = room {
+            if is_outer {
+                let message = "the repetitions of this file take too long: its `for` makes too many copies of this entry";
+                let hint = "the outer names alone make so many, even if the values of the last name are few or none: give them fewer values";
+                error = Diagnostic::error(message).at(place).hint(hint);
+            }
             if !std::mem::replace(&mut self.is_full, true) {
                 self.mistakes.push(error);
             }
@@ -218,6 +224,7 @@ impl Expansion<'_> {
             if !self.check_name(name) {
                 return;
             }
+            let is_last = names.last().is_some_and(|(last, _)| last.name == name.name);
             let mut next = Vec::new();
             for copy in &copies {
                 // The values of a name may depend on those before it.
@@ -227,7 +234,7 @@ impl Expansion<'_> {
                 };
                 for value in &values {
                     let copy = with(copy, &name.name, value);
-                    if !self.has_room(&copy, &entry.place) {
+                    if !self.has_room(&copy, &entry.place, !is_last) {
                         return;
                     }
                     next.push(copy);

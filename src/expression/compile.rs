@@ -32,10 +32,10 @@ impl Expression {
     fn check(&self, needed: Type, scope: &Scope) -> Checked {
         match &self.node {
             Node::Name(name) if scope.get(name).is_none() => {
-                return Err(scope.unknown(name, self.range()));
+                return Err(scope.unknown(name, self.range(), true));
             }
             Node::Part(name, part) if scope.part(name, *part).is_none() => {
-                return Err(scope.unknown(name, self.range()));
+                return Err(scope.unknown(name, self.range(), true));
             }
             Node::Call(function, _) if function.meaning == Meaning::Distribution => {
                 let message = format!("'{}' cannot be used in a formula", function.name);
@@ -146,7 +146,7 @@ impl Compiler<'_> {
                 self.constant(value, range)
             }
             Some(Named::Slot(slot)) => self.slot(slot),
-            None => Err(self.scope.unknown(name, range)),
+            None => Err(self.scope.unknown(name, range, true)),
         }
     }
 

@@ -310,6 +310,17 @@ impl Expression {
     /// [`compile`](Self::compile) or [`compile_condition`](Self::compile_condition) returns.
     #[must_use]
     pub fn mistakes(&self, result: Type, scope: &Scope) -> Vec<ExpressionError> {
+        { self.compiled(result, scope, usize::MAX).err() }.unwrap_or_default()
+    }
+
+    /// Compiles an expression. Returns all mistakes as [`mistakes`](Self::mistakes) does, the first `suggestions` of
+    /// them with similar names, which take time.
+    pub(crate) fn compiled(
+        &self,
+        result: Type,
+        scope: &Scope,
+        suggestions: usize,
+    ) -> Result<Program, Vec<ExpressionError>> {
         let mut unknown: Vec<(&str, ExpressionError)> = Vec::new();
         self.visit(&mut |expression| {
             let (name, is_known) = match &expression.node {
@@ -318,16 +329,14 @@ impl Expression {
                 _ => return,
             };
             if !is_known && unknown.iter().all(|(known, _)| known != name) {
-                unknown.push((name, scope.unknown(name, expression.range())));
+                let suggests = unknown.len() < suggestions;
+                unknown.push((name, scope.unknown(name, expression.range(), suggests)));
             }
         });
         if unknown.is_empty() {
-            return compile::compile(self, result, scope)
-                .err()
-                .into_iter()
-                .collect();
+            return compile::compile(self, result, scope).map_err(|error| vec![error]);
         }
-        unknown.into_iter().map(|(_, error)| error).collect()
+        Err(unknown.into_iter().map(|(_, error)| error).collect())
     }
 
     /// Calls `f` for the expression and all its parts, in the order of the text.

@@ -7,7 +7,7 @@ use super::functions::{FUNCTIONS, Function};
 use super::lex::PARTS;
 use super::program::Op;
 use super::{ExpressionError, Range};
-use crate::diagnostic::{listed, nearest};
+use crate::diagnostic::{MAX_CANDIDATES, listed, nearest};
 
 /// A constant of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,7 +155,13 @@ impl Scope {
         self.get(name).is_some()
     }
 
-    pub(super) fn unknown(&self, name: &str, range: Range<usize>) -> ExpressionError {
+    /// Returns the error of an unknown name. A similar name is searched if `suggests`.
+    pub(super) fn unknown(
+        &self,
+        name: &str,
+        range: Range<usize>,
+        suggests: bool,
+    ) -> ExpressionError {
         let [real, imaginary] = PARTS.map(|part| format!("{name}{part}"));
         if self.contains(&real) {
             let message = format!("'{name}' is a complex number, and a real one is needed here");
@@ -168,15 +174,18 @@ impl Scope {
             return ExpressionError::new(range, message).hint(format!("write {whole}"));
         }
         let scopes = std::iter::successors(Some(self), |scope| scope.enclosing.as_deref());
+        // The first names of all scopes together are among the first ones of each.
         let own: BTreeSet<&str> = scopes
-            .flat_map(|scope| scope.names.keys().map(String::as_str))
+            .flat_map(|scope| scope.names.keys().map(String::as_str).take(MAX_CANDIDATES))
             .collect();
         let constants = CONSTANTS.iter().map(|(name, _)| *name);
-        let known: Vec<&str> = own.into_iter().chain(constants).collect();
+        let own = own.into_iter().take(MAX_CANDIDATES);
+        let known: Vec<&str> = own.chain(constants).collect();
         let words = KEYWORDS.iter().copied();
         let functions = FUNCTIONS.iter().map(|function| function.name);
         let candidates = known.iter().copied().chain(words).chain(functions);
-        let hint = nearest(name, candidates).map_or_else(
+        let nearest = suggests.then(|| nearest(name, candidates)).flatten();
+        let hint = nearest.map_or_else(
             || format!("what can be used here: {}", listed(known.iter().copied())),
             |nearest| format!("did you mean '{nearest}'?"),
         );

@@ -53,6 +53,14 @@ impl Fineness {
         let [least, most] = self.max_corners;
         affordable.clamp(least, most)
     }
+
+    /// Returns that number for objects that do not lead back to themselves, whose images are mapped once.
+    pub(super) fn corners_from_below<I>(&self, images: &[Vec<I>]) -> usize {
+        /// Number of corners below which hulls bound loosely.
+        const LEAST: usize = 16;
+        let mapped = images.iter().map(Vec::len).sum::<usize>();
+        (self.max_work / mapped.max(1)).clamp(LEAST, self.max_corners[0])
+    }
 }
 
 /// Shapes of the objects themselves, for hulls of their subtrees.

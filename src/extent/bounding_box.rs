@@ -7,7 +7,7 @@ use crate::graph::Graph;
 
 use crate::grow::{Counter, Enter, Growth, WalkError, walk};
 
-use super::{Bounded, Reaches, search};
+use super::{Bounded, Limits, Reaches, search};
 
 #[cfg(test)]
 mod tests;
@@ -25,10 +25,11 @@ pub fn bounding_box<F: Bounded>(
     growth: &Growth<'_>,
 ) -> Result<Bounds<F::Point>, WalkError<Infallible>> {
     let reaches = Reaches {
-        all: &graph.reaches(|object| graph.outline_radius(object)),
+        all: &graph.reaches(graph.outline_radii()),
         pads: &vec![0.0; graph.objects().len()],
     };
-    if let Some(bounds) = search(graph, growth, &reaches, |_| Enter::Replace) {
+    let limits = Limits::instead_of(growth.max_elements);
+    if let Some(bounds) = search(graph, growth, &reaches, limits, |_| Enter::Replace) {
         return Ok(bounds);
     }
     let mut counter = Counter::one_by_one(graph);

@@ -1,5 +1,7 @@
 //! Bounding box of a limit set by branch and bound, for frames whose subtrees are bounded by balls alone.
 
+mod crowd;
+
 use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -8,6 +10,7 @@ use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Instance, Object, Replacement};
 
+use self::crowd::{Crowds, Part};
 use super::Bounded;
 use super::bounds::ends;
 
@@ -60,23 +63,27 @@ impl<F: Frame> Ord for Node<F> {
 }
 
 /// Balls that contain the subtrees of objects, in the limit.
-pub(super) struct Balls {
+pub(super) struct Balls<F: Frame> {
     /// Objects whose subtrees are drawn in the limit.
     alive: Vec<bool>,
     /// Radii about the middle of the unit frame, by object.
     reaches: Vec<f64>,
+    crowds: Crowds<F>,
     /// Number of instances that were looked at.
     pub(super) looked: Cell<usize>,
 }
 
-impl Balls {
-    pub(super) fn of<F: Bounded>(graph: &Graph<F>) -> Self {
+impl<F: Bounded> Balls<F> {
+    pub(super) fn of(graph: &Graph<F>) -> Self {
+        let radius = graph.outline_radii();
         let own = |object: &Object<F>| match object.replacement {
             Replacement::Fixed(_) => 0.0,
-            _ => graph.outline_radius(object),
+            _ => radius(object),
         };
+        let alive = graph.alive(true);
         Self {
-            alive: graph.alive(true),
+            crowds: Crowds::of(graph, &alive),
+            alive,
             reaches: graph.reaches(own),
             looked: Cell::new(0),
         }
@@ -90,7 +97,7 @@ impl<F: Bounded> Graph<F> {
     /// takes too long.
     pub(super) fn limit_bounds_by(
         &self,
-        balls: &Balls,
+        balls: &Balls<F>,
         start: &[Instance<F>],
     ) -> Option<Bounds<F::Point>> {
         let [max, min] = ends(|axis| self.farthest(axis, start, balls))?;
@@ -100,7 +107,7 @@ impl<F: Bounded> Graph<F> {
 
     /// Returns a value of a linear functional that the limit set reaches: that of the farthest instance, of the farthest in it,
     /// and so on. Few instances reach farther than that. `size` is that of the set, about.
-    fn reached(&self, axis: F::Point, start: &[Instance<F>], size: f64, balls: &Balls) -> f64 {
+    fn reached(&self, axis: F::Point, start: &[Instance<F>], size: f64, balls: &Balls<F>) -> f64 {
         let mut instances: Vec<&Instance<F>> = start.iter().collect();
         let (mut outer, mut offset) = (axis, 0.0);
         let mut surely = f64::NEG_INFINITY;
@@ -136,14 +143,14 @@ impl<F: Bounded> Graph<F> {
             let Replacement::Fixed(successor) = &self.objects()[node.object].replacement else {
                 break;
             };
-            instances = { successor.placed_instances() }.map(|(_, it)| it).collect();
+            instances = balls.crowds.replaced(node.object, successor);
             (outer, offset) = (node.vector, node.offset);
         }
         surely
     }
 
     /// Returns the greatest value of a linear functional on the limit set.
-    fn farthest(&self, axis: F::Point, start: &[Instance<F>], balls: &Balls) -> Option<f64> {
+    fn farthest(&self, axis: F::Point, start: &[Instance<F>], balls: &Balls<F>) -> Option<f64> {
         let mut heap: BinaryHeap<Node<F>> = BinaryHeap::new();
         // The greatest value that is certain to be reached.
         let mut surely = f64::NEG_INFINITY;
@@ -211,10 +218,30 @@ impl<F: Bounded> Graph<F> {
             if work > MAX_WORK || looked > MAX_LOOKED || heap.len() > MAX_KEPT {
                 return None;
             }
-            for (_, instance) in successor.placed_instances() {
-                looked += 1;
-                balls.looked.set(balls.looked.get() + 1);
-                add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
+            let mut look = |count: usize| {
+                looked += count;
+                balls.looked.set(balls.looked.get() + count);
+            };
+            let Some(parts) = balls.crowds.in_place_of(node.object) else {
+                for (_, instance) in successor.placed_instances() {
+                    look(1);
+                    add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
+                }
+                continue;
+            };
+            for part in parts {
+                match part {
+                    Part::Replaced(number) => {
+                        look(1);
+                        let instance = &successor.body.instances[*number];
+                        add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
+                    }
+                    Part::Crowd(crowd) => {
+                        look(crowd.len());
+                        let outlines = self.base_elements();
+                        surely = crowd.farthest(outlines, node.vector, node.offset, surely);
+                    }
+                }
             }
         }
         surely.is_finite().then_some(surely)

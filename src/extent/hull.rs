@@ -152,6 +152,7 @@ impl Polygons {
         let mut order: Vec<usize> = (0..images.len()).collect();
         order.sort_by_key(|behaviour| component[*behaviour]);
         let mut work = 0;
+        let max_corners = fineness.corners_from_below(images);
         let mut rights: Vec<usize> = { self.corners.iter() }.map(|it| rightmost(it)).collect();
         for behaviour in order {
             let images = &images[behaviour];
@@ -171,7 +172,6 @@ impl Polygons {
             let mut bounds = Bounds::EMPTY;
             corners.iter().for_each(|corner| bounds.add(*corner));
             let mut tolerance = fineness.tolerance * bounds.size().max_element();
-            let [max_corners, _] = fineness.max_corners;
             while corners.len() > max_corners {
                 corners = thinned(&corners, tolerance);
                 tolerance *= 2.0;

@@ -21,7 +21,7 @@ pub(crate) struct LimitBoxes<'g, F: Frame> {
     /// Farthest values along directions that recur, which are tried first where there are many behaviours.
     recurrent: OnceCell<Option<Recurrent>>,
     /// Balls for frames without hulls, which are tried last.
-    balls: OnceCell<Balls>,
+    balls: OnceCell<Balls<F>>,
     /// Number of the attempt that found the last box; those before it fail again, as a rule.
     first: Cell<usize>,
 }
@@ -41,7 +41,8 @@ impl<F: Bounded> Graph<F> {
     /// the box.
     #[must_use]
     pub fn limit_bounds(&self) -> Option<Bounds<F::Point>> {
-        self.limit_boxes()?.at(&self.initiator(0).instances)
+        self.limit_bounds
+            .unwrap_or_else(|| self.limit_boxes()?.at(&self.initiator(0).instances))
     }
 
     /// Returns the boxes of limit sets that begin with given instances; `None` if there are none.

@@ -31,4 +31,4 @@ pub use bounds::ApproximantBounds;
 pub(crate) use contract::Products;
 pub use limit::{Limit, NoLimit};
 pub(crate) use limit_boxes::LimitBoxes;
-pub(crate) use search::{Reaches, search};
+pub(crate) use search::{Limits, Reaches, search};

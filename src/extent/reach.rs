@@ -1,5 +1,6 @@
 //! Radii of the subtrees of objects, computed from the graph alone, for culling.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::bounded::{Bounded, Fineness, Own};
@@ -138,6 +139,19 @@ impl<F: Frame> Graph<F> {
             base_element.radius_about(self.middle).max(frame)
         } else {
             frame
+        }
+    }
+
+    /// Returns the function [`outline_radius`](Self::outline_radius), which measures each base element once.
+    pub(crate) fn outline_radii(&self) -> impl Fn(&Object<F>) -> f64 {
+        let drawn = vec![OnceCell::new(); self.base_elements().len()];
+        let hidden = OnceCell::new();
+        move |object| {
+            let known = match object.visible {
+                true => &drawn[object.base_element],
+                false => &hidden,
+            };
+            *known.get_or_init(|| self.outline_radius(object))
         }
     }
 

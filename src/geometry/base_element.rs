@@ -236,6 +236,10 @@ impl Outline<Frame2> for BaseElement {
         add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) -> ();
     }
 
+    fn complexity(&self) -> usize {
+        self.pieces.len()
+    }
+
     fn support(&self, direction: DVec2) -> f64 {
         let mut from = self.start.dot(direction);
         let mut largest = from;

@@ -131,6 +131,12 @@ pub trait Outline<F: Frame<Outline = Self>>: Clone + Debug + Send + Sync + 'stat
     #[must_use]
     fn support(&self, direction: F::Point) -> f64;
 
+    /// Returns the approximate number of points that [`add_to`](Self::add_to) looks at.
+    #[must_use]
+    fn complexity(&self) -> usize {
+        1
+    }
+
     /// Extends `bounds` by the box of the shape placed in a frame, padded by `pad` on every side.
     fn add_to(&self, bounds: &mut Bounds<F::Point>, frame: &F, pad: f64);
 

@@ -1,7 +1,10 @@
 //! Polygons in space as convex pieces.
 
+mod ears;
+
 use glam::{DVec2, DVec3};
 
+use self::ears::{ears, turn};
 use super::{Bounds, Outline, Solid};
 
 /// Largest distance of a polygon's points from a plane, relative to its size.
@@ -109,52 +112,6 @@ pub(crate) fn triangulated(points: &[DVec3]) -> Vec<Solid> {
         .iter()
         .map(|it| Solid::hull(&it.map(|corner| points[corner])));
     solids.filter(|it| it.corners().len() == 3).collect()
-}
-
-/// Returns twice the signed area of a triangle.
-fn turn([a, b, c]: [DVec2; 3]) -> f64 {
-    (b - a).perp_dot(c - a)
-}
-
-/// Cuts a polygon, whose corners run counter-clockwise, into triangles by its ears (Meisters 1975). `None` if there is
-/// none, as where sides cross.
-fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
-    const FLAT: f64 = 1e-14;
-    let mut rest: Vec<usize> = (0..points.len()).collect();
-    let mut ears = Vec::new();
-    while rest.len() > 2 {
-        let count = rest.len();
-        let around = |at: usize| {
-            [
-                rest[(at + count - 1) % count],
-                rest[at],
-                rest[(at + 1) % count],
-            ]
-        };
-        let is_ear = |at: usize| {
-            let ear = around(at);
-            let corners = ear.map(|corner| points[corner]);
-            let [a, b, c] = corners;
-            if turn(corners).abs() <= FLAT {
-                // A corner on a straight line, or a spike.
-                return true;
-            }
-            let holds = |point: DVec2| {
-                [[a, b], [b, c], [c, a]]
-                    .iter()
-                    .all(|[from, to]| turn([*from, *to, point]) >= -FLAT)
-            };
-            let mut others = rest.iter().map(|&corner| points[corner]);
-            turn(corners) > 0.0 && !others.any(|other| !corners.contains(&other) && holds(other))
-        };
-        let at = (0..count).find(|&at| is_ear(at))?;
-        let ear = around(at);
-        if turn(ear.map(|corner| points[corner])).abs() > FLAT {
-            ears.push(ear);
-        }
-        rest.remove(at);
-    }
-    Some(ears)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Convex solids: shapes of elements in space.
 
+mod polyhedron;
 #[cfg(test)]
 mod tests;
 
@@ -7,6 +8,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use self::polyhedron::{Polyhedron, face};
 use super::linear::eigen;
 use super::{Bounds, Frame, Frame3, Outline, Round, convex_hull};
 
@@ -49,6 +51,8 @@ pub struct Solid {
     corners: Arc<[DVec3]>,
     /// Surface in its place; of a flat solid, both sides.
     surface: f64,
+    /// Volume in its place.
+    volume: f64,
     side: Option<Side>,
 }
 
@@ -62,6 +66,7 @@ impl Solid {
             round: Some(primitive),
             corners: Arc::default(),
             surface: primitive.surface(&place.matrix3),
+            volume: primitive.volume() * place.matrix3.determinant().abs(),
             side: None,
         }
     }
@@ -91,6 +96,7 @@ impl Solid {
             round: None,
             corners: corners.collect(),
             surface: 2.0 * (sides.x * sides.y + sides.y * sides.z + sides.z * sides.x),
+            volume: sides.element_product(),
             side: None,
         }
     }
@@ -120,10 +126,10 @@ impl Solid {
             .map(|point| (*point - middle) / size)
             .collect();
         let (axes, rank) = main_axes(&near);
+        let polyhedron = (rank == 3).then(|| Self::polyhedron(&near)).flatten();
         let solid = match rank {
-            3 => Self::polyhedron(&near),
-            2 => Self::polygon(&near, axes),
-            _ => Self::segment(&near, axes.x_axis),
+            0 | 1 => Self::segment(&near, axes.x_axis),
+            _ => polyhedron.unwrap_or_else(|| Self::polygon(&near, axes)),
         };
         let place =
             DAffine3::from_mat3_translation(DMat3::from_diagonal(DVec3::splat(size)), middle);
@@ -135,57 +141,25 @@ impl Solid {
             place: place * solid.place,
             corners: corners.collect(),
             surface: solid.surface * size * size,
+            volume: solid.volume * size * size * size,
             faces: solid.faces,
             round: None,
             side: None,
         }
     }
 
-    /// Returns the hull of points that do not lie in a plane. Every plane through three points with no point
-    /// beyond it is a face.
-    fn polyhedron(points: &[DVec3]) -> Self {
-        let mut faces: Vec<HalfSpace> = Vec::new();
-        let mut surface = 0.0;
-        for (a, &first) in points.iter().enumerate() {
-            for (b, &second) in points.iter().enumerate().skip(a + 1) {
-                for &third in &points[b + 1..] {
-                    let normal = (second - first).cross(third - first);
-                    if normal.length() <= ROUNDING {
-                        continue;
-                    }
-                    let normal = normal.normalize();
-                    for normal in [normal, -normal] {
-                        let distance = normal.dot(first);
-                        let is_known = |face: &HalfSpace| {
-                            (face.normal - normal).length() <= 1e-7
-                                && (face.distance - distance).abs() <= 1e-7
-                        };
-                        let beyond = |point: &DVec3| normal.dot(*point) > distance + ROUNDING;
-                        if faces.iter().any(is_known) || points.iter().any(beyond) {
-                            continue;
-                        }
-                        faces.push(HalfSpace { normal, distance });
-                        surface += face_area(points, normal, distance);
-                    }
-                }
-            }
-        }
-        // Other points lie on the surface or inside, and change no support function.
-        let is_corner = |point: &&DVec3| {
-            let on = faces
-                .iter()
-                .filter(|face| (face.normal.dot(**point) - face.distance).abs() <= ROUNDING);
-            on.count() >= 3
-        };
-        let corners: Vec<DVec3> = points.iter().filter(is_corner).copied().collect();
-        Self {
+    /// Returns the hull of points that do not lie in a plane; `None` if they do.
+    fn polyhedron(points: &[DVec3]) -> Option<Self> {
+        let hull = Polyhedron::of(points)?;
+        Some(Self {
             place: DAffine3::IDENTITY,
-            faces: faces.into(),
+            faces: hull.faces.into(),
             round: None,
-            corners: corners.into(),
-            surface,
+            corners: hull.corners.into(),
+            surface: hull.surface,
+            volume: hull.volume,
             side: None,
-        }
+        })
     }
 
     /// Returns the hull of points in a plane: a prism without height. The last axis is across the plane.
@@ -222,6 +196,7 @@ impl Solid {
             round: None,
             corners: around.iter().map(|point| place(*point)).collect(),
             surface: 2.0 * area,
+            volume: 0.0,
             side: None,
         }
     }
@@ -242,6 +217,7 @@ impl Solid {
             round: None,
             corners: vec![from, to].into(),
             surface: 0.0,
+            volume: 0.0,
             side: None,
         }
     }
@@ -268,6 +244,7 @@ impl Solid {
             round: self.round,
             corners: corners.collect(),
             surface: self.surface * ratio * ratio,
+            volume: self.volume * ratio * ratio * ratio,
             side: self.side.map(|side| Side {
                 normal: linear * side.normal / ratio * linear.determinant().signum(),
                 ..side
@@ -370,29 +347,6 @@ impl Solid {
     }
 }
 
-/// Returns the corners of a face of the convex hull of points: their indices, counter-clockwise from outside.
-fn face(points: &[DVec3], normal: DVec3, distance: f64) -> Vec<usize> {
-    let (right, up) = normal.any_orthonormal_pair();
-    let flat = |index: &usize| DVec2::new(points[*index].dot(right), points[*index].dot(up));
-    let on =
-        (0..points.len()).filter(|&index| (normal.dot(points[index]) - distance).abs() <= ROUNDING);
-    let on: Vec<usize> = on.collect();
-    let around = convex_hull(on.iter().map(flat).collect(), 0.0);
-    let index = |corner: &DVec2| on.iter().copied().find(|index| flat(index) == *corner);
-    around.iter().filter_map(index).collect()
-}
-
-/// Returns the area of a face of the convex hull of points.
-fn face_area(points: &[DVec3], normal: DVec3, distance: f64) -> f64 {
-    let around = face(points, normal, distance);
-    let turned = around.iter().skip(1).chain(around.first());
-    let twice = around
-        .iter()
-        .zip(turned)
-        .map(|(&from, &to)| points[from].cross(points[to]).dot(normal));
-    twice.sum::<f64>().abs() / 2.0
-}
-
 /// Returns orthonormal axes along which points extend from the most to the least, and the number of those
 /// along which they extend at all. The points lie in the unit box around the origin.
 fn main_axes(points: &[DVec3]) -> (DMat3, usize) {
@@ -423,6 +377,10 @@ impl Outline<Frame3> for Solid {
         self.round.is_some() || self.corners.len() != 2
     }
 
+    fn complexity(&self) -> usize {
+        self.corners.len()
+    }
+
     /// Returns the number of axes along which the solid extends.
     fn dimension(&self) -> f64 {
         let linear = self.place.matrix3;
@@ -448,22 +406,7 @@ impl Outline<Frame3> for Solid {
     }
 
     fn volume(&self) -> f64 {
-        if let Some(round) = self.round {
-            return round.volume() * self.place.matrix3.determinant().abs();
-        }
-        // Pyramids over the faces, by the divergence theorem.
-        let polygons = self.polygons();
-        let faces = polygons.iter().filter_map(|face| face.split_first());
-        let sixths = faces.flat_map(|(first, others)| {
-            let pairs = others.windows(2);
-            pairs.map(|pair| first.dot(pair[0].cross(pair[1])))
-        });
-        let flat = polygons.len() < 4;
-        if flat {
-            0.0
-        } else {
-            sixths.sum::<f64>().abs() / 6.0
-        }
+        self.volume
     }
 
     fn support(&self, direction: DVec3) -> f64 {

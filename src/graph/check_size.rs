@@ -41,6 +41,24 @@ impl<F: Frame> Graph<F> {
     ///
     /// If the limit is exceeded: the number of elements, and the deepest step within the limit.
     pub fn check_size(&self, steps: u32, max_elements: u64) -> Result<Option<u64>, TooLarge> {
+        self.check_counting(steps, max_elements, true)
+    }
+
+    /// Returns an error, with the deepest step within the limit if there is one, where [`check_size`](Self::check_size) does,
+    /// but does not count the elements of further steps.
+    #[cfg(feature = "cli")]
+    pub(crate) fn check_fits(&self, steps: u32, max_elements: u64) -> Result<(), Option<u32>> {
+        let checked = self.check_counting(steps, max_elements, false);
+        checked.map(|_| ()).map_err(|error| error.deepest)
+    }
+
+    /// Checks the number of elements of an approximant. If it exceeds the limit, it is computed only if `is_counted`.
+    fn check_counting(
+        &self,
+        steps: u32,
+        max_elements: u64,
+        is_counted: bool,
+    ) -> Result<Option<u64>, TooLarge> {
         let Some(mut forecast) = self.forecast() else {
             return Ok(None);
         };
@@ -64,6 +82,9 @@ impl<F: Frame> Graph<F> {
             }
             if step == steps {
                 return Ok(elements.to_u64());
+            }
+            if refused && !is_counted {
+                break;
             }
             if elements.digits() > MAX_DIGITS || !forecast.advance() {
                 break;
@@ -96,6 +117,12 @@ mod tests {
                     Err(refused) => refused.deepest.unwrap_or(0),
                 };
                 assert_eq!(graph.deepest_step(8, most), checked, "{name} {most}");
+                #[cfg(feature = "cli")]
+                {
+                    let refused = graph.check_size(8, most).err();
+                    let deepest = refused.map(|refused| refused.deepest);
+                    assert_eq!(graph.check_fits(8, most).err(), deepest, "{name} {most}");
+                }
             }
         }
     }

@@ -40,6 +40,24 @@ pub enum CompileError {
     /// The word of an L-system cannot be derived.
     #[error(transparent)]
     Word(#[from] RewriteError),
+    /// The graph of an L-system is too large, and its word cannot be derived instead.
+    #[error(
+        "{steps} steps need a graph of {} modules, all words at all steps, and {} are the most; without a graph, {word}",
+        grouped(&(*work).into()),
+        grouped(&(*most).into())
+    )]
+    LargeGraph {
+        /// Number of steps.
+        steps: u32,
+        /// Number of modules of the words of all symbols at all steps.
+        work: u64,
+        /// Limit of this number.
+        most: u64,
+        /// A number of steps whose graph is within the limit.
+        fits: u32,
+        /// Error of the word.
+        word: RewriteError,
+    },
     /// The initiator and its images under a symmetry have too many elements to be listed.
     #[error("the initiator and its images under {group} have more than {} elements", grouped(&(*most).into()))]
     TooManyImages {
@@ -57,13 +75,19 @@ pub enum CompileError {
 }
 
 impl CompileError {
-    /// Returns the deepest step whose word is short enough, where that of a later step is too long or takes too much
-    /// work.
+    /// Returns a step that is compiled or written, where a later one is too large or takes too much work: the deepest whose word
+    /// is short enough, or one whose graph is small enough.
     pub(crate) fn deepest(&self) -> Option<u32> {
         match self {
             Self::Word(RewriteError::TooLong { step, .. } | RewriteError::TooMuchWork { step }) => {
                 step.checked_sub(1)
             }
+            Self::LargeGraph { fits, word, .. } => match word {
+                RewriteError::TooLong { step, .. } | RewriteError::TooMuchWork { step } => {
+                    Some(step.saturating_sub(1).max(*fits))
+                }
+                RewriteError::NotFinite { .. } => Some(*fits),
+            },
             _ => None,
         }
     }

@@ -87,8 +87,8 @@ pub struct Population {
     pub parted: f64,
 }
 
-/// Limit of the work of a forecast: about a second.
-const MAX_WORK: u64 = 500_000_000;
+/// Limit of the work of a forecast: about a fifth of a second.
+const MAX_WORK: u64 = 200_000_000;
 
 /// Work of adding two tallies of small numbers, relative to that of adding 18 digits.
 const TALLY: u64 = 200;
@@ -368,7 +368,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
     }
 
     /// Advances to the next approximant. Returns `false`, without effect, if the graph is not resolved
-    /// further, or if the forecast so far took about a second: numbers of a million digits, or of as many objects.
+    /// further, or if the forecast so far took about a fifth of a second: numbers of a million digits, or of as many objects.
     pub fn advance(&mut self) -> bool {
         if self.work > MAX_WORK {
             return false;
@@ -426,8 +426,15 @@ impl<'g, F: Frame> Forecast<'g, F> {
             }
         }
         self.population.sort();
+        self.look();
         self.step += 1;
         true
+    }
+
+    /// Adds the work of looking at all tallies, as a level and an estimate do, to that of the additions.
+    fn look(&mut self) {
+        let tallies = self.population.iter();
+        self.work += tallies.map(|(_, tally)| work(&tally.count)).sum::<u64>();
     }
 
     /// Adds the elements of a chain that replaces elements, or that they seed.

@@ -60,8 +60,10 @@ pub struct Graph<F: Frame = Frame2> {
     pub(crate) origins: usize,
     pub(crate) objects: Vec<Object<F>>,
     /// Initiators, by the number of steps that are grown from them; the last is that of all larger
-    /// numbers. Never empty.
+    /// numbers. Never empty. Changed by [`initiators_mut`](Self::initiators_mut) alone.
     pub(crate) initiators: Vec<Chain<F>>,
+    /// Bounding box of the limit set, or that the graph does not determine it, if compilation has looked for it.
+    pub(crate) limit_bounds: Option<Option<Bounds<F::Point>>>,
     /// Number of positions in the initiators as listed; `None` if they have no images.
     pub(crate) listed: Option<NonZero<u32>>,
     /// Ancestry of the initiator's elements, and fractals seeded before; empty if growth begins with the
@@ -115,6 +117,7 @@ impl<F: Frame> Graph<F> {
             origins: 0,
             objects,
             initiators,
+            limit_bounds: None,
             listed: None,
             roots: Arc::default(),
             depth: None,
@@ -375,6 +378,12 @@ impl<F: Frame> Graph<F> {
 }
 
 impl<F: Frame> Graph<F> {
+    /// Returns the initiators in order to change them, and with them the limit set.
+    pub(crate) fn initiators_mut(&mut self) -> &mut Vec<Chain<F>> {
+        self.limit_bounds = None;
+        &mut self.initiators
+    }
+
     /// Sets the centre and the unit of length to those of the box of what is drawn.
     pub(crate) fn set_extent(&mut self, bounds: &Bounds<F::Point>) {
         self.middle = bounds.centre();
@@ -395,7 +404,7 @@ impl Graph {
                 instance.length = instance.frame.length();
             }
         };
-        self.initiators.iter_mut().for_each(within);
+        self.initiators_mut().iter_mut().for_each(within);
         self.place = Homothety::new(
             self.place.exponent() + place.exponent(),
             self.place.point(place.point(DVec2::ZERO)),
@@ -415,7 +424,7 @@ impl Graph {
         let instances = self.initiators.iter().flat_map(|chain| &chain.instances);
         let stride = instances.map(|it| it.position + 1).max().unwrap_or(1);
         self.listed = self.listed.or(NonZero::new(stride));
-        for chain in &mut self.initiators {
+        for chain in self.initiators_mut() {
             let breaks = std::mem::take(&mut chain.breaks);
             let listed = std::mem::take(&mut chain.instances);
             for (image, isometry) in (0..).zip(isometries) {
@@ -445,7 +454,7 @@ impl Graph {
                 instance.frame = instance.frame.mapped(&turn);
             }
         };
-        self.initiators.iter_mut().for_each(turned);
+        self.initiators_mut().iter_mut().for_each(turned);
         if !self.roots.seeded.is_empty() {
             let seeded = Arc::make_mut(&mut self.roots).seeded.iter_mut();
             seeded.for_each(|seeded| turned(&mut seeded.chain));

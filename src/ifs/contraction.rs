@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::{AffineMap, Ifs};
+use crate::digraph::loop_of_largest_mean;
 use crate::geometry::Linear;
 
 /// Default limit of the number of products that are formed.
@@ -40,7 +41,7 @@ pub struct Contraction {
     /// which shrinks by this factor with every map.
     pub upper: f64,
     /// The product that gives the lower bound, in the order in which its maps are applied; the first map may
-    /// follow the last. Where the system diverges, no shorter product does so. Empty where all products that
+    /// follow the last. Where the system diverges, no shorter product of at most [`length`](Self::length) maps does so. Empty where all products that
     /// were formed and can be repeated are nilpotent.
     pub word: Vec<usize>,
     /// Length of the longest products that the bounds account for: all products of up to this many maps were
@@ -50,8 +51,8 @@ pub struct Contraction {
 
 impl<M: AffineMap> Ifs<M> {
     /// Determines whether the system contracts, from at most 100 000 products (see
-    /// [`Ifs::contraction_within`]) and, if they do not decide, from the convex hulls of a disc's images
-    /// under all products of a length.
+    /// [`Ifs::contraction_within`]) and, if they do not decide, from the ratios of the maps, if a digraph restricts
+    /// their order, and from the convex hulls of a disc's images under all products of a length.
     #[must_use]
     pub fn contraction(&self) -> Contraction {
         let (linear, successors) = self.linear();
@@ -91,6 +92,9 @@ impl Contraction {
         successors: Option<Vec<Vec<usize>>>,
     ) -> Self {
         let mut contraction = Self::within::<M>(linear, successors.clone(), MAX_PRODUCTS);
+        if let (Verdict::Undecided, Some(lists)) = (contraction.verdict, &successors) {
+            contraction.decide_by_ratios(linear, lists);
+        }
         if contraction.verdict == Verdict::Undecided {
             let mut images = Vec::new();
             match successors {
@@ -112,6 +116,35 @@ impl Contraction {
             }
         }
         contraction
+    }
+
+    /// Decides by the repeated product of largest ratio, which may be long: all products of similarities are decided. The
+    /// spectral radius of a product is at least the product of the maps' [mean ratios](Linear::mean_ratio), and at most that
+    /// of their stretches.
+    fn decide_by_ratios<L: Linear>(&mut self, linear: &[L], successors: &[Vec<usize>]) {
+        let largest = |ratio: fn(&L) -> f64| {
+            let logarithms: Vec<f64> = linear.iter().map(|map| libm::log(ratio(map))).collect();
+            loop_of_largest_mean(&logarithms, successors)
+        };
+        let Some(found) = largest(L::mean_ratio) else {
+            return;
+        };
+        let factor = libm::exp(found.mean);
+        if factor >= 1.0 - ROUNDING {
+            let mut word = found.vertices;
+            let start = least_rotation(&word);
+            word.rotate_left(start);
+            self.verdict = Verdict::Diverges;
+            self.lower = factor.max(self.lower);
+            self.upper = self.upper.max(self.lower);
+            self.word = word;
+            return;
+        }
+        let most = largest(L::stretch).map(|found| libm::exp(found.most));
+        if let Some(upper) = most.filter(|most| *most < 1.0 - ROUNDING / 2.0) {
+            self.verdict = Verdict::Contracts;
+            self.upper = self.upper.min(upper).max(self.lower);
+        }
     }
 
     /// Determines the same from at most `products` products. The lists of successors are in ascending order.

@@ -159,11 +159,7 @@ fn angles(system: &LSystem) -> impl Iterator<Item = Option<f64>> {
 
 /// Returns the denominator of an angle in degrees as a fraction of a turn; `None` if it does not fit 64 bits.
 fn denominator(angle: f64) -> Option<u64> {
-    let whole = |q: u32| {
-        let q = f64::from(q);
-        360.0 * (angle * q / 360.0).round() / q == angle
-    };
-    if let Some(q) = (1..=MAX_DENOMINATOR).find(|q| whole(*q)) {
+    if let Some(q) = least_denominator(angle) {
         return Some(q.into());
     }
     let text = angle.abs().to_string();
@@ -174,9 +170,52 @@ fn denominator(angle: f64) -> Option<u64> {
     Some(turn / gcd(numerator, turn))
 }
 
+/// Returns whether an angle is the double next to a multiple of 1/q of a turn.
+fn is_multiple(angle: f64, q: u32) -> bool {
+    let q = f64::from(q);
+    360.0 * (angle * q / 360.0).round() / q == angle
+}
+
+/// Returns the least denominator, up to the largest that is tried, of a fraction of a turn to which an angle is the nearest
+/// double.
+///
+/// A fraction that is nearer than 1/(2q²) is a convergent of the angle's continued fraction (Legendre): the others need no
+/// trial.
+fn least_denominator(angle: f64) -> Option<u32> {
+    /// Bound below which the rounding of an angle is less than that distance.
+    const FAR: f64 = (1u64 << 40) as f64;
+    /// Number of bits of a double's mantissa.
+    const DIGITS: i32 = 53;
+    let angle = angle.abs();
+    if angle.is_nan() || angle >= FAR {
+        return (1..=MAX_DENOMINATOR).find(|q| is_multiple(angle, *q));
+    }
+    let (mantissa, exponent) = libm::frexp(angle);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is a whole number of 53 bits"
+    )]
+    let mut above = u128::from(libm::ldexp(mantissa, DIGITS) as u64);
+    let shift = (DIGITS - exponent).unsigned_abs();
+    // Smaller angles are less than half of any fraction.
+    let mut below = Some(360u128).filter(|_| shift <= u64::BITS)? << shift;
+    let (mut before, mut q) = (1u128, 0u128);
+    while below > 0 {
+        let next = (above / below).saturating_mul(q).saturating_add(before);
+        (before, q) = (q, next);
+        let tried = u32::try_from(q).ok().filter(|q| *q <= MAX_DENOMINATOR)?;
+        if is_multiple(angle, tried) {
+            return Some(tried);
+        }
+        (above, below) = (below, above % below);
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Compass, MAX_PARTS, denominator};
+    use super::{Compass, MAX_DENOMINATOR, MAX_PARTS, denominator, is_multiple, least_denominator};
     use crate::geometry::DVec2;
 
     #[test]
@@ -198,6 +237,32 @@ mod tests {
         assert_eq!(denominator(f64::NAN), None);
         let odd = denominator(std::f64::consts::LN_2);
         assert!(odd.is_none_or(|parts| parts > MAX_PARTS));
+    }
+
+    #[test]
+    fn convergents_have_the_least_denominators() {
+        let fractions = (1..=MAX_DENOMINATOR).step_by(7).flat_map(|q| {
+            let below = f64::from(q);
+            [1.0, 2.0, 5.0, 77.0, 998.0].map(|p| 360.0 * p / below)
+        });
+        let decimals = (1..2_000u32).map(|number| f64::from(number * 37) / 1000.0);
+        let others = [
+            0.0,
+            1e-300,
+            5e-324,
+            0.01,
+            0.179,
+            0.36,
+            1e11,
+            1e13,
+            1e300,
+            f64::NAN,
+        ];
+        for angle in fractions.chain(decimals).chain(others) {
+            let least = (1..=MAX_DENOMINATOR).find(|q| is_multiple(angle, *q));
+            assert_eq!(least_denominator(angle), least, "{angle}");
+            assert_eq!(least_denominator(-angle), least, "{angle}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use crate::draws::Path;
 
-use super::rewrite::{MAX_WORK, RewriteError, Rewriter, check_length, most_modules};
+use super::rewrite::{RewriteError, Rewriter, check_length, most_modules, most_work};
 use super::word::number;
 use super::{LSystem, Word};
 
@@ -31,8 +31,7 @@ impl LSystem {
             }
             return Ok(());
         }
-        let most = most_modules(MAX_MODULES, max_elements);
-        if let Some(error) = self.too_long(steps, most, max_elements) {
+        if let Some(error) = self.unreadable(steps, max_elements) {
             return Err(error);
         }
         let axiom = Word::axiom(self, seed);
@@ -43,6 +42,12 @@ impl LSystem {
             (0..steps).try_for_each(|step| expander.expand(&axiom, step, |_, _| {}))?;
             Err(error)
         })
+    }
+
+    /// Returns the error of the first step whose word is too long to be read, as far as that is predicted.
+    pub(crate) fn unreadable(&self, steps: u32, max_elements: u64) -> Option<RewriteError> {
+        let most = most_modules(MAX_MODULES, max_elements);
+        self.too_long(steps, most, max_elements)
     }
 }
 
@@ -135,7 +140,7 @@ impl<'s> Expander<'s> {
             step,
             &[modules, (self.elements, self.max_elements, "elements")],
         )?;
-        if self.rewriter.work > MAX_WORK {
+        if self.rewriter.work > most_work(self.max_elements) {
             return Err(RewriteError::TooMuchWork { step });
         }
         Ok(())

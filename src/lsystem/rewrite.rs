@@ -8,8 +8,12 @@ use super::surroundings::Surroundings;
 use super::word::number;
 use super::{LSystem, Word};
 
-/// Limit of the number of modules, and of arguments, in a word that is stored.
-const MAX_MODULES: u64 = 25_000_000;
+/// Limits of the number of modules, and of arguments, in a word that is stored: where few elements are allowed, and where
+/// many are.
+const STORED: [u64; 2] = [3_000_000, 25_000_000];
+
+/// Limit of the modules of a stored word for each element that it may draw.
+const STORED_PER_ELEMENT: u64 = 3;
 
 /// Limit of the modules of a word for each element that it may draw.
 const MODULES_PER_ELEMENT: u64 = 100;
@@ -19,8 +23,29 @@ pub(super) fn most_modules(most: u64, max_elements: u64) -> u64 {
     most.min(max_elements.saturating_mul(MODULES_PER_ELEMENT))
 }
 
-/// Limit of the modules, productions and contexts examined in all steps together.
-pub(super) const MAX_WORK: u64 = 1_000_000_000;
+/// Returns the limit of the modules, and of the arguments, of a word that is stored.
+fn most_stored(max_elements: u64) -> u64 {
+    let [least, most] = STORED;
+    let stored = max_elements
+        .saturating_mul(STORED_PER_ELEMENT)
+        .clamp(least, most);
+    most_modules(stored, max_elements)
+}
+
+/// Limits of the modules, productions and contexts examined in all steps together: where few elements are allowed, and
+/// where many are.
+const WORK: [u64; 2] = [20_000_000, 1_000_000_000];
+
+/// Limit of the work for each element that a word may draw.
+const WORK_PER_ELEMENT: u64 = 50;
+
+/// Returns the limit of the modules, productions and contexts examined in all steps together.
+pub(super) fn most_work(max_elements: u64) -> u64 {
+    let [least, most] = WORK;
+    max_elements
+        .saturating_mul(WORK_PER_ELEMENT)
+        .clamp(least, most)
+}
 
 /// Limit of the successors' modules that a forecast examines.
 const MAX_FORECAST: usize = 100_000_000;
@@ -79,16 +104,16 @@ impl LSystem {
     ///
     /// # Errors
     ///
-    /// Returns an error if a word has more than 25 million modules or arguments, or more than 100 for each element
-    /// allowed, if it draws more than `max_elements` lines and polygons, if rewriting takes too much work, or if an
+    /// Returns an error if a word has more than 25 million modules or arguments, more than 3 million and 3 for each element
+    /// allowed, or more than 100 for each, if it draws more than `max_elements` lines and polygons, if rewriting takes too much work, or if an
     /// argument is not finite.
     /// Where lengths of words can be predicted, too long a word is reported before any rewriting.
     pub fn word(&self, steps: u32, seed: u64, max_elements: u64) -> Result<Word, RewriteError> {
-        let most = most_modules(MAX_MODULES, max_elements);
+        let most = most_stored(max_elements);
         if let Some(error) = self.too_long(steps, most, max_elements) {
             return Err(error);
         }
-        self.rewritten(steps, seed, max_elements, MAX_WORK)
+        self.rewritten(steps, seed, max_elements, most_work(max_elements))
     }
 
     fn rewritten(
@@ -126,13 +151,14 @@ impl LSystem {
         seed: u64,
         max_elements: u64,
     ) -> Result<Replaced, RewriteError> {
-        let most = most_modules(MAX_MODULES, max_elements);
+        let most = most_stored(max_elements);
         if let Some(error) = self.too_long(steps, most, max_elements) {
             return Err(error);
         }
-        let before = self.rewritten(steps.saturating_sub(1), seed, max_elements, MAX_WORK)?;
+        let max_work = most_work(max_elements);
+        let before = self.rewritten(steps.saturating_sub(1), seed, max_elements, max_work)?;
         let (mut after, mut ends) = (Word::default(), Vec::new());
-        let limits = (steps, max_elements, MAX_WORK);
+        let limits = (steps, max_elements, max_work);
         Rewriter::new(self).step(&before, &mut after, limits, |end| ends.push(end))?;
         Ok(Replaced {
             before,
@@ -344,7 +370,7 @@ impl<'s> Rewriter<'s> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
         let mut elements = 0;
-        let most = most_modules(MAX_MODULES, max_elements);
+        let most = most_stored(max_elements);
         for (at, module) in (0u32..).zip(word.modules(system)) {
             let path = word.paths.get(at as usize).copied();
             let around = surroundings.as_ref().map(|around| (around, at));

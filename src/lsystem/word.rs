@@ -23,10 +23,11 @@ impl Word {
     pub fn axiom(system: &LSystem, seed: u64) -> Self {
         let mut word = Self::default();
         let root = Path::of_seed(seed);
+        let draws = !system.is_deterministic();
         for (position, Module { symbol, arguments }) in (0..).zip(&system.axiom) {
             word.symbols.push(number(*symbol));
             word.arguments.extend(arguments);
-            if !system.is_deterministic() {
+            if draws {
                 word.paths.push(root.child(position));
             }
         }

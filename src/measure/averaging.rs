@@ -13,7 +13,7 @@
 use crate::saturating::{real, whole};
 
 use super::regression::{Estimate, Reading, line};
-use super::statistics::weighted_mean;
+use super::statistics::weighted_means;
 
 /// Range of the exponents θ of a second power, and of the coefficients C at the largest size: those above
 /// zero, and the magnitudes of those below.
@@ -93,7 +93,8 @@ pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     let best = fits.iter().map(weight).fold(f64::NEG_INFINITY, f64::max);
     let mean = |of: &dyn Fn(&Fit) -> f64| {
         let fits = fits.iter();
-        weighted_mean(fits.map(|fit| (of(fit), libm::exp(weight(fit) - best))))
+        let [mean] = weighted_means(fits.map(|fit| ([of(fit)], libm::exp(weight(fit) - best))));
+        mean
     };
     let value = mean(&|fit| fit.slope);
     let away = |fit: &Fit| fit.variance * excess + (fit.slope - value) * (fit.slope - value);

@@ -131,8 +131,10 @@ impl<M: Space> Points<M> {
 }
 
 /// Returns the number of places of the lattice in a row.
+#[inline]
+#[expect(clippy::cast_precision_loss, reason = "powers of 2 are exact")]
 fn lattice<M: Space>() -> f64 {
-    libm::exp2(M::LEVELS.into())
+    (1_u64 << M::LEVELS) as f64
 }
 
 /// Returns the key of the box of a grid that a point lies in.

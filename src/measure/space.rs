@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use glam::DQuat;
 
-use super::statistics::weighted_mean;
+use super::statistics::weighted_means;
 use crate::geometry::{Affine, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, eigen};
 
 /// Maps of the plane or of space, with what covers by boxes need of either.
@@ -82,19 +82,23 @@ impl Space for DAffine2 {
     }
 
     fn principal(points: impl Iterator<Item = (DVec2, f64)> + Clone) -> f64 {
-        let mean = |of: &dyn Fn(DVec2) -> f64| {
-            weighted_mean(points.clone().map(|(at, points)| (of(at), points)))
-        };
-        let middle = DVec2::new(mean(&|at| at.x), mean(&|at| at.y));
-        let xx = mean(&|at| (at.x - middle.x) * (at.x - middle.x));
-        let xy = mean(&|at| (at.x - middle.x) * (at.y - middle.y));
-        let yy = mean(&|at| (at.y - middle.y) * (at.y - middle.y));
+        let coordinates = points.clone().map(|(at, points)| (at.to_array(), points));
+        let middle = DVec2::from_array(weighted_means(coordinates));
+        let moments = points.clone().map(|(at, points)| {
+            let away = at - middle;
+            ([away.x * away.x, away.x * away.y, away.y * away.y], points)
+        });
+        let [xx, xy, yy] = weighted_means(moments);
         if libm::hypot(xx - yy, 2.0 * xy) <= ROUND * (xx + yy) {
             return 0.0;
         }
         let angle = libm::atan2(2.0 * xy, xx - yy) / 2.0;
         let (sin, cos) = libm::sincos(angle);
-        let skewness = mean(&|at| libm::pow((at - middle).dot(DVec2::new(cos, sin)), 3.0));
+        let cubes = points.map(|(at, points)| {
+            let along = (at - middle).dot(DVec2::new(cos, sin));
+            ([along * along * along], points)
+        });
+        let [skewness] = weighted_means(cubes);
         if skewness < 0.0 {
             -(angle + std::f64::consts::PI)
         } else {
@@ -143,26 +147,31 @@ impl Space for DAffine3 {
     }
 
     fn principal(points: impl Iterator<Item = (DVec3, f64)> + Clone) -> DMat3 {
-        let mean = |of: &dyn Fn(DVec3) -> f64| {
-            weighted_mean(points.clone().map(|(at, points)| (of(at), points)))
-        };
-        let middle = DVec3::new(mean(&|at| at.x), mean(&|at| at.y), mean(&|at| at.z));
-        let column = |axis: DVec3| {
-            let of = |other: DVec3| mean(&|at| (at - middle).dot(axis) * (at - middle).dot(other));
-            DVec3::new(of(DVec3::X), of(DVec3::Y), of(DVec3::Z))
-        };
-        let variances = [DVec3::X, DVec3::Y, DVec3::Z].map(column);
-        let (values, vectors) = eigen(&DMat3::from_cols(variances[0], variances[1], variances[2]));
+        let coordinates = points.clone().map(|(at, points)| (at.to_array(), points));
+        let middle = DVec3::from_array(weighted_means(coordinates));
+        let moments = points.clone().map(|(at, points)| {
+            let [x, y, z] = (at - middle).to_array();
+            ([x * x, x * y, x * z, y * y, y * z, z * z], points)
+        });
+        let [xx, xy, xz, yy, yz, zz] = weighted_means(moments);
+        let (values, vectors) = eigen(&DMat3::from_cols(
+            DVec3::new(xx, xy, xz),
+            DVec3::new(xy, yy, yz),
+            DVec3::new(xz, yz, zz),
+        ));
         if values.max_element() - values.min_element() <= ROUND * values.max_element() {
             return DMat3::IDENTITY;
         }
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-        let towards = |axis: DVec3| {
-            let skewness = mean(&|at| libm::pow((at - middle).dot(axis), 3.0));
-            if skewness < 0.0 { -axis } else { axis }
-        };
-        let [first, second] = [order[0], order[1]].map(|axis| towards(vectors.col(axis)));
+        let axes = [order[0], order[1]].map(|axis| vectors.col(axis));
+        let cubes = points.map(|(at, points)| {
+            let along = axes.map(|axis| (at - middle).dot(axis));
+            (along.map(|along| along * along * along), points)
+        });
+        let [one, other] = weighted_means(cubes);
+        let towards = |axis: DVec3, skewness: f64| if skewness < 0.0 { -axis } else { axis };
+        let [first, second] = [towards(axes[0], one), towards(axes[1], other)];
         DMat3::from_cols(first, second, first.cross(second)).transpose()
     }
 

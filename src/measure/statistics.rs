@@ -9,12 +9,18 @@ pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / real(values.len())
 }
 
-/// Returns the mean of values with weights.
-pub(super) fn weighted_mean(values: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let (sum, all) = values.fold((0.0, 0.0), |(sum, all), (value, weight)| {
-        (sum + weight * value, all + weight)
-    });
-    sum / all
+/// Returns the means of several values with weights.
+pub(super) fn weighted_means<const N: usize>(
+    values: impl Iterator<Item = ([f64; N], f64)>,
+) -> [f64; N] {
+    let (mut sums, mut all) = ([0.0; N], 0.0);
+    for (values, weight) in values {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += weight * value;
+        }
+        all += weight;
+    }
+    sums.map(|sum| sum / all)
 }
 
 /// Returns the standard deviation of values; 0 for fewer than two.

@@ -18,6 +18,11 @@ impl OfKind for Arc<LSystem> {
         Graph::of_lsystem(self, steps, seed, max_elements)
     }
 
+    fn too_deep(&self, steps: u32, max_elements: u64) -> Option<CompileError> {
+        let error = LSystem::too_deep(self, steps, max_elements)?;
+        (!Graph::rewrites_edges(self)).then_some(error)
+    }
+
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         LSystem::diagnostic(self, error)
     }
@@ -49,6 +54,10 @@ impl OfKind for Arc<LSystem> {
 impl OfKind for Arc<LSystemInSpace> {
     fn metadata(&self) -> &Metadata {
         &self.words.metadata
+    }
+
+    fn too_deep(&self, steps: u32, max_elements: u64) -> Option<CompileError> {
+        self.words.too_deep(steps, max_elements)
     }
 
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {

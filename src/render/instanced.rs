@@ -23,7 +23,7 @@ mod usda;
 pub use file::{SceneFormat, write_scene};
 pub use refusal::NotInstanced;
 
-use std::io::Write;
+use std::io::{self, Write};
 
 use crate::geometry::Bounds;
 use crate::graph::Graph;
@@ -32,7 +32,8 @@ use crate::grow::Growth;
 use super::canvas::Canvas;
 use super::drawing::Page;
 use super::error::RenderError;
-use super::options::Options;
+use super::known::Purpose;
+use super::options::{Format, Options};
 use super::picture::Picture;
 use super::prepass::Prepass;
 use super::svg::begin_document;
@@ -40,6 +41,40 @@ use drawing::Drawing;
 
 /// Maximum number of symbols, all of which are held in memory.
 const MAX_SYMBOLS: usize = 1 << 18;
+
+/// Limits of the work of a file.
+#[derive(Clone, Copy)]
+struct Work {
+    /// Number of symbols.
+    symbols: usize,
+    /// Number of instances of which the symbols and the picture consist; texts of maps and of points count as several.
+    instances: usize,
+}
+
+impl Work {
+    /// Limits for a file that is written.
+    const FILE: Self = Self {
+        symbols: MAX_SYMBOLS,
+        instances: usize::MAX,
+    };
+
+    fn of(purpose: Purpose) -> Self {
+        match purpose {
+            Purpose::Drawing => Self::FILE,
+            Purpose::Estimate => Self {
+                instances: 1 << 20,
+                ..Self::FILE
+            },
+        }
+    }
+
+    /// Deducts instances; returns whether so many are left.
+    fn take(&mut self, instances: usize) -> bool {
+        let left = self.instances.checked_sub(instances);
+        self.instances = left.unwrap_or(0);
+        left.is_some()
+    }
+}
 
 /// Largest distance, in pixels, of the bounding box from the picture: single precision resolves a sixteenth
 /// of a pixel there.
@@ -52,12 +87,56 @@ pub(super) fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<Picture, RenderError> {
+    write_for(Purpose::Drawing, graph, growth, options, out)
+}
+
+/// Returns the length in bytes of an SVG of nested instances, which is written to a counter; `None` where it cannot be made,
+/// or not with little work: if the symbols instance more than 2²⁰ elements and symbols, of which those of different maps count
+/// as several, or if more than 20,000 elements would have to be grown.
+pub(crate) fn length(graph: &Graph, options: &Options, steps: u32) -> Option<u64> {
+    const MAX_GROWN: u64 = 20_000;
+    /// Number of points of the outlines of all elements that are grown.
+    const MAX_POINTS: u64 = 1 << 20;
+    struct Length(u64);
+    impl Write for Length {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0 += bytes.len() as u64;
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let options = Options {
+        format: Format::Svg,
+        ..options.clone()
+    };
+    let outlines = graph.base_elements().iter();
+    let longest = outlines.map(|outline| outline.pieces().len()).max();
+    let affordable = MAX_POINTS / longest.unwrap_or(1).max(1) as u64;
+    let growth = Growth {
+        max_elements: MAX_GROWN.min(affordable),
+        ..Growth::steps(steps)
+    };
+    let mut length = Length(0);
+    write_for(Purpose::Estimate, graph, &growth, &options, &mut length).ok()?;
+    Some(length.0)
+}
+
+fn write_for(
+    purpose: Purpose,
+    graph: &Graph,
+    growth: &Growth<'_>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<Picture, RenderError> {
     let Options {
         style, view, size, ..
     } = options;
     refusal::check(graph, style, growth.steps)?;
     let steps = growth.steps;
-    let prepass = match Prepass::outlined(graph, growth, style, steps, graph.seeds) {
+    let prepass = match Prepass::outlined(graph, growth, style, steps, graph.seeds, purpose) {
         Some(prepass) => prepass,
         None => Prepass::new(graph, style, steps).walked(growth, options.threads)?,
     };
@@ -66,7 +145,7 @@ pub(super) fn write(
         return Err(NotInstanced::TooClose.into());
     }
     let (classes, painted) = prepass.classes();
-    let drawing = Drawing::new(graph, growth, options, classes);
+    let drawing = Drawing::new(graph, growth, options, classes, Work::of(purpose));
     let page = Page {
         size: canvas.size(),
         unit: options.unit,

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::num::NonZero;
+use std::sync::Arc;
 
+use crate::extent::Limits;
 use crate::geometry::{Bounds, Direction};
 use crate::graph::{Graph, Object, Replacement};
 use crate::grow::{Census, Growth, WalkError};
@@ -18,6 +20,33 @@ const SPECK: f64 = 1e-6;
 
 /// Maximum number of steps for which the ages of seeded fractals are computed.
 const MAX_AGES: u32 = 256;
+
+/// Purpose of what is known of an approximant, on which the work that it may take depends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Purpose {
+    /// Drawing: all that is known is exact, and found if that is possible at all.
+    Drawing,
+    /// Estimate of the size of a file, which is not made if it takes much work.
+    Estimate,
+}
+
+impl Purpose {
+    /// Returns the number of kinds of children that may be looked at.
+    fn most_kinds(self) -> usize {
+        match self {
+            Self::Drawing => usize::MAX,
+            Self::Estimate => 1 << 18,
+        }
+    }
+
+    /// Returns the limits of a search for the bounding box.
+    fn limits(self) -> Limits {
+        match self {
+            Self::Drawing => Limits::DRAWING,
+            Self::Estimate => Limits::ESTIMATE,
+        }
+    }
+}
 
 impl<'g> Prepass<'g> {
     /// Makes the prepass of an approximant: from the graph if it determines everything, otherwise by a walk.
@@ -44,7 +73,8 @@ impl<'g> Prepass<'g> {
         steps: u32,
     ) -> Option<Self> {
         let level = level(graph, growth)?;
-        let mut prepass = Self::outlined(graph, growth, style, steps, level.fractals > 1)?;
+        let seeds = level.fractals > 1;
+        let mut prepass = Self::outlined(graph, growth, style, steps, seeds, Purpose::Drawing)?;
         prepass.elements = level.elements;
         prepass.fractals = level.fractals;
         if style.color_by == ColorBy::Index {
@@ -61,14 +91,15 @@ impl<'g> Prepass<'g> {
         style: &'g Style,
         steps: u32,
         seeds: bool,
+        purpose: Purpose,
     ) -> Option<Self> {
         let mut prepass = Self::new(graph, style, steps);
         if prepass.needs_lengths() {
             return None;
         }
         let with_ages = style.color_by == ColorBy::Age && seeds;
-        let stands = ElementKinds::at(graph, growth.steps, with_ages)?;
-        prepass.bounds = prepass.known_bounds(growth)?;
+        let stands = ElementKinds::at(graph, growth.steps, with_ages, purpose.most_kinds())?;
+        prepass.bounds = prepass.known_bounds(growth, purpose.limits())?;
         let used: Vec<u128> = match style.color_by.property() {
             ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => vec![0],
             ColorProperty::Age if seeds => {
@@ -97,7 +128,7 @@ impl<'g> Prepass<'g> {
     }
 
     /// Computes the bounding box from the graph, or by a search.
-    fn known_bounds(&self, growth: &Growth<'_>) -> Option<Bounds> {
+    fn known_bounds(&self, growth: &Growth<'_>, limits: Limits) -> Option<Bounds> {
         let pad = |object: &Object| self.pad(object);
         if let Some(bounds) = self.graph().padded_bounds(growth.steps, pad) {
             // The precision of the box is relative to the unit length and to the coordinates, not to its size.
@@ -106,7 +137,7 @@ impl<'g> Prepass<'g> {
             let is_speck = bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1]));
             return (!is_speck).then_some(bounds);
         }
-        let glimpsed = self.clone().glimpsed(growth, &self.reaches())?;
+        let glimpsed = self.clone().glimpsed(growth, &self.reaches(), limits)?;
         Some(glimpsed.bounds)
     }
 }
@@ -150,67 +181,67 @@ struct ElementKinds(BTreeSet<ElementKind>);
 
 impl ElementKinds {
     /// Computes the kinds, with the births of their fractals if `with_ages`; `None` if they depend on draws,
-    /// or if there may be many ages.
-    fn at(graph: &Graph, steps: u32, with_ages: bool) -> Option<Self> {
+    /// if there may be many ages, or if more than `most` children have to be looked at. Elements that are replaced alike
+    /// count as one, and steps with the kinds of the step before take no work.
+    fn at(graph: &Graph, steps: u32, with_ages: bool, most: usize) -> Option<Self> {
         if with_ages && (steps > MAX_AGES || !graph.roots.elements.is_empty()) {
             return None;
         }
         let mut stand = BTreeSet::new();
+        let mut looked = 0;
         let initiator = graph.initiator(steps).instances.iter();
-        let mut born: BTreeSet<(usize, Direction, u32)> = initiator
+        let mut born: BTreeSet<Descendant> = initiator
             .map(|instance| (instance.object, instance.frame.direction(), 0))
             .collect();
+        // Whether all later steps have the kinds of this one, because the step before has.
+        let mut is_settled = false;
         for level in 0..=steps {
-            let mut next = BTreeSet::new();
+            let mut parents = BTreeSet::new();
             for &(object, direction, seeded) in &born {
-                let replacement = &graph.objects()[object].replacement;
-                if level == steps || matches!(replacement, Replacement::Kept) {
-                    if graph.objects()[object].visible {
-                        stand.insert(ElementKind {
-                            object,
-                            direction,
-                            born: level,
-                            seeded,
-                        });
+                let own = &graph.objects()[object];
+                if level < steps && !own.is_kept() {
+                    if is_settled {
+                        continue;
                     }
+                    // Successors are shared by reference.
+                    let successor = own.successor().map(|it| Arc::as_ptr(it).addr());
+                    parents.insert((successor.ok_or(object), direction, seeded, object));
+                } else if own.visible {
+                    stand.insert(ElementKind {
+                        object,
+                        direction,
+                        born: level,
+                        seeded,
+                    });
+                }
+                looked += 1;
+            }
+            if looked > most {
+                return None;
+            }
+            if level == steps || is_settled {
+                continue;
+            }
+            let mut next = BTreeSet::new();
+            let mut before = None;
+            for (successor, direction, seeded, object) in parents {
+                let parent = Some((successor, direction, seeded));
+                if parent == before {
                     continue;
                 }
-                let is_seeded = |placement: Placement| with_ages && placement.seeds();
-                // The direction is wrong for parts placed as the initiator, but their bounding box is unknown.
-                match replacement {
-                    Replacement::Fixed(production) => {
-                        next.extend(production.placed_instances().map(|(placement, child)| {
-                            let direction = direction * child.frame.direction();
-                            let seeded = if is_seeded(placement) {
-                                level + 1
-                            } else {
-                                seeded
-                            };
-                            (child.object, direction, seeded)
-                        }));
-                    }
-                    Replacement::Evaluated(alternatives) => {
-                        let ([only], Some(rule)) = (&alternatives[..], graph.source().rule())
-                        else {
-                            return None;
-                        };
-                        if graph
-                            .parts(only)
-                            .iter()
-                            .any(|part| is_seeded(part.placement))
-                        {
-                            return None;
-                        }
-                        let elements = rule.generators()[only.generator].elements();
-                        let directions = elements.map(|element| direction * element.direction);
-                        let children = only.objects.iter().zip(directions);
-                        next.extend(
-                            children.map(|(&object, direction)| (object, direction, seeded)),
-                        );
-                    }
-                    Replacement::Kept | Replacement::Unresolved => {}
+                before = parent;
+                looked += add_children(
+                    graph,
+                    (object, direction, seeded),
+                    level,
+                    with_ages,
+                    &mut next,
+                )?;
+                if looked > most {
+                    return None;
                 }
             }
+            is_settled = next == born;
             born = next;
         }
         Some(Self(stand))
@@ -219,6 +250,52 @@ impl ElementKinds {
     fn values(&self, value: impl Fn(&ElementKind) -> u128) -> Vec<u128> {
         self.0.iter().map(value).collect()
     }
+}
+
+/// Object, direction and step of birth of the fractal of an element, the last only if ages are computed.
+type Descendant = (usize, Direction, u32);
+
+/// Adds the children of an element that is replaced in a step, and returns the number of those that were looked at; `None`
+/// if they depend on draws.
+fn add_children(
+    graph: &Graph,
+    (object, direction, seeded): Descendant,
+    level: u32,
+    with_ages: bool,
+    next: &mut BTreeSet<Descendant>,
+) -> Option<usize> {
+    let is_seeded = |placement: Placement| with_ages && placement.seeds();
+    let mut looked = 0;
+    // The direction is wrong for parts placed as the initiator, but their bounding box is unknown.
+    match &graph.objects()[object].replacement {
+        Replacement::Fixed(production) => {
+            next.extend(production.placed_instances().map(|(placement, child)| {
+                looked += 1;
+                let seeded = if is_seeded(placement) {
+                    level + 1
+                } else {
+                    seeded
+                };
+                (child.object, direction * child.frame.direction(), seeded)
+            }));
+        }
+        Replacement::Evaluated(alternatives) => {
+            let ([only], Some(rule)) = (&alternatives[..], graph.source().rule()) else {
+                return None;
+            };
+            let mut parts = graph.parts(only).iter();
+            if parts.any(|part| is_seeded(part.placement)) {
+                return None;
+            }
+            let elements = rule.generators()[only.generator].elements();
+            let directions = elements.map(|element| direction * element.direction);
+            let children = only.objects.iter().zip(directions);
+            looked += only.objects.len();
+            next.extend(children.map(|(&object, direction)| (object, direction, seeded)));
+        }
+        Replacement::Kept | Replacement::Unresolved => {}
+    }
+    Some(looked)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Layout of a picture: prepass, canvas and number of steps.
 
+use crate::extent::Limits;
 use crate::geometry::Bounds;
 use crate::graph::Graph;
 use crate::grow::Growth;
@@ -246,7 +247,7 @@ impl<'a> Surveyor<'a> {
             let prepass = Prepass::new(self.graph, style, self.growth.steps);
             let reaches = self.reaches.get_or_insert_with(|| prepass.reaches());
             let prepass = prepass.of_what_is_in(culling.clone());
-            return match prepass.glimpsed(&self.growth, reaches) {
+            return match prepass.glimpsed(&self.growth, reaches, Limits::DRAWING) {
                 Some(glimpse) => Ok(glimpse),
                 None => self.prepass(culling),
             };

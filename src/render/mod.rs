@@ -72,6 +72,7 @@ pub(crate) use density::{density_pixels, write_density_with};
 pub(crate) use drawing::Drawing;
 pub use error::{NoDetail, NoZoom, Remedy, RenderError};
 pub use gcode::Machine;
+pub(crate) use instanced::length as instanced_length;
 pub use instanced::{NotInstanced, SceneFormat, write_scene};
 pub(crate) use layout::Layout;
 pub use levels::Levels;

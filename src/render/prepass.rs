@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::num::NonZero;
 use std::sync::Arc;
 
-use crate::extent::{Reaches, search};
+use crate::extent::{Limits, Reaches, search};
 use crate::geometry::Bounds;
 use crate::graph::{Graph, Object};
 use crate::grow::{
@@ -286,8 +286,13 @@ impl<'g> Prepass<'g> {
     }
 
     /// Determines the bounding box, and whether any outline is stroked, without a walk. `None` if the graph
-    /// does not bound all subtrees, or if only some of the outlines are stroked.
-    pub(super) fn glimpsed(mut self, growth: &Growth<'_>, reaches: &[f64]) -> Option<Self> {
+    /// does not bound all subtrees, if only some of the outlines are stroked, or if a search exceeds the limits.
+    pub(super) fn glimpsed(
+        mut self,
+        growth: &Growth<'_>,
+        reaches: &[f64],
+        limits: Limits,
+    ) -> Option<Self> {
         if self.needs_lengths() {
             return None;
         }
@@ -307,7 +312,7 @@ impl<'g> Prepass<'g> {
         let whole = levelled.then(|| self.graph.padded_bounds(growth.steps, pad));
         self.bounds = match whole.flatten() {
             Some(bounds) => bounds,
-            None => search(self.graph, growth, &reaches, |subtree| {
+            None => search(self.graph, growth, &reaches, limits, |subtree| {
                 self.culling.enter(subtree)
             })?,
         };
@@ -317,7 +322,8 @@ impl<'g> Prepass<'g> {
 
     /// Returns the radius of every object's subtree, with strokes: see [`Graph::reaches`].
     pub(super) fn reaches(&self) -> Vec<f64> {
-        let own = |object: &Object| self.graph.outline_radius(object) + self.pad(object);
+        let radius = self.graph.outline_radii();
+        let own = |object: &Object| radius(object) + self.pad(object);
         self.graph.reaches(own)
     }
 

@@ -19,6 +19,8 @@ const CHORDS: u32 = 16;
 /// Error: a fractal cannot be a set.
 enum Failure {
     TooMany,
+    /// There are too many elements, some of which are not drawn.
+    TooManyHidden,
     Other(String),
 }
 
@@ -52,7 +54,7 @@ impl<K> Resolver<K> {
         let (model, growth) = self.grown(document)?;
         let graph = self.graph(document, &model, growth.steps)?;
         let frame = map.map_or(Some(Frame2::UNIT), |map| map.map(Frame2::from))?;
-        let drawn = outlines_of(&model, &graph, &growth, frame).map_err(Failure::from);
+        let drawn = outlines_of(&model, &graph, &growth, frame);
         let drawn = self.checked(document, growth.steps, drawn)?;
         self.pieces += drawn.iter().map(|one| one.pieces().len()).sum::<usize>();
         Some(Shape::Union(drawn.into()))
@@ -72,9 +74,17 @@ impl<K> Resolver<K> {
             None => {
                 let graph = self.graph(document, &model, growth.steps)?;
                 let drawn = outlines_of(&model, &graph, &growth, Frame2::UNIT);
-                drawn
-                    .map(|drawn| { drawn.iter() }.flat_map(|one| flat(one, &map)).collect())
-                    .map_err(Failure::from)
+                let left = MAX_PIECES.saturating_sub(self.pieces);
+                drawn.and_then(|drawn| {
+                    let mut solids = Vec::new();
+                    for one in &drawn {
+                        solids.extend(flat(one, &map));
+                        if solids.len() > left {
+                            return Err(Failure::TooMany);
+                        }
+                    }
+                    Ok(solids)
+                })
             }
         };
         let solids = self.checked(document, growth.steps, solids)?;
@@ -147,6 +157,9 @@ impl<K> Resolver<K> {
             Err(Failure::TooMany) => {
                 format!("sets that are fractals draw more than {MAX_PIECES} lines in all")
             }
+            Err(Failure::TooManyHidden) => format!(
+                "sets that are fractals have more than {MAX_PIECES} elements in all, with those that are not visible"
+            ),
             Err(Failure::Other(message)) => message,
         };
         let s = if steps == 1 { "" } else { "s" };
@@ -191,10 +204,19 @@ fn outlines_of(
     graph: &Graph,
     growth: &Growth<'_>,
     frame: Frame2,
-) -> Result<Vec<BaseElement>, WalkError<OutlineError>> {
+) -> Result<Vec<BaseElement>, Failure> {
+    let mut visible = graph.objects().iter().map(|object| object.visible);
+    if !visible.clone().any(|is_visible| is_visible) {
+        return Ok(Vec::new());
+    }
     let fills = model.metadata().style.fill.is_some();
     let most = usize::try_from(growth.max_elements).unwrap_or(usize::MAX);
-    outlines(graph, growth, frame, fills, most)
+    outlines(graph, growth, frame, fills, most).map_err(|error| match error {
+        WalkError::TooManyElements { .. } if visible.any(|is_visible| !is_visible) => {
+            Failure::TooManyHidden
+        }
+        error => error.into(),
+    })
 }
 
 /// Returns the images of the elements of an approximant in space.

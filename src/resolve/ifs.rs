@@ -7,10 +7,10 @@ use crate::document::{
     EdgeDocument, IfsDocument, MapDocument, MapsDocument, VerticesDocument, Written, WrittenNumber,
 };
 use crate::expression::{Affine, Program, Symbols};
-use crate::geometry::DAffine2;
+use crate::geometry::{DAffine2, Point};
 use crate::ifs::{
-    AffineMap, Condensation, Contraction, Definition, Edge, Exponent, Ifs, IfsError, Map, System,
-    Verdict, WeightOwner,
+    AffineMap, Condensation, Contraction, Definition, Edge, Exponent, Ifs, IfsError, Map, PointOf,
+    System, Verdict, WeightOwner,
 };
 use crate::metadata::Metadata;
 use crate::style::ColorBy;
@@ -25,6 +25,9 @@ const MAX_INSTANCES: usize = 2_000_000;
 
 /// Maximum number of these instances that its graph holds.
 const MAX_HELD: usize = 1_000_000;
+
+/// Maximum number of these instances in space, where each takes several times as much memory.
+const MAX_HELD_IN_SPACE: usize = 250_000;
 
 /// State that is specific to systems: none.
 #[derive(Default)]
@@ -141,6 +144,12 @@ impl Resolver<OfIfs> {
         };
         if ifs.size() > MAX_INSTANCES || ifs.held() > MAX_HELD {
             self.refuse_size(document);
+            return None;
+        }
+        if PointOf::<M>::DIMENSION == 3 && ifs.held() > MAX_HELD_IN_SPACE {
+            let message = "so many parts of sets under so many maps are too much";
+            let hint = "solids, faces and lines of all sets, times the number of maps, are no more than 250,000";
+            self.error_with_hint(&document.metadata.place.first_line(), message, hint);
             return None;
         }
         let contraction = ifs.contraction();

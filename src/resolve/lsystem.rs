@@ -5,16 +5,18 @@ mod check;
 mod space;
 mod stamps;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::diagnostic::Place;
 use crate::document::{
     LSystemDocument, ModuleDocument, ProductionDocument, WordDocument, Written, WrittenNumber,
 };
 use crate::expression::{Program, Scope, is_reserved};
 use crate::lsystem::{Action, Context, LSystem, Module, Origin, Production, Symbol, Template};
 use crate::metadata::Metadata;
+use crate::readable::grouped;
 use crate::style::ColorBy;
 
 use super::Resolver;
@@ -22,18 +24,25 @@ use super::Resolver;
 /// Maximum nesting depth of branches in a right context, which are matched by recursion.
 const MAX_BRANCHES: i32 = 64;
 
+/// Limit of the actions of all modules of a file together, with those that symbols list.
+const MAX_ACTIONS: usize = 100_000;
+
 /// State that is specific to L-systems.
 #[derive(Default)]
 pub(super) struct OfLSystem {
     symbols: Vec<Symbol>,
+    /// Number of actions of the modules and lists so far; at most one more than the limit.
+    actions: usize,
     numbers: BTreeMap<(char, usize), usize>,
     is_in_space: bool,
     /// Names of the stamps, with the numbers of their base elements.
     stamps: Vec<(String, Range<usize>)>,
+    /// Numbers of the stamps by name.
+    stamp_numbers: BTreeMap<String, usize>,
     /// Symbols that place stamps, by stamp and number of arguments besides its name.
     placing: BTreeMap<(usize, usize), usize>,
     /// The file's own interpretations of symbols.
-    own: BTreeMap<(char, usize), Vec<Action>>,
+    own: BTreeMap<(char, usize), Arc<[Action]>>,
     /// Angle increment of `+` and `-`, in degrees.
     angle: f64,
     /// Factor by which `!` multiplies the width.
@@ -72,10 +81,9 @@ impl Resolver<OfLSystem> {
         if productions.len() < document.productions.len() || self.diagnostics.has_errors() {
             return None;
         }
-        for &character in &document.ignored {
-            for symbol in &mut self.kind.symbols {
-                symbol.ignored |= symbol.character == character;
-            }
+        let ignored: BTreeSet<char> = document.ignored.iter().copied().collect();
+        for symbol in &mut self.kind.symbols {
+            symbol.ignored = ignored.contains(&symbol.character);
         }
         for with_context in [true, false] {
             for (number, production) in productions.iter().enumerate() {
@@ -133,6 +141,24 @@ impl Resolver<OfLSystem> {
                 .collect(),
         });
         modules.collect()
+    }
+
+    /// Counts actions at a place of the file before they are written out. Reports the place at which they become too many
+    /// and returns `false` from there on.
+    fn spend(&mut self, actions: usize, place: &Place) -> bool {
+        if self.kind.actions > MAX_ACTIONS {
+            return false;
+        }
+        self.kind.actions = (self.kind.actions.saturating_add(actions)).min(MAX_ACTIONS + 1);
+        let fits = self.kind.actions <= MAX_ACTIONS;
+        if !fits {
+            let most = grouped(&MAX_ACTIONS.into());
+            let message = format!("the modules up to here have more than {most} actions together");
+            let hint = "shorter lists of actions under `symbols`, stamps of fewer base elements, or shorter words: a few \
+                        more steps make long words";
+            self.error_with_hint(place, message, hint);
+        }
+        fits
     }
 
     /// Resolves a word and checks that its brackets are balanced.

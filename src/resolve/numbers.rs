@@ -6,7 +6,7 @@ use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type
 use crate::geometry::DVec2;
 use crate::rule::ElementContext;
 
-use super::{MAX_MISTAKES, Resolver, whole_number};
+use super::{MAX_MISTAKES, MAX_SUGGESTIONS, Resolver, whole_number};
 
 impl<K> Resolver<K> {
     /// Compiles a number in a scope. Reports a mistake and returns an unknown program.
@@ -41,12 +41,10 @@ impl<K> Resolver<K> {
         }
         let names = part.names().into_iter();
         self.used.extend(names.map(|(name, _)| name.to_owned()));
-        let program = match result {
-            Type::Number => part.compile(scope),
-            Type::Condition => part.compile_condition(scope),
-        };
-        program.unwrap_or_else(|_| {
-            for mistake in part.mistakes(result, scope) {
+        let suggestions = MAX_SUGGESTIONS.saturating_sub(self.mistakes);
+        let program = part.compiled(result, scope, suggestions);
+        program.unwrap_or_else(|mistakes| {
+            for mistake in mistakes {
                 self.mistake(whole, mistake);
             }
             Program::unknown()

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::diagnostic::Place;
 use crate::document::{
     EllipseDocument, FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument,
     TurnDocument, WrittenNumber, WrittenPoint,
@@ -12,6 +13,9 @@ use crate::geometry::{
 };
 
 use super::{Resolver, whole_number};
+
+/// Largest number of pieces of all polygons of a file: of as many triangles as its values could list.
+const MAX_TRIANGLES: usize = 62_500;
 
 impl<K> Resolver<K> {
     /// Compiles a point in space; a third coordinate that is left out is 0.
@@ -224,7 +228,10 @@ impl<K> Resolver<K> {
 
     fn polygon(&mut self, shape: &ShapeDocument, written: &[WrittenPoint]) -> Option<Vec<Solid>> {
         let error = match polygon(&self.constants_in_space(written)?) {
-            Ok(pieces) => return Some(pieces),
+            Ok(pieces) => {
+                self.count_triangles(pieces.len(), &shape.place)?;
+                return Some(pieces);
+            }
             Err(error) => error,
         };
         let (place, message, hint) = match error {
@@ -251,6 +258,20 @@ impl<K> Resolver<K> {
         None
     }
 
+    /// Counts pieces of polygons. Reports too many and returns `None`.
+    fn count_triangles(&mut self, count: usize, place: &Place) -> Option<()> {
+        self.triangles += count;
+        if self.triangles <= MAX_TRIANGLES {
+            return Some(());
+        }
+        let message =
+            "the polygons and the meshes of the file are cut into more than 62,500 triangles";
+        let hint = "a face that is not convex, or has more than 100 corners, is cut into as many triangles as it has \
+                    corners, less two: write fewer, or simpler faces";
+        self.error_with_hint(place, message, hint);
+        None
+    }
+
     /// Returns the faces of a mesh; those without extent are left out.
     fn mesh(&mut self, shape: &ShapeDocument, document: &MeshDocument) -> Option<Vec<Solid>> {
         let points = self.constants_in_space(&document.points)?;
@@ -269,11 +290,16 @@ impl<K> Resolver<K> {
                 // That there are no points was reported.
                 corners.push(*points.get(corner as usize)?);
             }
+            let place = face.first().map_or(&shape.place, |number| &number.place);
             match polygon(&corners) {
-                Ok(pieces) => solids.extend(pieces),
+                Ok(pieces) => {
+                    self.count_triangles(pieces.len(), place)?;
+                    solids.extend(pieces);
+                }
                 Err(PolygonError::NoExtent) => {}
                 // A face that is bent is a fan of triangles.
                 Err(_) => {
+                    self.count_triangles(corners.len().saturating_sub(2), place)?;
                     let others = corners.get(1..).unwrap_or_default().windows(2);
                     let fan = others.map(|pair| polygon(&[corners[0], pair[0], pair[1]]));
                     solids.extend(fan.flat_map(Result::unwrap_or_default));

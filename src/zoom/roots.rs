@@ -84,7 +84,7 @@ pub(super) fn zoom(
         }
         initiator.instances.extend(fractal.chain.instances);
     }
-    graph.initiators = vec![initiator];
+    *graph.initiators_mut() = vec![initiator];
     graph.listed = None;
     graph.roots = rooted.roots.into();
     Ok(Zoom {

@@ -448,3 +448,35 @@ fn draws_belong_to_edges() {
         assert_eq!(drawn(&more, seed, 1), below);
     }
 }
+
+/// Turns about axes across z, by up to 25°: elements along z come to lie in a cone about it, in all directions, and as far from
+/// it as drawn.
+#[test]
+fn generators_tilt_within_a_cone() {
+    const COUNT: usize = 400;
+    let text = format!(
+        "space: 3\ninitiator:\n  - {{for: {{k: 1..{COUNT}}}, from: [k, 0, 0], to: [k + 1/2, 0, 0]}}\n\
+         generator:\n  random:\n    around: uniform(0, 360)\n    tilt: uniform(0, 25)\n  \
+         move: {{rotate: {{axis: [cos(around), sin(around), 0], angle: tilt}}, points: all}}\n  elements:\n    \
+         - {{from: [0, 0, 0], to: [0, 0, 1]}}\n"
+    );
+    let rule = read_in_space(&text);
+    let along = grow(&rule, 1, 7).into_iter().map(|(_, element)| {
+        let along = element.frame.map().matrix3.x_axis;
+        along / along.length()
+    });
+    let along: Vec<DVec3> = along.collect();
+    assert_eq!(along.len(), COUNT);
+    let tilts = { along.iter() }.map(|along| along.z.clamp(-1.0, 1.0).acos().to_degrees());
+    let tilts: Vec<f64> = tilts.collect();
+    assert!(tilts.iter().all(|tilt| *tilt <= 25.0 + 1e-9));
+    // Of a uniform law; the standard error of the mean is 0.36 degrees.
+    let mean = tilts.iter().sum::<f64>() / COUNT as f64;
+    assert!((mean - 12.5).abs() < 1.5, "{mean}");
+    let mut quadrants = [0; 4];
+    for along in &along {
+        quadrants[usize::from(along.x > 0.0) + 2 * usize::from(along.y > 0.0)] += 1;
+    }
+    let all = quadrants.iter().all(|count| *count > COUNT / 8);
+    assert!(all, "{quadrants:?}");
+}

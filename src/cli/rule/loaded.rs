@@ -254,9 +254,11 @@ impl Loaded {
     pub(in crate::cli) fn failure(&self, error: &CompileError) -> Failure {
         let diagnostic = self.model.diagnostic(error);
         match error {
-            CompileError::Word(RewriteError::TooLong { .. }) if self.most_listed.is_none() => {
-                diagnostic.hint("--max-elements allows more").into()
-            }
+            CompileError::Word(RewriteError::TooLong { .. } | RewriteError::TooMuchWork { .. })
+            | CompileError::LargeGraph {
+                word: RewriteError::TooLong { .. } | RewriteError::TooMuchWork { .. },
+                ..
+            } if self.most_listed.is_none() => diagnostic.hint("--max-elements allows more").into(),
             _ => diagnostic.into(),
         }
     }

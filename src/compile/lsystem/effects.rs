@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::draws::Path;
 use crate::geometry::Frame2;
 use crate::lsystem::{Action, Compass, LSystem, TurtleFrame};
+use crate::style::Palette;
 
 use super::NotCompiled;
 use super::far::Far;
@@ -13,6 +14,7 @@ use super::kinds::{Kinds, MAX_CLOSED, MAX_KINDS};
 use super::long::{SummedFrame, Sums as _};
 use super::reader::Reader;
 use super::state::{Pose, StrokeAttributes, TurtleState};
+use super::work;
 
 /// Effect of a module that is derived for some steps, relative to the state of the turtle before it.
 #[derive(Clone, Debug)]
@@ -58,15 +60,14 @@ impl<F: TurtleFrame> ModuleDrawing<F> {
     }
 }
 
-/// Limit of the number of effects.
-const MAX_EFFECTS: usize = 1 << 18;
-
 /// Effects of all kinds of modules, computed from the bottom up.
 #[derive(Debug)]
 pub(super) struct Effects<F: TurtleFrame = Frame2> {
     pub(super) system: Arc<F::System>,
     pub(super) compass: Compass,
     pub(super) kinds: Kinds,
+    /// Whether symbols change colours.
+    is_coloured: bool,
     /// Effects by the number of steps that are left, less 1, and by kind; most kinds have none.
     levels: Vec<Vec<Option<Box<Effect<F>>>>>,
 }
@@ -78,35 +79,40 @@ impl<F: SummedFrame> Effects<F> {
             return Err(NotCompiled);
         }
         let kinds = Kinds::of(F::words(system), steps, MAX_KINDS)?;
-        Self::of_kinds(system, kinds, steps)
+        Self::of_kinds(system, kinds, steps, work::MAX_WORK)
     }
 
     /// Computes the effects for all numbers of steps up to `steps`, of all kinds that ever occur.
     pub(super) fn closed(system: &F::System, steps: u32) -> Result<Self, NotCompiled> {
         let mut kinds = Kinds::of(F::words(system), u32::MAX, MAX_CLOSED)?;
         kinds.all.iter_mut().for_each(|kind| kind.born = 0);
-        Self::of_kinds(system, kinds, steps)
+        Self::of_kinds(system, kinds, steps, work::MAX_CLOSED_WORK)
     }
 
-    fn of_kinds(system: &F::System, kinds: Kinds, steps: u32) -> Result<Self, NotCompiled> {
-        let fertile = { &kinds.all }.iter().filter(|kind| kind.is_fertile());
-        let levels = fertile.map(|kind| steps.saturating_sub(kind.born) as usize);
-        if levels.fold(0, usize::saturating_add) > MAX_EFFECTS {
-            return Err(NotCompiled);
-        }
+    fn of_kinds(
+        system: &F::System,
+        kinds: Kinds,
+        steps: u32,
+        most: u64,
+    ) -> Result<Self, NotCompiled> {
+        let words = F::words(system);
+        work::check(words, &kinds, steps, most)?;
         let mut effects = Self {
             system: Arc::new(system.clone()),
-            compass: Compass::of(F::words(system)),
+            compass: Compass::of(words),
+            is_coloured: words.has_colours(),
             kinds,
             levels: Vec::new(),
         };
         let mut bits = None;
         loop {
+            work::check_long(effects.words(), &effects.kinds, steps, bits)?;
             let mut ways = F::Sums::new(effects.compass, bits);
             effects.levels.clear();
+            let mut expanded = 0;
             for left in 1..=steps {
                 let known: Result<Vec<_>, _> = (0..effects.kinds.all.len())
-                    .map(|kind| effects.of_level(kind, left, steps))
+                    .map(|kind| effects.of_level(kind, left, steps, &mut expanded))
                     .collect();
                 let mut known = known?;
                 ways.advance(&effects, left, &mut known);
@@ -126,13 +132,20 @@ impl<F: TurtleFrame> Effects<F> {
         F::words(&self.system)
     }
 
+    /// Returns the colours that symbols change, if any does.
+    pub(super) fn palette(&self) -> Option<&Palette> {
+        let palette = &self.words().metadata().style.palette;
+        Some(palette).filter(|_| self.is_coloured)
+    }
+
     /// Computes the effect of a kind with `left` steps left; `None` if it is not replaced, or does not
-    /// occur with so many left.
+    /// occur with so many left. `expanded` counts modules of words that are expanded.
     fn of_level(
         &self,
         kind: usize,
         left: u32,
         steps: u32,
+        expanded: &mut u64,
     ) -> Result<Option<Box<Effect<F>>>, NotCompiled> {
         let of = &self.kinds.all[kind];
         if !of.is_fertile() || of.born > steps - left {
@@ -141,6 +154,7 @@ impl<F: TurtleFrame> Effects<F> {
         let effects = of.alternatives.iter().map(|alternative| {
             let mut reader = Reader::new(self, TurtleState::SAME, false);
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
+            work::spend(expanded, reader.expanded, work::MAX_WORK)?;
             reader.effect()
         });
         let effects: Vec<Effect<F>> = effects.collect::<Result<_, _>>()?;

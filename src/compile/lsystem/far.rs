@@ -34,10 +34,10 @@ impl<P: Point> Far<P> {
     }
 
     fn normalised(self) -> Self {
-        let (_, by) = libm::frexp(self.mantissa.abs().max_element());
         if self.is_zero() {
             return Self::ZERO;
         }
+        let by = exponent(self.mantissa.abs().max_element());
         Self {
             mantissa: shifted(self.mantissa, -by),
             exponent: self.exponent.saturating_add(by),
@@ -145,13 +145,78 @@ impl<P: Point> Far<P> {
 
 /// Multiplies a vector by a power of two.
 fn shifted<P: Point>(vector: P, by: i32) -> P {
-    vector.map(|value| libm::ldexp(value, by))
+    vector.map(|value| scaled(value, by))
+}
+
+/// Number of the bits of a double's mantissa that it stores.
+const STORED: u32 = 52;
+
+/// Returns the biased exponent of a double, if it is a normal number.
+fn biased(value: f64) -> Option<i32> {
+    let biased = (value.to_bits() >> STORED) & 0x7ff;
+    i32::try_from(biased)
+        .ok()
+        .filter(|it| (1..0x7ff).contains(it))
+}
+
+/// Returns the exponent of a double as a multiple of a number in [0.5, 1): as `libm::frexp` does, but shortly for normal
+/// numbers.
+fn exponent(value: f64) -> i32 {
+    biased(value).map_or_else(|| libm::frexp(value).1, |biased| biased - 1022)
+}
+
+/// Multiplies a double by a power of two: as `libm::ldexp` does, but shortly where the number and its multiple are normal.
+fn scaled(value: f64, by: i32) -> f64 {
+    let power = by.checked_add(1023).filter(|it| (1..0x7ff).contains(it));
+    match (biased(value), power) {
+        (Some(biased), Some(power)) if (1..0x7ff).contains(&(biased + by)) => {
+            value * f64::from_bits(u64::from(power.unsigned_abs()) << STORED)
+        }
+        _ => libm::ldexp(value, by),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Far;
+    use super::{Far, exponent, scaled};
     use crate::geometry::DVec2;
+
+    #[test]
+    fn short_ways_agree_with_the_library() {
+        let values = [
+            0.0,
+            -0.0,
+            1.0,
+            -0.75,
+            5e-324,
+            1e-310,
+            2.3e-308,
+            1.7e308,
+            f64::INFINITY,
+        ];
+        for value in values {
+            assert_eq!(exponent(value), libm::frexp(value).1, "{value}");
+            for by in [
+                0,
+                1,
+                -1,
+                53,
+                -200,
+                1000,
+                -1000,
+                1023,
+                -1022,
+                1024,
+                2100,
+                -2100,
+                i32::MAX,
+                i32::MIN,
+            ] {
+                let known = libm::ldexp(value, by);
+                assert_eq!(scaled(value, by).to_bits(), known.to_bits(), "{value} {by}");
+            }
+        }
+    }
 
     #[test]
     fn what_is_beyond_doubles_keeps_its_ratios() {

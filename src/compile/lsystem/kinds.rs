@@ -13,6 +13,9 @@ pub(super) const MAX_KINDS: usize = 1 << 14;
 /// Limit of the number of kinds where all that ever occur are required.
 pub(super) const MAX_CLOSED: usize = 1 << 8;
 
+/// Number of arguments that count as a module.
+const ARGUMENTS: usize = 8;
+
 /// Limit of the total length of the words.
 const MAX_MODULES: usize = 1 << 18;
 
@@ -89,7 +92,7 @@ impl KindFinder<'_> {
         let bits = arguments.iter().map(|value| value.to_bits()).collect();
         let made = self.all.len();
         let number = *self.numbers.entry((symbol, bits)).or_insert(made);
-        self.modules += 1;
+        self.modules += 1 + arguments.len() / ARGUMENTS;
         if number == made {
             self.all.push(ModuleKind {
                 symbol,

@@ -16,6 +16,7 @@ use super::paint::Paint;
 use super::reader::{DrawnPart, Of, Reader};
 use super::state::{Joint, StrokeAttributes, TurtleState};
 use super::words::{Words, Written};
+use super::work;
 use super::worn::Worn;
 use crate::graph::{Alternative, Chain, Graph, Instance, Object, Replacement, Successor};
 use crate::rule::Extent;
@@ -64,6 +65,10 @@ struct Leveller<'e, F: TurtleFrame> {
     /// Replacements of kinds, by the number of steps left and by what they inherit.
     productions: BTreeMap<(usize, u32, Worn), Made<F>>,
     written: Vec<Written<F>>,
+    /// Number of modules of expanded words inside polygons of the axiom.
+    expanded: u64,
+    /// Number of modules of the words that replace objects.
+    modules: u64,
 }
 
 /// Replacement of a kind.
@@ -105,6 +110,8 @@ pub(super) fn levels<F: SummedFrame>(
         keys: [const { Vec::new() }; 2],
         productions: BTreeMap::new(),
         written: Vec::new(),
+        expanded: 0,
+        modules: 0,
     };
     let (mut graph, base_elements, written) = leveller.run(steps)?;
     if !written.is_empty() {
@@ -160,6 +167,7 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         start.pose.scale = effects.words().length();
         let mut reader = Reader::new(effects, start, false);
         reader.read(&effects.kinds.axiom, left, Path::of_seed(0))?;
+        work::spend(&mut self.expanded, reader.expanded, work::MAX_WORK)?;
         let effect = reader.effect()?;
         // The positions of the initiator's instances must not depend on draws.
         let is_rough = reader.parts.iter().any(|part| part.pose.is_rough);
@@ -188,6 +196,8 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         }
         let mut words = Vec::new();
         for alternative in &effects.kinds.all[kind].alternatives {
+            let modules = work::OBJECT + alternative.word.len() as u64;
+            work::spend(&mut self.modules, modules, work::MAX_INHERITED)?;
             let mut reader = Reader::new(effects, TurtleState::SAME, false);
             reader.read(&alternative.word, left - 1, Path::of_seed(0))?;
             let instances = self.instances(&reader.parts, left - 1, unit, worn)?;
@@ -261,7 +271,7 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         };
         let mut key = ObjectKey {
             of,
-            paint: Paint::of(effects.words(), attributes, worn.colour),
+            paint: Paint::of(effects.palette(), attributes, worn.colour),
             worn: Worn::START,
         };
         let mut push = |object: usize, frame: F, joined: bool| {
@@ -367,7 +377,7 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         let replacements: BTreeMap<_, _> =
             made.map(|(key, made)| (key, replacement(made))).collect();
         let keys: Vec<ObjectKey> = self.keys.concat();
-        let system = self.effects.words();
+        let palette = self.effects.palette();
         let mut behaviours = BTreeMap::new();
         let mut objects = Vec::with_capacity(keys.len());
         for key in keys {
@@ -392,12 +402,12 @@ impl<F: TurtleFrame> Leveller<'_, F> {
             objects.push(Object {
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
-                ..key.paint.object(system, base_element)
+                ..key.paint.object(palette, base_element)
             });
         }
         let mut graph = Graph {
             depth: Some(steps),
-            tints: system.has_colours(),
+            tints: palette.is_some(),
             affine: self.tube.is_some(),
             ..Graph::of(objects, F::outlines(&self.base_elements), initiators)
         };

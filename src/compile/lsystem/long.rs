@@ -131,11 +131,12 @@ impl Sums<Frame2> for Displacements {
     }
 
     fn advance(&mut self, effects: &Effects, left: u32, level: &mut [Option<Box<Effect>>]) {
+        let known = std::mem::take(&mut self.known);
         let mut next = Vec::with_capacity(level.len());
         for (kind, effect) in level.iter_mut().enumerate() {
             let exact = effect.as_mut().filter(|effect| effect.is_exact);
             next.push(exact.and_then(|effect| {
-                let displacement = self.follow(effects, kind, left)?;
+                let displacement = self.follow(effects, (kind, left), &known)?;
                 self.correct(effect, &displacement);
                 Some(displacement)
             }));
@@ -159,9 +160,14 @@ impl Displacements {
         }
     }
 
-    /// Returns the displacement of the successor of a kind; `None` unless the kind has exactly one
-    /// successor.
-    fn follow(&mut self, effects: &Effects, kind: usize, left: u32) -> Option<Displacement> {
+    /// Returns the displacement of the successor of a kind, given those of all kinds with one step less; `None` unless
+    /// the kind has exactly one successor.
+    fn follow(
+        &mut self,
+        effects: &Effects,
+        (kind, left): (usize, u32),
+        known: &[Option<Displacement>],
+    ) -> Option<Displacement> {
         let [only] = effects.kinds.all[kind].alternatives.as_slice() else {
             return None;
         };
@@ -169,8 +175,7 @@ impl Displacements {
         for &kind in &only.word {
             let of = &effects.kinds.all[kind];
             if left > 1 && of.is_fertile() {
-                let child = self.known.get(kind)?.clone()?;
-                self.go(&mut turtle, &child);
+                self.go(&mut turtle, known.get(kind)?.as_ref()?);
                 let effect = effects.of(kind, left - 1).ok()?;
                 turtle.pose = turtle.pose.then(self.compass, &effect.state.pose);
                 continue;

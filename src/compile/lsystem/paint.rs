@@ -3,7 +3,7 @@
 use crate::geometry::Frame;
 use crate::graph::Object;
 use crate::instancing::Thickness;
-use crate::lsystem::LSystem;
+use crate::style::Palette;
 
 use super::state::StrokeAttributes;
 
@@ -16,16 +16,20 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    /// Returns the paint of an object with stroke attributes relative to an earlier colour.
-    pub(super) fn of(system: &LSystem, attributes: StrokeAttributes, earlier: i64) -> Self {
+    /// Returns the paint of an object with stroke attributes relative to an earlier colour. `palette` is that of a system
+    /// whose symbols change colours.
+    pub(super) fn of(
+        palette: Option<&Palette>,
+        attributes: StrokeAttributes,
+        earlier: i64,
+    ) -> Self {
         let (width, sets) = match attributes.width {
             Thickness::Times(width) => (width, false),
             Thickness::Set(width) => (width, true),
         };
         let mut colour = 0;
-        if system.has_colours() {
-            let colours = system.metadata().style.palette.entries();
-            let colours = i64::try_from(colours).unwrap_or(i64::MAX);
+        if let Some(palette) = palette {
+            let colours = i64::try_from(palette.entries()).unwrap_or(i64::MAX);
             colour = attributes.colour.from(earlier).rem_euclid(colours);
         }
         Self {
@@ -35,11 +39,14 @@ impl Paint {
     }
 
     /// Returns an object with this paint that is never replaced.
-    pub(super) fn object<F: Frame>(self, system: &LSystem, base_element: usize) -> Object<F> {
-        let palette = &system.metadata().style.palette;
+    pub(super) fn object<F: Frame>(
+        self,
+        palette: Option<&Palette>,
+        base_element: usize,
+    ) -> Object<F> {
         let width = f64::from_bits(self.thickness.0);
         Object {
-            paint: system.has_colours().then(|| palette.entry(self.colour)),
+            paint: palette.map(|palette| palette.entry(self.colour)),
             thickness: if self.thickness.1 {
                 Some(Thickness::Set(width))
             } else {

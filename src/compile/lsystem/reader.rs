@@ -67,6 +67,9 @@ struct OpenPolygon<F: TurtleFrame> {
 /// Limit of the number of vertices of polygons.
 const MAX_VERTICES: usize = 1 << 16;
 
+/// Limit of the number of modules inside the polygons of a word, after words have been expanded.
+const MAX_EXPANDED: u64 = 1 << 18;
+
 /// Limit of the depth to which words inside polygons are expanded.
 const DEEPEST: u32 = 1000;
 
@@ -99,6 +102,8 @@ pub(super) struct Reader<'e, F: TurtleFrame = Frame2> {
     is_exact: bool,
     /// Number of modules that have been read.
     work: u64,
+    /// Number of modules of expanded words inside polygons.
+    pub(super) expanded: u64,
 }
 
 impl<'e, F: TurtleFrame> Reader<'e, F> {
@@ -110,6 +115,7 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
             leads: true,
             is_exact: true,
             work: 0,
+            expanded: 0,
             state,
             saved: Vec::new(),
             open: Vec::new(),
@@ -187,6 +193,10 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
             return Err(NotCompiled);
         }
         let word = &of.alternatives[of.drawn(path)].word;
+        self.expanded += word.len() as u64;
+        if self.expanded > MAX_EXPANDED {
+            return Err(NotCompiled);
+        }
         for (inner, &kind) in (0..).zip(word) {
             self.module(kind, left - 1, path.child(inner), position)?;
         }

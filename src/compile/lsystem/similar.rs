@@ -142,8 +142,10 @@ impl Graph {
             let effects = Effects::closed(system, steps)?;
             Ok(Edges { effects })
         };
-        let few = of_steps(FEW_STEPS)?;
-        let kinds = &few.effects.kinds;
+        // Most systems that do not rewrite edges draw other things than lines, whatever follows.
+        let none = of_steps(0)?;
+        none.draws()?;
+        let kinds = &none.effects.kinds;
         let alternatives = || kinds.all.iter().map(|kind| &kind.alternatives);
         if alternatives().any(|alternatives| alternatives.len() > 1) {
             return Err(NotCompiled);
@@ -153,7 +155,7 @@ impl Graph {
             .map(|alternative| &alternative.word);
         let modules = words.chain([&kinds.axiom]).map(|word| word.len());
         if modules.sum::<usize>() >= LONG
-            && let Some(graph) = few.run(FEW_STEPS)?
+            && let Some(graph) = of_steps(FEW_STEPS)?.run(FEW_STEPS)?
         {
             return Ok(graph);
         }
@@ -362,7 +364,7 @@ impl Edges {
     fn key(&self, kind: usize, attributes: StrokeAttributes, colour: i64) -> ObjectKey {
         ObjectKey {
             kind,
-            paint: Paint::of(&self.effects.system, attributes, colour),
+            paint: Paint::of(self.effects.palette(), attributes, colour),
         }
     }
 
@@ -396,7 +398,7 @@ impl Edges {
 
     fn graph(&self, shapes: &[Option<Shape>]) -> Result<Graph, NotCompiled> {
         let objects = self.objects()?;
-        let system = &self.effects.system;
+        let palette = self.effects.palette();
         let axiom = &self.effects.kinds.axiom;
         let mut reader = Reader::new(&self.effects, self.start(), false);
         reader.read(axiom, 0, Path::of_seed(0))?;
@@ -433,12 +435,12 @@ impl Edges {
             made.push(Object {
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
-                ..key.paint.object(system, 0)
+                ..key.paint.object(palette, 0)
             });
         }
         let start = start.chain(self, &objects, 0)?;
         let mut graph = Graph {
-            tints: system.has_colours(),
+            tints: palette.is_some(),
             middle: DVec2::new(0.5, 0.0),
             ..Graph::of(made, [BaseElement::line()], vec![start])
         };

@@ -36,9 +36,15 @@ fn compare(rule: &Arc<Rule>, steps: u32, seed: u64, shortest: f64) -> bool {
         all: &graph.reaches(|object| graph.outline_radius(object) + 0.25),
         pads: &pads,
     };
-    let Some(searched) = search(&graph, &growth, &reaches, enter) else {
+    let Some(searched) = search(&graph, &growth, &reaches, Limits::DRAWING, enter) else {
         return false;
     };
+    // A search that holds few elements finds the same box, or none.
+    for few in [100, 400, 1_600] {
+        let limits = Limits::instead_of(few);
+        let found = search(&graph, &growth, &reaches, limits, enter);
+        assert_eq!(found.unwrap_or(searched), searched, "{few} elements");
+    }
     let mut walked = Walked {
         graph: &graph,
         bounds: Bounds::EMPTY,

@@ -5,6 +5,7 @@
 use std::borrow::Cow;
 
 use crate::Fractal;
+use crate::catalogue::{Catalogue, Shelf};
 use crate::geometry::{Bounds, Point};
 use crate::graph::{Graph, Instance};
 
@@ -19,7 +20,7 @@ fn assert_shared<F: Bounded>(graph: &Graph<F>, name: &str) {
             length: F::UNIT.stretch(),
             ..Instance::new(object, F::UNIT, 0)
         };
-        alone.initiators[0].instances = vec![root];
+        alone.initiators_mut()[0].instances = vec![root];
         assert_eq!(
             shared.at_object(object),
             alone.limit_bounds(),
@@ -38,6 +39,45 @@ fn objects_share_bounds() {
         let fractal = Fractal::named(name).unwrap();
         assert_shared(&fractal.model().compile_in_space(false).unwrap(), name);
     }
+}
+
+/// Asserts that a box that compilation has found is that of the compiled graph; returns whether there is one.
+fn is_known<F: Bounded>(graph: &Graph<F>, name: &str) -> bool {
+    let mut fresh = graph.clone();
+    fresh.initiators_mut();
+    let Some(known) = graph.limit_bounds else {
+        return false;
+    };
+    let [known, found] = [known, fresh.limit_bounds()];
+    assert_eq!(known.is_some(), found.is_some(), "{name}");
+    if let Some((known, found)) = known.zip(found) {
+        let size = found.size().length();
+        for (a, b) in [(known.min(), found.min()), (known.max(), found.max())] {
+            assert!(
+                (a - b).length() <= 1e-10 * size,
+                "{name}: {known:?} {found:?}"
+            );
+        }
+    }
+    true
+}
+
+#[test]
+fn boxes_that_compilation_finds_are_those_of_its_graph() {
+    let catalogue = Catalogue::embedded();
+    let mut known = 0;
+    for entry in catalogue.entries() {
+        if ![Shelf::IFS, Shelf::INSTANCING].contains(&entry.shelf) {
+            continue;
+        }
+        let fractal = Fractal::named(&entry.name).unwrap();
+        let model = fractal.model();
+        known += usize::from(match model.compile(2) {
+            Ok(graph) => is_known(&graph, &entry.name),
+            Err(_) => is_known(&model.compile_in_space(false).unwrap(), &entry.name),
+        });
+    }
+    assert!(known > 60, "{known}");
 }
 
 #[test]

@@ -6,7 +6,10 @@ use crate::count::Count;
 use crate::geometry::Frame;
 use crate::graph::{Chain, Graph, Instance, Replacement};
 
-use super::{Forecast, Sums, Tally, work};
+use super::{Forecast, MAX_WORK, Sums, Tally, work};
+
+/// Work of a tally that is held, relative to that of adding 18 digits: it stands for the memory that it takes.
+const HELD: u64 = 600;
 
 /// Leaves of the subtree of an object of length 1.
 #[derive(Default)]
@@ -30,7 +33,7 @@ pub(super) struct Totals {
 
 impl<F: Frame> Forecast<'_, F> {
     /// Advances to the next approximant of a time-indexed graph. Returns `false`, without effect, if the
-    /// graph is not resolved further.
+    /// graph is not resolved further, or if the forecast takes too long.
     pub(super) fn advance_level(&mut self) -> bool {
         let Some(start) = self.graph.initiators.get(self.step as usize + 1) else {
             return false;
@@ -40,6 +43,9 @@ impl<F: Frame> Forecast<'_, F> {
         let needed = needed.min().unwrap_or(self.graph.objects.len());
         // Objects lead only to objects of larger numbers.
         while self.graph.objects.len() - totals.last.len() > needed {
+            if self.work + totals.work > MAX_WORK {
+                return false;
+            }
             let next = self.graph.objects.len() - totals.last.len() - 1;
             let total = totals.of(self.graph, next);
             totals.last.push(total);
@@ -48,6 +54,7 @@ impl<F: Frame> Forecast<'_, F> {
         totals.add_chain(self.graph, start, &mut all);
         self.work += std::mem::take(&mut totals.work);
         self.population.set(all.tallies);
+        self.look();
         self.step += 1;
         true
     }
@@ -112,6 +119,7 @@ impl Totals {
         total: &mut Total,
     ) -> (usize, bool) {
         let other = &self.last[graph.objects.len() - 1 - object];
+        let before = total.tallies.len();
         for (&leaf, tally) in &other.tallies {
             self.work += work(&tally.count);
             let own = total.tallies.entry(leaf).or_default();
@@ -123,6 +131,7 @@ impl Totals {
                 ..Sums::default()
             };
         }
+        self.work += HELD * (total.tallies.len() - before) as u64;
         (other.first, other.joins)
     }
 }

@@ -1,11 +1,12 @@
 //! Text of the symbols and of the picture composed of them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 use std::sync::atomic::Ordering::Relaxed;
 
+use crate::fast_hash::FastMap;
 use crate::geometry::{DVec2, Direction};
-use crate::graph::{Graph, Instance};
+use crate::graph::{Chain, Graph, Instance};
 use crate::grow::{Growth, WalkError};
 use crate::instancing::Appearance;
 use crate::render::canvas::Canvas;
@@ -20,7 +21,7 @@ use crate::style::{Blend, ColorBy, ColorProperty, Colour, Style, Width};
 
 use super::ends::{End, Ends};
 use super::symbols::{Aspect, Dress, ElementSubset, Symbol, Symbols};
-use super::{MAX_SYMBOLS, NotInstanced, text};
+use super::{NotInstanced, Work, text};
 
 /// Part of a class that is painted at once.
 #[derive(Clone, Copy, PartialEq)]
@@ -55,6 +56,10 @@ pub(super) struct Drawing<'a> {
     names: u64,
     /// Layers of every class, in order.
     layers: &'static [Layer],
+    /// Transforms of instances, by their addresses in the graph.
+    transforms: FastMap<usize, Box<str>>,
+    /// Work that is left.
+    work: Work,
 }
 
 /// Returns the layers of every class, in order.
@@ -81,6 +86,7 @@ impl<'a> Drawing<'a> {
         growth: &'a Growth<'a>,
         options: &'a Options,
         classes: Classes,
+        work: Work,
     ) -> Self {
         let style = &options.style;
         Self {
@@ -94,6 +100,8 @@ impl<'a> Drawing<'a> {
             outlines: BTreeMap::new(),
             names: 0,
             layers: layers(graph, style),
+            transforms: FastMap::default(),
+            work,
         }
     }
 
@@ -117,7 +125,8 @@ impl<'a> Drawing<'a> {
         let all = classes
             .iter()
             .flat_map(|(_, aspects)| aspects.iter().copied());
-        let symbols = self.symbols.collect(initiator, all, MAX_SYMBOLS);
+        let symbols = self.symbols.collect(initiator, all, &mut self.work);
+        let symbols = symbols.filter(|symbols| self.affords(symbols, initiator));
         let symbols = symbols.ok_or(NotInstanced::TooManySymbols)?;
         let mut ends = Ends::new(self.graph);
         let mut text = String::new();
@@ -161,6 +170,32 @@ impl<'a> Drawing<'a> {
             symbols: self.names,
             expanded,
         })
+    }
+
+    /// Returns whether outlines, transforms of instances, and ends that lines link take no more work than is left.
+    fn affords(&mut self, symbols: &[Symbol], initiator: &Chain) -> bool {
+        /// Work of a transform, and of a point of an outline, relative to that of an instance whose transform is known.
+        const TRANSFORM: usize = 8;
+        const POINT: usize = 4;
+        let mut successors = BTreeSet::new();
+        let mut outlines = BTreeSet::new();
+        let mut is_affordable = self.work.take(TRANSFORM * initiator.instances.len());
+        for symbol in symbols {
+            let number = self.graph.objects()[symbol.object].base_element;
+            let own = match self.symbols.successor(symbol) {
+                Some(successor) if successors.insert(std::ptr::from_ref(successor).addr()) => {
+                    TRANSFORM * successor.placed_instances().count()
+                }
+                None if outlines.insert((number, symbol.aspect.dress)) => {
+                    POINT * self.graph.base_elements()[number].pieces().len()
+                }
+                _ => 0,
+            };
+            is_affordable = is_affordable && self.work.take(own);
+        }
+        let steps = self.growth.steps as usize;
+        let ends = steps.saturating_mul(self.graph.objects().len());
+        is_affordable && (!self.symbols.links || self.work.take(ends))
     }
 
     /// Returns the subsets of elements painted in the colour of a class, as seen from the virtual object that
@@ -271,7 +306,7 @@ impl<'a> Drawing<'a> {
     /// Writes instances that follow each other and the lines that link them, and returns the number of elements and
     /// instances to which they expand.
     fn chain(
-        &self,
+        &mut self,
         instances: &[Instance],
         of: &Aspect,
         seeded: bool,
@@ -300,15 +335,18 @@ impl<'a> Drawing<'a> {
             let Some(written) = symbol.and_then(|symbol| self.named.get(&symbol)) else {
                 continue;
             };
-            let transform = text::transform(instance.frame.map());
-            let name = text::name(written.name);
-            if transform.is_empty() {
-                text.push_str(&format!("<use href=\"#{name}\"/>"));
-            } else {
-                text.push_str(&format!(
-                    "<use href=\"#{name}\" transform=\"{transform}\"/>"
-                ));
+            // Symbols of an object differ in steps and parts, not in their maps.
+            let address = std::ptr::from_ref(instance).addr();
+            let transform = self.transforms.entry(address);
+            let transform =
+                transform.or_insert_with(|| text::transform(instance.frame.map()).into());
+            text.push_str("<use href=\"#");
+            text.push_str(&text::name(written.name));
+            if !transform.is_empty() {
+                text.push_str("\" transform=\"");
+                text.push_str(transform);
             }
+            text.push_str("\"/>");
             expanded += written.expanded + 1.0;
         }
         expanded

@@ -17,7 +17,7 @@ use super::super::colours::Colours;
 use super::super::error::RenderError;
 use super::super::space::SpaceError;
 use super::symbols::{Aspect, Dress, ElementSubset, Symbol, Symbols};
-use super::{MAX_SYMBOLS, NotInstanced, refusal};
+use super::{NotInstanced, Work, refusal};
 
 /// Limit of the number of triangles of a mesh that stands for several elements, which are held in memory.
 const MAX_TRIANGLES: usize = 1 << 23;
@@ -115,7 +115,8 @@ impl<'g> Nested<'g> {
         };
         let symbols = Symbols::new(graph, style.color_by, colours.classes());
         let initiator = graph.initiator(steps);
-        let all = symbols.collect(initiator, [start].into_iter(), MAX_SYMBOLS);
+        let mut work = Work::FILE;
+        let all = symbols.collect(initiator, [start].into_iter(), &mut work);
         let all = all.ok_or(NotInstanced::TooManySymbols)?;
         let mut collector = Collector {
             steps,

@@ -9,6 +9,7 @@ use crate::instancing::Appearance;
 use crate::style::ColorBy;
 
 use super::super::classes::Classes;
+use super::Work;
 
 /// Subset of the elements of an expanded object that are painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -202,24 +203,30 @@ impl<'g, F: Frame> Symbols<'g, F> {
     }
 
     /// Returns all symbols that occur in a chain with one of several aspects, each after those of which it
-    /// consists; `None` if there are more than `most`.
+    /// consists; `None` if they take more work than is left.
     pub(super) fn collect(
         &self,
         chain: &Chain<F>,
         aspects: impl Iterator<Item = Aspect>,
-        most: usize,
+        work: &mut Work,
     ) -> Option<Vec<Symbol>> {
         let mut open = BTreeSet::new();
         for of in aspects {
+            if !work.take(chain.instances.len()) {
+                return None;
+            }
             let instances = chain.instances.iter();
             open.extend(instances.filter_map(|instance| self.child(instance, &of, false)));
         }
         let mut all = Vec::new();
         while let Some(symbol) = open.pop_last() {
-            if all.len() + open.len() > most {
+            if all.len() + open.len() > work.symbols {
                 return None;
             }
             if let Some(successor) = self.successor(&symbol) {
+                if !work.take(successor.placed_instances().count()) {
+                    return None;
+                }
                 let instances = successor.placed_instances();
                 open.extend(instances.filter_map(|(placement, instance)| {
                     self.child(instance, &symbol.aspect, placement.seeds())

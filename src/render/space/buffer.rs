@@ -277,7 +277,7 @@ fn has_open(keys: &[u32], least: u32) -> bool {
 }
 
 /// Sets the largest keys of the blocks along some lines; returns whether one has changed.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn set_largest(lines: [&[u32]; BLOCK], largest: &mut [u32]) -> bool {
     let mut changes = 0;
     let [a, b, c, d] = lines.map(|line| line.as_chunks::<BLOCK>().0);

@@ -162,7 +162,7 @@ impl<'a> Occlusion<'a> {
 
 /// Raises horizons, the sines of the greatest heights of what is seen, by the pixels that lie beside those of a row; what is
 /// far before a pixel does not count.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 #[expect(
     clippy::cast_possible_wrap,
     clippy::cast_precision_loss,

@@ -174,8 +174,8 @@ impl Planes {
         }
     }
 
-    /// Finds the sides, if rows of `width` samples are long enough for them.
-    pub(super) fn find_sides(&mut self, width: usize) -> bool {
+    /// Finds the sides, farther away by `spread` along the axes, if rows of `width` samples are long enough for them.
+    pub(super) fn find_sides(&mut self, width: usize, spread: f64) -> bool {
         let Self {
             front,
             back,
@@ -190,16 +190,31 @@ impl Planes {
         sides.right.clear();
         for front in &*front {
             for back in &*back {
+                let size = front.slope() + back.slope();
                 let plane = Plane {
                     x: back.x - front.x,
                     y: back.y - front.y,
-                    z: back.z - front.z,
+                    z: back.z - front.z - size * spread,
                 };
-                sides.add(&plane, front.slope() + back.slope());
+                sides.add(&plane, size);
             }
         }
-        edges.iter().for_each(|edge| sides.add(edge, edge.slope()));
+        for edge in &*edges {
+            let size = edge.slope();
+            let plane = Plane {
+                z: edge.z - size * spread,
+                ..*edge
+            };
+            sides.add(&plane, size);
+        }
         true
+    }
+
+    /// Returns the first and the last place at a height at which the solid may be seen, once its sides are found, and a sample
+    /// more on both sides, for rounding.
+    pub(super) fn ends(&self, y: f64) -> [f64; 2] {
+        let [first, last] = self.sides.at(y);
+        [first - 1.0, last + 1.0]
     }
 
     /// Returns the part of a range of samples on a row of a tile on which the solid may be seen, once its sides are found. It
@@ -216,11 +231,10 @@ impl Planes {
         y: usize,
         [left, right]: [usize; 2],
     ) -> [usize; 2] {
-        let ends = self.sides.at(view.corner[1] + y as f64 + 0.5);
-        // A sample more on both sides, for rounding.
+        let ends = self.ends(view.corner[1] + y as f64 + 0.5);
         let [first, last] = ends.map(|end| end - view.corner[0] - 0.5);
-        let first = ((first - 1.0) as usize).clamp(left, right);
-        let last = ((last + 3.0) as usize).clamp(left, right);
+        let first = (first as usize).clamp(left, right);
+        let last = ((last + 2.0) as usize).clamp(left, right);
         let first = left + (first - left) / LANES * LANES;
         [first, last.max(first)]
     }
@@ -258,7 +272,7 @@ impl Planes {
     }
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 #[expect(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -303,7 +317,7 @@ fn open_blocks(
 
 /// Draws a solid on a part of a row of samples, whose first one is given. Its faces have their own classes if they
 /// are `LIT`, or else all have `class`.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 #[expect(clippy::cast_precision_loss, reason = "tiles are small")]
 pub(super) fn draw_row<const LIT: bool>(
     planes: &Planes,
@@ -429,7 +443,7 @@ mod tests {
             let view = view(is_central);
             let mut planes = Planes::default();
             planes.set(view.projection, faces.into_iter(), &mut Classes::One(0));
-            prop_assert!(planes.find_sides(SIDE));
+            prop_assert!(planes.find_sides(SIDE, 0.0));
             for y in (0..SIDE).step_by(5) {
                 let ([whole, part], _) = drawn::<false>(&planes, &view, [left, y]);
                 prop_assert_eq!(whole, part);
@@ -456,7 +470,7 @@ mod tests {
             });
         let mut planes = Planes::default();
         planes.set(view.projection, faces, &mut Classes::One(0));
-        assert!(planes.find_sides(SIDE));
+        assert!(planes.find_sides(SIDE, 0.0));
         let ([whole, part], width) = drawn::<false>(&planes, &view, [0, 100]);
         assert_eq!(whole, part);
         let seen = whole.iter().filter(|key| **key < EMPTY).count();

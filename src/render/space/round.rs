@@ -121,7 +121,7 @@ impl Surface {
 
     /// Finds the sides of the box around the primitive; returns whether rows of `width` samples are long enough
     /// for them.
-    fn find_sides(&self, view: &View<'_>, planes: &mut Planes, width: usize) -> bool {
+    pub(super) fn find_sides(&self, view: &View<'_>, planes: &mut Planes, width: usize) -> bool {
         let across = self.inverse.transpose();
         // All primitives but the ball reach from y = 0 to y = 1.
         let low = match self.primitive {
@@ -140,7 +140,7 @@ impl Surface {
         for normal in edges {
             planes.add_edge(view.projection, face(normal, 1.0));
         }
-        let is_long = planes.find_sides(width);
+        let is_long = planes.find_sides(width, 0.0);
         if let Some(Touching { front, .. }) = touching {
             planes.add_front(view.projection, face(front, 1.0));
         }
@@ -261,7 +261,7 @@ fn meet(
     }
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
 fn meet_uncut<const CAPPED: bool, const PARALLEL: bool, const TWICE: bool>(
     surface: &Surface,
@@ -359,7 +359,7 @@ fn light(
     }
 }
 
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
 fn light_on<const CAPPED: bool, const PARALLEL: bool>(
     surface: &Surface,

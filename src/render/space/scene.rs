@@ -285,7 +285,7 @@ fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
 pub(super) fn seen(graph: &Graph<Frame3>, map: &DAffine3) -> Graph<Frame3> {
     let mut seen = graph.clone();
     for instance in seen
-        .initiators
+        .initiators_mut()
         .iter_mut()
         .flat_map(|chain| &mut chain.instances)
     {

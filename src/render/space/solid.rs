@@ -175,7 +175,7 @@ impl Pencil {
         self.planes.set(view.projection, faces, &mut classes);
         let planes = &mut self.planes;
         let [left, top, right, bottom] = rectangle;
-        let is_long = planes.find_sides(right - left);
+        let is_long = planes.find_sides(right - left, 0.0);
         let planes = &*planes;
         let draw = |keys: &mut [u32], at| match classes {
             Classes::One(class) => draw_row::<false>(planes, keys, view, at, class),

@@ -285,7 +285,7 @@ fn bias(roots: &Roots<'_>, view: &View<'_>, phases: usize) -> f64 {
 }
 
 /// Draws a part of a copy, whose corner is that of `keys`; returns whether it is seen.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn blit(keys: &mut [u32], stamp: &Stamp, part: &Part, copy: &Copy) -> bool {
     let mut seen = 0;
     for (row, pieces) in keys.chunks_mut(STRIDE).zip(part.rows(stamp)) {
@@ -301,7 +301,7 @@ fn blit(keys: &mut [u32], stamp: &Stamp, part: &Part, copy: &Copy) -> bool {
 }
 
 /// Draws a part of a copy as [`blit`] does, with the class of each ink.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn blit_with_inks(
     keys: &mut [u32],
     stamp: &Stamp,

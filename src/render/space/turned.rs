@@ -307,7 +307,7 @@ impl Copy {
 }
 
 /// Draws a copy of a stamp, which has classes if it is `CLASSED`; its corner is that of `keys`. Returns whether it is seen.
-#[cfg_attr(feature = "simd", multiversion::multiversion(targets("x86_64+avx2")))]
+#[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn blit<const CLASSED: bool>(keys: &mut [u32], stamp: &TurnedStamp, copy: &Copy) -> bool {
     let mut seen = 0;
     let columns = stamp.columns;
@@ -408,28 +408,29 @@ impl<'a> Builder<'a> {
     /// Returns the stamp, without what shows nothing around what is shown.
     #[expect(clippy::cast_possible_truncation, reason = "classes are the low bits")]
     fn stamp(self) -> TurnedStamp {
-        let shown = { self.keys.iter().enumerate() }
-            .filter(|(_, key)| **key != EMPTY)
-            .map(|(at, _)| [at % WIDTH, at / WIDTH]);
         let (mut corner, mut end) = ([WIDTH; 2], [0; 2]);
-        for at in shown {
-            for axis in 0..2 {
-                corner[axis] = corner[axis].min(at[axis]);
-                end[axis] = end[axis].max(at[axis] + 1);
+        let is_shown = |key: &u32| *key != EMPTY;
+        for (y, row) in self.keys.chunks_exact(WIDTH).enumerate() {
+            if let Some(first) = row.iter().position(is_shown) {
+                let last = row.iter().rposition(is_shown).unwrap_or(first);
+                corner = [corner[0].min(first), corner[1].min(y)];
+                end = [end[0].max(last + 1), y + 1];
             }
         }
         corner = [corner[0].min(end[0]), corner[1].min(end[1])];
         // Rows consist of pieces.
         let columns = (end[0] - corner[0]).next_multiple_of(PIECE);
         let corner = [corner[0].min(WIDTH - columns), corner[1]];
-        let rows = self.keys.chunks_exact(WIDTH).take(end[1]).skip(corner[1]);
-        let keys = rows.flat_map(|row| &row[corner[0]..corner[0] + columns]);
-        let depths: Vec<u16> = keys.clone().map(|key| depth_in_stamp(*key)).collect();
-        let classes = keys.map(|key| match *key {
-            EMPTY => 0,
-            key => key as u16 & MAX_CLASS,
-        });
-        let classes: Vec<u16> = classes.collect();
+        let size = columns * (end[1] - corner[1]);
+        let [mut depths, mut classes] = [(); 2].map(|()| Vec::with_capacity(size));
+        for row in self.keys.chunks_exact(WIDTH).take(end[1]).skip(corner[1]) {
+            let keys = &row[corner[0]..corner[0] + columns];
+            depths.extend(keys.iter().map(|key| depth_in_stamp(*key)));
+            classes.extend(keys.iter().map(|key| match *key {
+                EMPTY => 0,
+                key => key as u16 & MAX_CLASS,
+            }));
+        }
         let has_classes = classes.iter().any(|class| *class > 0);
         TurnedStamp {
             nearest: depths

@@ -22,10 +22,14 @@ impl Resolver<OfLSystem> {
         }
         let (character, arity) = (module.character, module.arguments.len());
         if let Some(&number) = self.kind.numbers.get(&(character, arity)) {
+            self.spend(self.kind.symbols[number].meaning.len(), &module.place);
             return number;
         }
-        let own = |arity| self.kind.own.get(&(character, arity)).cloned();
-        let meaning = own(arity).or_else(|| own(0)).unwrap_or_else(|| {
+        let own = |arity| self.kind.own.get(&(character, arity));
+        let own = own(arity).or_else(|| own(0)).cloned();
+        let fits = self.spend(own.as_ref().map_or(1, |own| own.len()), &module.place);
+        let own = own.map(|own| if fits { own.to_vec() } else { Vec::new() });
+        let meaning = own.unwrap_or_else(|| {
             let is_space = !self.kind.is_in_space && SPACE.contains(&character);
             if is_space {
                 let message =
@@ -55,7 +59,11 @@ impl Resolver<OfLSystem> {
 
     /// Returns the name of the stamp that a module places: its first argument.
     fn stamp_of<'m>(&self, module: &'m ModuleDocument) -> Option<&'m WrittenNumber> {
-        let is_own = || { self.kind.own.keys() }.any(|(character, _)| *character == PLACES);
+        let own = &self.kind.own;
+        let is_own = || {
+            let mut all = own.range((PLACES, 0)..=(PLACES, usize::MAX));
+            all.next().is_some()
+        };
         let is_placing = module.character == PLACES && !is_own();
         module.arguments.first().filter(|_| is_placing)
     }
@@ -68,7 +76,7 @@ impl Resolver<OfLSystem> {
 
     /// Returns the number of a stamp. Reports a name that is not known and returns `None`.
     fn stamp(&mut self, name: &str, place: &Place) -> Option<usize> {
-        let known = { self.kind.stamps.iter() }.position(|(known, _)| known == name);
+        let known = self.kind.stamp_numbers.get(name).copied();
         if known.is_none() && !self.incomplete {
             let message = format!("there is no stamp '{name}'");
             let names: Vec<_> = { self.kind.stamps.iter() }
@@ -84,9 +92,12 @@ impl Resolver<OfLSystem> {
     }
 
     /// Returns the actions that place a stamp: one for each of its base elements.
-    fn places(&self, stamp: Option<usize>, size: &Program) -> Vec<Action> {
+    fn places(&mut self, stamp: Option<usize>, size: &Program, place: &Place) -> Vec<Action> {
         let stamp = stamp.and_then(|stamp| self.kind.stamps.get(stamp));
         let base_elements = stamp.map_or(0..0, |(_, base_elements)| base_elements.clone());
+        if !self.spend(base_elements.len(), place) {
+            return Vec::new();
+        }
         base_elements
             .map(|number| Action::Stamp(number, size.clone()))
             .collect()
@@ -103,13 +114,15 @@ impl Resolver<OfLSystem> {
         }
         let stamp = known.unwrap_or(0);
         if let Some(&number) = self.kind.placing.get(&(stamp, arity)) {
+            self.spend(self.kind.symbols[number].meaning.len(), &module.place);
             return number;
         }
         let size = match arity {
             0 => Program::constant(1.0),
             _ => of_argument("x"),
         };
-        let number = self.add_symbol(PLACES, arity, self.places(known, &size));
+        let meaning = self.places(known, &size, &module.place);
+        let number = self.add_symbol(PLACES, arity, meaning);
         self.kind.placing.insert((stamp, arity), number);
         number
     }
@@ -177,7 +190,7 @@ impl Resolver<OfLSystem> {
             self.error_with_hint(&module.place, message, hint);
         }
         let key = (module.character, module.arguments.len());
-        if self.kind.own.insert(key, actions).is_some() {
+        if self.kind.own.insert(key, actions.into()).is_some() {
             let message = format!("'{}' has a meaning already", module.character);
             self.error(&module.place, message);
         }
@@ -192,7 +205,7 @@ impl Resolver<OfLSystem> {
             ActionDocument::Stamp(name, scale) => {
                 let size = steps(scale);
                 let stamp = self.stamp(&name.value, &name.place);
-                return self.places(stamp, &size);
+                return self.places(stamp, &size, &name.place);
             }
             ActionDocument::Draw(number) => Action::Draw(steps(number)),
             ActionDocument::Move(number) => Action::Move(steps(number)),

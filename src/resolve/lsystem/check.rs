@@ -1,10 +1,12 @@
 //! Checks of words, and warnings of productions and symbols without effect.
 
+use std::collections::BTreeMap;
+
 use crate::document::{LSystemDocument, ModuleDocument};
-use crate::lsystem::{Action, LSystem};
+use crate::lsystem::{Action, LSystem, Symbol};
 use crate::resolve::Resolver;
 
-use super::OfLSystem;
+use super::{MAX_ACTIONS, OfLSystem};
 
 /// Maximum number of unbalanced brackets that are reported in a word.
 const MAX_NAMED: usize = 20;
@@ -12,6 +14,10 @@ const MAX_NAMED: usize = 20;
 impl Resolver<OfLSystem> {
     /// Reports unbalanced brackets and polygons in a word.
     pub(super) fn check_balance(&mut self, modules: &[ModuleDocument], symbols: &[usize]) {
+        // Beyond the limit of actions, symbols have no brackets.
+        if self.kind.actions > MAX_ACTIONS {
+            return;
+        }
         let bracket = |action: &Action| match action {
             Action::Push => 1,
             Action::Pop => -1,
@@ -65,11 +71,16 @@ impl Resolver<OfLSystem> {
             return;
         }
         let reached = reached(system);
+        // The first symbol of each character that occurs.
+        let mut occurring: BTreeMap<char, &Symbol> = BTreeMap::new();
+        for (symbol, _) in system.symbols.iter().zip(&reached).filter(|it| *it.1) {
+            occurring.entry(symbol.character).or_insert(symbol);
+        }
         let places = document.productions.iter().zip(&system.productions);
         for (written, production) in places.clone() {
             let replaced = &written.predecessor;
             if !reached[production.predecessor] {
-                self.never(replaced, system, &reached, "its production");
+                self.never(replaced, &occurring, "its production");
                 continue;
             }
             let around = written.left.iter().chain(&written.right);
@@ -88,9 +99,8 @@ impl Resolver<OfLSystem> {
         }
         for written in &document.symbols {
             let symbol = &written.symbol;
-            let mut all = system.symbols.iter().zip(&reached);
-            if !all.any(|(known, reached)| *reached && known.character == symbol.character) {
-                self.never(symbol, system, &reached, "its meaning");
+            if !occurring.contains_key(&symbol.character) {
+                self.never(symbol, &occurring, "its meaning");
             }
         }
         self.warn_of_hidden(document, system);
@@ -107,17 +117,15 @@ impl Resolver<OfLSystem> {
     }
 
     /// Warns that a symbol never occurs, or occurs only with another number of arguments.
-    fn never(&mut self, module: &ModuleDocument, system: &LSystem, reached: &[bool], what: &str) {
+    fn never(&mut self, module: &ModuleDocument, occurring: &BTreeMap<char, &Symbol>, what: &str) {
         let character = module.character;
         let with = |arity: usize| match arity {
             0 => "without arguments".into(),
             1 => "with 1 argument".into(),
             arity => format!("with {arity} arguments"),
         };
-        let mut all = system.symbols.iter().zip(reached);
-        let other = all.find(|(symbol, reached)| **reached && symbol.character == character);
-        let (message, hint) = match other {
-            Some((other, _)) => (
+        let (message, hint) = match occurring.get(&character) {
+            Some(other) => (
                 format!(
                     "'{character}' never occurs {}, but {}",
                     with(module.arguments.len()),

@@ -39,6 +39,9 @@ impl Resolver<OfLSystem> {
                 Some(made) => all.extend(made),
                 None => are_sound = false,
             }
+            let number = self.kind.stamps.len();
+            let known = self.kind.stamp_numbers.entry(name.value.clone());
+            known.or_insert(number);
             self.kind
                 .stamps
                 .push((name.value.clone(), first..all.len()));

@@ -158,11 +158,11 @@ impl<F: ResolvedFrame> Resolver<OfRule<F>> {
             };
             let length = (to - from).length();
             if length >= 1.0 {
-                let times = if length == 1.0 {
-                    String::new()
-                } else {
-                    format!("{} times ", (length * 1000.0).round() / 1000.0)
-                };
+                // Rounded, but not to 1.
+                let mut rounded = { [1e3, 1e6, 1e9, 1e12].into_iter() }
+                    .map(|unit| (length * unit).round() / unit);
+                let times = rounded.find(|length| *length != 1.0);
+                let times = times.map_or(String::new(), |times| format!("{times} times "));
                 let message = format!(
                     "this element does not shrink: it is {times}as long as what it replaces"
                 );

@@ -13,6 +13,7 @@ use crate::geometry::Frame2;
 use crate::lsystem::TurtleFrame;
 
 use super::NoGrowth;
+use super::budget::Budget;
 use super::number::{Complex, Number, Numbers, log2};
 use super::polynomial::{Polynomial, SAME, largest};
 use super::turns::{Effects, Reader, Reading, STEP, Turn, Turned, Variable};
@@ -95,6 +96,12 @@ impl<F: TurtleFrame> Steps<F> {
         &self.readings[self.equal(step, 1)][variable - 1]
     }
 
+    /// Returns the number of terms of the displacements of some variables at a step.
+    pub(super) fn terms(&self, step: usize, variables: &[Variable]) -> usize {
+        let others = variables.iter().filter(|it| **it != STEP);
+        others.map(|it| self.reading(step, *it).sums.len()).sum()
+    }
+
     /// Iterates over the steps of the period, each as the one that replaces the step before it.
     fn recurring(&self) -> impl Iterator<Item = usize> {
         self.first + 1..=self.first + self.period
@@ -159,6 +166,7 @@ struct Course<'s, 'r> {
     relevant: Vec<Variable>,
     mirrors: bool,
     numbers: &'r mut Numbers,
+    budget: &'s Budget,
     /// Places of all steps from the first of the period.
     places: Vec<Places>,
 }
@@ -169,6 +177,7 @@ impl Growth {
         reader: &Reader<'_>,
         numbers: &mut Numbers,
     ) -> Result<Self, NoGrowth> {
+        let budget = &reader.budget;
         let relevant = steps.relevant(reader)?;
         let mirrored = |reading: &Reading| reading.sums.iter().any(|it| it.turn.mirrored);
         let mirrors = { steps.readings.iter().flatten() }.any(mirrored);
@@ -178,6 +187,7 @@ impl Growth {
                 relevant: relevant.clone(),
                 mirrors,
                 numbers,
+                budget,
                 places: Vec::new(),
             };
             let polynomial = course.recurrence()?;
@@ -256,6 +266,8 @@ impl Course<'_, '_> {
             let mut place = self.places[order * self.steps.period].clone();
             let mut combined = vec![self.numbers.real(0.0); order];
             combined.push(self.numbers.real(1.0));
+            // Each row takes two operations for every number.
+            self.budget.spend(2 * order * (place.len() + order))?;
             for (pivot, row, combination) in &rows {
                 let factor = self.numbers.over(&place[*pivot], &row[*pivot]);
                 let reduce = |from: &mut Places, by: &[Number]| {
@@ -288,21 +300,25 @@ impl Course<'_, '_> {
         if self.places.is_empty() {
             let mut places = Vec::new();
             for step in 0..=self.steps.first {
-                places = self.next(step, &places);
+                places = self.next(step, &places)?;
             }
             self.places.push(places);
         }
         while self.places.len() <= last {
             let step = self.steps.first + self.places.len();
-            let next = self.next(step, &self.places[self.places.len() - 1].clone());
+            let next = self.next(step, &self.places[self.places.len() - 1].clone())?;
             self.places.push(next);
         }
         Ok(())
     }
 
     /// Returns the places at a step, given those before it.
-    fn next(&mut self, step: usize, before: &[Number]) -> Places {
+    fn next(&mut self, step: usize, before: &[Number]) -> Result<Places, NoGrowth> {
         let steps = self.steps;
+        // Each term takes two products and a sum.
+        let each = 3 * if self.mirrors { 2 } else { 1 };
+        self.budget
+            .spend(each * steps.terms(step, &self.relevant))?;
         let mut next = Vec::new();
         for mirrored in [false, true] {
             if mirrored && !self.mirrors {
@@ -322,7 +338,7 @@ impl Course<'_, '_> {
                 next.push(sum);
             }
         }
-        next
+        Ok(next)
     }
 
     /// Returns a term of a sum, or its conjugate, given the places one step before.

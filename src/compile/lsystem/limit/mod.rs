@@ -10,6 +10,7 @@
 //! sets in turn, and there is no limit set.
 
 mod alike;
+mod budget;
 mod growth;
 mod number;
 mod pieces;
@@ -37,7 +38,7 @@ use super::kinds::{Kinds, MAX_CLOSED};
 /// Additional bits of the numbers in which growth is decided.
 const BITS: usize = 1024;
 
-/// Largest number of modules of all successors together: each takes some hundred operations with long numbers.
+/// Largest number of modules of all successors together.
 const MAX_MODULES: usize = 5000;
 
 /// Checks that modules are replaced, and read by the turtle, regardless of all others, and that they are not too many.

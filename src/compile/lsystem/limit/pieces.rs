@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use crate::geometry::DVec2;
 
 use super::NoGrowth;
-use super::alike::are_alike;
+use super::alike::Sets;
+use super::budget::Budget;
 use super::growth::{Growth, Steps};
 use super::number::{Complex, Numbers};
 use super::polynomial::SAME;
@@ -132,6 +133,7 @@ impl Pieces {
             steps,
             growth,
             numbers,
+            budget: &reader.budget,
             names: SetNumbers::default(),
             sets: Vec::new(),
         };
@@ -149,16 +151,25 @@ impl Pieces {
             axiom: Vec::new(),
             sets,
         };
-        let classes = pieces.classes();
+        let budget = &reader.budget;
+        let classes = pieces.classes(budget)?;
+        let alike = Sets::of(&pieces.sets, &axioms, budget)?;
         // The number of different sets divides that of the steps of the period.
-        let is_cycle = |cycle: usize| {
-            let mut later = axioms.iter().enumerate().skip(cycle);
-            axioms.len().is_multiple_of(cycle)
-                && later.all(|(number, it)| are_alike(&pieces.sets, &axioms[number % cycle], it))
+        let is_cycle = |cycle: usize| -> Result<bool, NoGrowth> {
+            if !axioms.len().is_multiple_of(cycle) {
+                return Ok(false);
+            }
+            for later in cycle..axioms.len() {
+                if !alike.are_alike(later % cycle, later)? {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
         };
-        let cycle = (1..axioms.len())
-            .find(|&it| is_cycle(it))
-            .unwrap_or(axioms.len());
+        let mut cycle = 1;
+        while cycle < axioms.len() && !is_cycle(cycle)? {
+            cycle += 1;
+        }
         if cycle > 1 {
             let cycle = u32::try_from(cycle).unwrap_or(u32::MAX);
             return Err(NoGrowth::Alternates(cycle));
@@ -167,7 +178,8 @@ impl Pieces {
         if !pieces.contracts() {
             return Err(NoGrowth::Slow);
         }
-        Ok(Self { axiom, ..pieces }.merged(&classes).without_points())
+        let pieces = Self { axiom, ..pieces }.merged(&classes, budget)?;
+        pieces.without_points(budget)
     }
 }
 
@@ -176,13 +188,18 @@ impl<M: SetMap> Pieces<M> {
     pub(super) fn contracts(&self) -> bool {
         // The longest logarithm of a product that leads to a set does not rise after as many factors as there are sets.
         let mut longest = vec![0.0; self.sets.len()];
+        let logarithms = self.sets.iter().map(|set| -> Vec<(usize, f64)> {
+            let pieces = set.pieces.iter();
+            pieces.map(|it| (it.set, it.map.log2())).collect()
+        });
+        let logarithms: Vec<_> = logarithms.collect();
         for _ in 0..=self.sets.len() {
             let mut rises = false;
-            for (number, set) in self.sets.iter().enumerate() {
-                for piece in &set.pieces {
-                    let product: f64 = longest[number] + piece.map.log2() + 2.0 * ROUNDING;
-                    if product > longest[piece.set] + ROUNDING {
-                        longest[piece.set] = product;
+            for (number, pieces) in logarithms.iter().enumerate() {
+                for &(piece, logarithm) in pieces {
+                    let product: f64 = longest[number] + logarithm + 2.0 * ROUNDING;
+                    if product > longest[piece] + ROUNDING {
+                        longest[piece] = product;
                         rises = true;
                     }
                 }
@@ -195,39 +212,53 @@ impl<M: SetMap> Pieces<M> {
     }
 
     /// Returns the classes of sets that consist of the same pieces (Hopcroft 1971), by the first of each.
-    pub(super) fn classes(&self) -> Vec<usize> {
+    pub(super) fn classes(&self, budget: &Budget) -> Result<Vec<usize>, NoGrowth> {
         let kind = |set: &Set<M>| usize::from(set.is_line);
         let mut classes: Vec<usize> = self.sets.iter().map(kind).collect();
         loop {
             let mut firsts: Vec<usize> = Vec::new();
-            let is_same = |a: usize, b: usize| {
+            let is_same = |a: usize, b: usize| -> Result<bool, NoGrowth> {
                 let [one, other] = [a, b].map(|it| &self.sets[it].pieces);
-                classes[a] == classes[b]
-                    && one.len() == other.len()
-                    && one.iter().zip(other).all(|(a, b)| a.is_same(b, &classes))
+                if classes[a] != classes[b] || one.len() != other.len() {
+                    return Ok(false);
+                }
+                for (one, other) in one.iter().zip(other) {
+                    budget.spend(1)?;
+                    if !one.is_same(other, &classes) {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
             };
             let mut next = Vec::new();
             for number in 0..self.sets.len() {
-                let first = firsts.iter().copied().find(|&first| is_same(first, number));
-                next.push(first.unwrap_or_else(|| {
+                let mut first = None;
+                for &other in &firsts {
+                    if is_same(other, number)? {
+                        first = Some(other);
+                        break;
+                    }
+                }
+                if first.is_none() {
                     firsts.push(number);
-                    number
-                }));
+                }
+                next.push(first.unwrap_or(number));
             }
             if next == classes {
-                return classes;
+                return Ok(classes);
             }
             classes = next;
         }
     }
 
     /// Returns the sets with one for each class, without pieces that occur twice.
-    pub(super) fn merged(self, classes: &[usize]) -> Self {
+    pub(super) fn merged(self, classes: &[usize], budget: &Budget) -> Result<Self, NoGrowth> {
         let kept: Vec<usize> = (0..classes.len()).filter(|&it| classes[it] == it).collect();
         let number = |set: usize| kept.binary_search(&classes[set]).unwrap_or(0);
-        let merged = |pieces: Vec<Piece<M>>| {
+        let merged = |pieces: Vec<Piece<M>>| -> Result<Vec<Piece<M>>, NoGrowth> {
             let mut all: Vec<Piece<M>> = Vec::new();
             for piece in pieces {
+                budget.spend(all.len())?;
                 if !all.iter().any(|it| it.is_same(&piece, classes)) {
                     all.push(piece);
                 }
@@ -235,59 +266,57 @@ impl<M: SetMap> Pieces<M> {
             for piece in &mut all {
                 piece.set = number(piece.set);
             }
-            all
+            Ok(all)
         };
         let sets = self.sets.into_iter().enumerate();
         let sets = sets.filter(|(number, _)| classes[*number] == *number);
-        Self {
-            axiom: merged(self.axiom),
-            sets: sets
-                .map(|(_, set)| Set {
-                    pieces: merged(set.pieces),
-                    ..set
-                })
-                .collect(),
-        }
+        let sets = sets.map(|(_, set)| {
+            let pieces = merged(set.pieces)?;
+            Ok(Set { pieces, ..set })
+        });
+        Ok(Self {
+            axiom: merged(self.axiom)?,
+            sets: sets.collect::<Result<_, NoGrowth>>()?,
+        })
     }
 
     /// Returns the sets without pieces that are points of the pieces beside them: lines of one step vanish if the others
     /// grow.
-    pub(super) fn without_points(mut self) -> Self {
-        let points = self.greatest(|set, known| {
+    pub(super) fn without_points(mut self, budget: &Budget) -> Result<Self, NoGrowth> {
+        let points = self.greatest(budget, |set, known| {
             let is_point = |it: &Piece<M>| known[it.set] && M::is_zero(it.map.place());
             !set.is_line && set.pieces.iter().all(is_point)
-        });
-        let larger = |set: &Set<M>| -> Vec<Piece<M>> {
-            let pieces = set.pieces.iter().filter(|it| !points[it.set]);
-            pieces.cloned().collect()
-        };
-        let starts = self.greatest(|set, known| {
-            let pieces = larger(set);
+        })?;
+        let is_larger = |it: &&Piece<M>| !points[it.set];
+        let starts = self.greatest(budget, |set, known| {
             let starts = |it: &Piece<M>| known[it.set] && M::is_zero(it.map.place());
-            set.is_line || pieces.iter().any(starts)
-        });
+            set.is_line || set.pieces.iter().filter(is_larger).any(starts)
+        })?;
         let last = |it: &Piece<M>| Some(it.map.image(self.sets[it.set].way.as_ref()?));
-        let ends = self.greatest(|set, known| {
+        let ends = self.greatest(budget, |set, known| {
             let Some(end) = &set.way else { return false };
             set.is_line
-                || larger(set).iter().any(|it| {
+                || set.pieces.iter().filter(is_larger).any(|it| {
                     starts[it.set] && M::meet(it.map.place(), end)
                         || known[it.set] && last(it).is_some_and(|last| M::meet(&last, end))
                 })
-        });
-        let without = |pieces: &[Piece<M>]| -> Vec<Piece<M>> {
+        })?;
+        let without = |pieces: &[Piece<M>]| -> Result<Vec<Piece<M>>, NoGrowth> {
+            let count = pieces.iter().filter(is_larger).count();
+            budget.spend(count * (pieces.len() - count))?;
             let is_met = |point: &Piece<M>| {
                 let point = point.map.place();
-                pieces.iter().filter(|it| !points[it.set]).any(|it| {
+                pieces.iter().filter(is_larger).any(|it| {
                     starts[it.set] && M::meet(it.map.place(), point)
                         || ends[it.set] && last(it).is_some_and(|last| M::meet(&last, point))
                 })
             };
             let left = pieces.iter().filter(|it| !points[it.set] || !is_met(it));
-            left.cloned().collect()
+            Ok(left.cloned().collect())
         };
-        let axiom = without(&self.axiom);
-        let pieces: Vec<Vec<Piece<M>>> = self.sets.iter().map(|set| without(&set.pieces)).collect();
+        let axiom = without(&self.axiom)?;
+        let pieces = self.sets.iter().map(|set| without(&set.pieces));
+        let pieces = pieces.collect::<Result<Vec<_>, _>>()?;
         for (number, (set, pieces)) in self.sets.iter_mut().zip(pieces).enumerate() {
             // A point keeps one piece: itself.
             if !points[number] {
@@ -296,7 +325,7 @@ impl<M: SetMap> Pieces<M> {
                 set.pieces.truncate(1);
             }
         }
-        Self { axiom, ..self }
+        Ok(Self { axiom, ..self })
     }
 
     /// Returns an end of every set other than its start, the origin; `None` for sets that are points.
@@ -323,14 +352,20 @@ impl<M: SetMap> Pieces<M> {
     }
 
     /// Returns the largest class of sets for which a property holds that depends on the class.
-    fn greatest(&self, holds: impl Fn(&Set<M>, &[bool]) -> bool) -> Vec<bool> {
+    fn greatest(
+        &self,
+        budget: &Budget,
+        holds: impl Fn(&Set<M>, &[bool]) -> bool,
+    ) -> Result<Vec<bool>, NoGrowth> {
         let mut known = vec![true; self.sets.len()];
         loop {
+            let open = self.sets.iter().zip(&known).filter(|(_, was)| **was);
+            budget.spend(open.map(|(set, _)| set.pieces.len()).sum())?;
             let next: Vec<bool> = { self.sets.iter().zip(&known) }
                 .map(|(set, was)| *was && holds(set, &known))
                 .collect();
             if next == known {
-                return known;
+                return Ok(known);
             }
             known = next;
         }
@@ -365,6 +400,7 @@ struct Finder<'f> {
     steps: &'f Steps,
     growth: &'f Growth,
     numbers: &'f mut Numbers,
+    budget: &'f Budget,
     names: SetNumbers,
     sets: Vec<Set>,
 }
@@ -377,6 +413,9 @@ impl Finder<'_> {
         phase: usize,
         ratio: Option<&Complex>,
     ) -> Result<Vec<Piece>, NoGrowth> {
+        // A place takes a product, a scale and a sum; a piece takes two quotients.
+        self.budget
+            .spend(3 * reading.sums.len() + 8 * reading.parts.len())?;
         let mut pieces = Vec::new();
         let bits = self.numbers.bits();
         let mut places = vec![Complex::real(0.0, bits)];

@@ -14,6 +14,7 @@ use crate::lsystem::{Compass, Heading3, LSystemInSpace, NoGrowth, TurtleFrame as
 
 use self::alike::Sets;
 use self::growth::{Growth, linear, rotation, turned};
+use super::budget::Budget;
 use super::growth::Steps;
 use super::pieces::{Piece, Pieces, ROUNDING, Set, SetMap, SetNumbers};
 use super::turns::{Reader, Reading, STEP};
@@ -53,6 +54,7 @@ struct Finder<'f> {
     steps: &'f Steps<Frame3>,
     growth: &'f Growth,
     compass: Compass,
+    budget: &'f Budget,
     names: SetNumbers,
     sets: Vec<Set<DAffine3>>,
 }
@@ -67,6 +69,8 @@ impl Finder<'_> {
         ratio: f64,
         back: DMat3,
     ) -> Result<Vec<Piece<DAffine3>>, NoGrowth> {
+        self.budget
+            .spend(reading.sums.len() + reading.parts.len())?;
         let mut places = vec![DVec3::ZERO];
         for sum in &reading.sums {
             // A sum that leads to no part may have terms that decide no place.
@@ -145,6 +149,7 @@ impl Pieces<DAffine3> {
             steps,
             growth,
             compass: reader.compass,
+            budget: &reader.budget,
             names: SetNumbers::default(),
             sets: Vec::new(),
         };
@@ -163,20 +168,24 @@ impl Pieces<DAffine3> {
             axiom: Vec::new(),
             sets,
         };
-        let classes = pieces.classes();
+        let budget = &reader.budget;
+        let classes = pieces.classes(budget)?;
         let alike = Sets {
             all: &pieces.sets,
             point,
+            budget,
         };
-        if !axioms.iter().all(|it| alike.are_alike(&axioms[0], it)) {
-            let period = u32::try_from(growth.period).unwrap_or(u32::MAX);
-            return Err(NoGrowth::Alternates(period));
+        for later in &axioms {
+            if !alike.are_alike(&axioms[0], later)? {
+                let period = u32::try_from(growth.period).unwrap_or(u32::MAX);
+                return Err(NoGrowth::Alternates(period));
+            }
         }
         pieces.axiom = axioms.swap_remove(0);
         if !pieces.contracts() {
             return Err(NoGrowth::Slow);
         }
-        Ok(pieces.merged(&classes).without_points())
+        pieces.merged(&classes, budget)?.without_points(budget)
     }
 }
 

@@ -7,6 +7,7 @@ use crate::lsystem::{Action, Axis, Compass, TurtleFrame};
 
 use super::super::kinds::Kinds;
 use super::NoGrowth;
+use super::budget::Budget;
 
 /// Direction of the turtle relative to an earlier one, with the length of its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +103,8 @@ pub(super) struct Reader<'s, F: TurtleFrame = Frame2> {
     pub(super) fertile: Vec<usize>,
     /// Variables by kind, of those that are replaced.
     variables: Vec<Option<Variable>>,
+    /// Work that is left.
+    pub(super) budget: Budget,
 }
 
 impl<'s, F: TurtleFrame> Reader<'s, F> {
@@ -115,6 +118,7 @@ impl<'s, F: TurtleFrame> Reader<'s, F> {
             kinds,
             variables: (0..kinds.all.len()).map(variable).collect(),
             fertile,
+            budget: Budget::new(),
         }
     }
 
@@ -143,6 +147,7 @@ impl<'s, F: TurtleFrame> Reader<'s, F> {
         word: &[usize],
         effects: Option<&Effects<F::Heading>>,
     ) -> Result<Reading<F::Heading>, NoGrowth> {
+        self.budget.spend(word.len())?;
         let mut reading = Reading {
             sums: Vec::new(),
             parts: Vec::new(),
@@ -195,7 +200,9 @@ impl<'s, F: TurtleFrame> Reader<'s, F> {
             };
             reading.turn = reading.turn.then::<F>(self.compass, turn);
         };
-        for action in &F::words(self.system).symbols()[of.symbol].meaning {
+        let meaning = &F::words(self.system).symbols()[of.symbol].meaning;
+        self.budget.spend(meaning.len())?;
+        for action in meaning {
             match action {
                 Action::Draw(steps) => {
                     self.go(reading, STEP, steps.eval(&of.arguments), true);

@@ -348,3 +348,28 @@ fn random_systems_in_space() {
     eprintln!("{approached} of 150 have a limit set");
     assert!(approached >= 25);
 }
+
+/// Words and directions whose displacements would take minutes are left undecided.
+#[test]
+fn long_periods_are_not_decided() {
+    let mut state = 1u32;
+    let mut word = |count: usize| -> String {
+        let letters = (0..count).map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            char::from(b"FXY+-"[(state >> 24) as usize % 5])
+        });
+        letters.collect()
+    };
+    let text = |count: usize, word: &mut dyn FnMut(usize) -> String| {
+        let [x, y] = [word(count), word(count)];
+        format!("angle: 360/997\naxiom: X\nproductions: {{X: \"{x}\", Y: \"{y}\"}}\n")
+    };
+    let large = system(&text(2000, &mut word));
+    assert_eq!(large.check_growth(), Err(NoGrowth::Size));
+    let large = in_space(&text(2000, &mut word));
+    assert_eq!(large.check_growth(), Err(NoGrowth::Size));
+    // A long word alone is no reason.
+    let word = "F+F-F-F+".repeat(100);
+    let system = system(&format!("axiom: X\nproductions: {{X: \"{word}X\"}}\n"));
+    assert_ne!(system.check_growth(), Err(NoGrowth::Size));
+}

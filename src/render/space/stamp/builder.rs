@@ -182,7 +182,15 @@ impl<'a> Builder<'a> {
         };
         if let Some(own) = body.surface(view) {
             let larger = body.grown(spread).surface(view);
-            self.show(within, |at| {
+            let mut planes = std::mem::take(&mut self.planes);
+            if let Some(larger) = &larger {
+                larger.find_sides(view, &mut planes, usize::MAX);
+            }
+            let ends = |y| match larger {
+                Some(_) => planes.ends(y),
+                None => [f64::NEG_INFINITY, f64::INFINITY],
+            };
+            self.show(within, ends, |at| {
                 let beyond = || larger.as_ref()?.meet(at);
                 let (z, normal) = own.meet(at).or_else(beyond)?;
                 // Where it is seen edge-on, it has no slope.
@@ -193,6 +201,7 @@ impl<'a> Builder<'a> {
                 let level = roots.lit.map_or(0, |lit: Lit| lit.level(normal, bits));
                 Some((z, slope, u32::from(of(level))))
             });
+            self.planes = planes;
         } else {
             let mut planes = std::mem::take(&mut self.planes);
             let faces = body.faces(view);
@@ -207,7 +216,9 @@ impl<'a> Builder<'a> {
                     planes.set(projection, faces, classes);
                 }
             }
-            self.show(within, |at| {
+            planes.find_sides(usize::MAX, spread);
+            let ends = |y| planes.ends(y);
+            self.show(within, ends, |at| {
                 let (z, slope, class) = planes.meet(at, spread)?;
                 Some((z, slope, u32::from(class)))
             });
@@ -216,7 +227,8 @@ impl<'a> Builder<'a> {
         self.inks = inks;
     }
 
-    /// Shows what lies in a box about a point.
+    /// Shows what lies in a box about a point. `ends` returns the first and the last place on a row at which something may lie,
+    /// `meet` what is shown at a place.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -226,6 +238,7 @@ impl<'a> Builder<'a> {
     fn show(
         &mut self,
         (at, half): (DVec3, DVec3),
+        ends: impl Fn(f64) -> [f64; 2],
         mut meet: impl FnMut([f64; 2]) -> Option<Shown>,
     ) {
         let steps = self.view.depths.steps();
@@ -245,12 +258,14 @@ impl<'a> Builder<'a> {
             first.floor() as usize..last.ceil() as usize
         };
         let nearest = self.near + self.roots.pad;
+        let columns_within = span(0);
         for y in span(1) {
-            for x in span(0) {
-                let place = [
-                    x as f64 + 0.5 - self.middle[0],
-                    y as f64 + 0.5 - self.middle[1],
-                ];
+            let at_y = y as f64 + 0.5 - self.middle[1];
+            let [first, last] = ends(at_y).map(|end| end + self.middle[0] - 0.5);
+            let first = columns_within.start.max(first as usize);
+            let last = columns_within.end.min((last + 1.0) as usize);
+            for x in first..last {
+                let place = [x as f64 + 0.5 - self.middle[0], at_y];
                 let Some((z, slope, class)) = meet(place) else {
                     continue;
                 };

@@ -4,11 +4,16 @@ use std::collections::BTreeMap;
 
 use crate::geometry::{DAffine3, DMat3, DVec3};
 
+use super::super::NoGrowth;
+use super::super::budget::Budget;
 use super::super::pieces::{Piece, ROUNDING, Set};
 use super::growth::rotation;
 
 /// Limit of the number of pairs of sets that are compared.
 const MAX_PAIRS: usize = 1 << 12;
+
+/// Number of comparisons of similarities that count as one operation.
+const COMPARED: usize = 16;
 
 /// Largest number of pieces from whose places a similarity is found.
 const MAX_PLACES: usize = 1 << 8;
@@ -18,6 +23,7 @@ const MAX_PLACES: usize = 1 << 8;
 pub(super) struct Sets<'s> {
     pub(super) all: &'s [Set<DAffine3>],
     pub(super) point: Option<usize>,
+    pub(super) budget: &'s Budget,
 }
 
 impl<'s> Sets<'s> {
@@ -26,12 +32,20 @@ impl<'s> Sets<'s> {
     /// Two sets are similar if all pieces of one are images of those of the other, in the same order; for pairs that occur
     /// again, that is assumed. Greatest solutions of these conditions are right, because the sets are determined by their
     /// pieces (Hutchinson 1981).
-    pub(super) fn are_alike(self, a: &'s [Piece<DAffine3>], b: &'s [Piece<DAffine3>]) -> bool {
+    ///
+    /// # Errors
+    ///
+    /// If the comparison takes too much work.
+    pub(super) fn are_alike(
+        self,
+        a: &'s [Piece<DAffine3>],
+        b: &'s [Piece<DAffine3>],
+    ) -> Result<bool, NoGrowth> {
         let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
-        let Some([from, to]) = self.places(a, b) else {
-            return false;
+        let Some([from, to]) = self.places(a, b)? else {
+            return Ok(false);
         };
-        [DMat3::IDENTITY, mirror].into_iter().any(|mirror| {
+        for mirror in [DMat3::IDENTITY, mirror] {
             let seen: Vec<DVec3> = to.iter().map(|it| mirror * *it).collect();
             let size = |places: &[DVec3]| places.iter().map(|it| it.length()).fold(0.0, f64::max);
             let similarity = rotation(&from, &seen)
@@ -41,8 +55,11 @@ impl<'s> Sets<'s> {
                 known: BTreeMap::new(),
                 open: Vec::new(),
             };
-            search.pieces(a, b, similarity) && search.finish()
-        })
+            if search.pieces(a, b, similarity)? && search.finish()? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Returns the pieces that are not points.
@@ -52,7 +69,11 @@ impl<'s> Sets<'s> {
 
     /// Returns corresponding places in two unions, of pieces that are replaced until these suffice to find a similarity;
     /// `None` if the pieces do not correspond.
-    fn places(self, a: &'s [Piece<DAffine3>], b: &'s [Piece<DAffine3>]) -> Option<[Vec<DVec3>; 2]> {
+    fn places(
+        self,
+        a: &'s [Piece<DAffine3>],
+        b: &'s [Piece<DAffine3>],
+    ) -> Result<Option<[Vec<DVec3>; 2]>, NoGrowth> {
         let mut both = [a, b].map(|pieces| -> Vec<(DAffine3, usize)> {
             self.extended(pieces).map(|it| (it.map, it.set)).collect()
         });
@@ -60,14 +81,19 @@ impl<'s> Sets<'s> {
         loop {
             let count = both[0].len();
             if count != both[1].len() {
-                return None;
+                return Ok(None);
             }
             for (found, parts) in found.iter_mut().zip(&both) {
                 found.extend(parts.iter().map(|(map, _)| map.translation));
             }
             if count > MAX_PLACES || found[0].len() > 4 * MAX_PLACES {
-                return Some(found);
+                return Ok(Some(found));
             }
+            let inner = both
+                .iter()
+                .flatten()
+                .map(|(_, set)| self.all[*set].pieces.len());
+            self.budget.spend(inner.sum())?;
             both = both.map(|parts| {
                 let inner = parts.into_iter().flat_map(|(map, set)| {
                     let pieces = self.extended(&self.all[set].pieces);
@@ -76,7 +102,7 @@ impl<'s> Sets<'s> {
                 inner.collect()
             });
             if both[0].is_empty() && both[1].is_empty() {
-                return Some(found);
+                return Ok(Some(found));
             }
         }
     }
@@ -90,36 +116,42 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    fn finish(&mut self) -> bool {
+    fn finish(&mut self) -> Result<bool, NoGrowth> {
         let mut count = 0;
         while let Some((a, b, by)) = self.open.pop() {
             count += 1;
             let [one, other] = [a, b].map(|it| &self.sets.all[it]);
             if count > MAX_PAIRS || one.is_line != other.is_line {
-                return false;
+                return Ok(false);
             }
             if one.is_line && !is_near(by * DVec3::X, DVec3::X) {
-                return false;
+                return Ok(false);
             }
-            if !self.pieces(&one.pieces, &other.pieces, by) {
-                return false;
+            if !self.pieces(&one.pieces, &other.pieces, by)? {
+                return Ok(false);
             }
         }
-        true
+        Ok(true)
     }
 
     /// Compares pieces, and adds the pairs of their sets.
-    fn pieces(&mut self, a: &[Piece<DAffine3>], b: &[Piece<DAffine3>], by: DMat3) -> bool {
+    fn pieces(
+        &mut self,
+        a: &[Piece<DAffine3>],
+        b: &[Piece<DAffine3>],
+        by: DMat3,
+    ) -> Result<bool, NoGrowth> {
         let (sets, count) = (self.sets, |pieces| self.sets.extended(pieces).count());
         if count(a) != count(b) {
-            return false;
+            return Ok(false);
         }
         for (a, b) in sets.extended(a).zip(sets.extended(b)) {
             if !is_near(by * a.map.translation, b.map.translation) {
-                return false;
+                return Ok(false);
             }
             let inner = b.map.matrix3.inverse() * by * a.map.matrix3;
             let known = self.known.entry((a.set, b.set)).or_default();
+            sets.budget.spend(1 + known.len() / COMPARED)?;
             let is_known =
                 |known: &DMat3| (0..3).all(|axis| is_near(known.col(axis), inner.col(axis)));
             if !known.iter().any(is_known) {
@@ -127,7 +159,7 @@ impl Search<'_> {
                 self.open.push((a.set, b.set, inner));
             }
         }
-        true
+        Ok(true)
     }
 }
 

@@ -26,6 +26,9 @@ const INSIDE: f64 = 1e-10;
 /// Difference of displacements that recur, relative to their length.
 const RECURS: f64 = 1e-11;
 
+/// Number of operations in doubles that take as long as one with long numbers.
+const DOUBLES: usize = 16;
+
 /// Growth by a step below which displacements that do not recur grow by no factor.
 const SLOW: f64 = 1.01;
 
@@ -90,15 +93,18 @@ impl Growth {
         }
         let late = |times: usize| combined(&all[LATE - times], &space);
         let last = late(0);
-        let recurs = |times: usize| {
+        let recurs = |times: usize| -> Result<Option<(usize, DMat3)>, NoGrowth> {
             let before = late(times);
-            let turn = rotation(&before, &last)?;
+            let Some(turn) = rotation(&before, &last) else {
+                return Ok(None);
+            };
             let mut both = before.iter().zip(&last);
             let turns = both.all(|(a, b)| (turn * *a).distance(*b) <= RECURS);
-            (turns && course.commutes(&turn)).then_some((times, turn))
+            Ok((turns && course.commutes(&turn)?).then_some((times, turn)))
         };
         let most = (MAX_PERIOD / steps.period).max(1);
-        let Some((times, turn)) = (1..=most).find_map(recurs) else {
+        let recurring = (1..=most).find_map(|times| recurs(times).transpose());
+        let Some((times, turn)) = recurring.transpose()? else {
             let slow = libm::pow(SLOW, steps.period as f64);
             let is_slow = grown[LATE - 1] <= slow;
             return Err(match is_slow {
@@ -120,7 +126,7 @@ impl Growth {
             let mut places = combined(&all[number], &space);
             places.iter_mut().for_each(|place| *place *= size);
             for inner in 1..=steps.period {
-                let mut next = course.next(steps.first + inner, &places);
+                let mut next = course.next(steps.first + inner, &places)?;
                 next.iter_mut().for_each(|place| *place /= ratio);
                 ways.push(std::mem::replace(&mut places, next));
             }
@@ -196,7 +202,8 @@ struct Course<'s> {
 
 impl Course<'_> {
     /// Returns the displacements at a step from those of the step before. Lines do not change.
-    fn next(&self, step: usize, before: &[DVec3]) -> Places {
+    fn next(&self, step: usize, before: &[DVec3]) -> Result<Places, NoGrowth> {
+        self.spend(self.steps.terms(step, &self.relevant))?;
         let mut next = vec![DVec3::ZERO; before.len()];
         for &variable in &self.relevant {
             next[variable] = if variable == STEP {
@@ -209,13 +216,18 @@ impl Course<'_> {
                     .sum()
             };
         }
-        next
+        Ok(next)
+    }
+
+    /// Takes operations in doubles, which are shorter than those with long numbers.
+    fn spend(&self, operations: usize) -> Result<(), NoGrowth> {
+        self.reader.budget.spend(operations.div_ceil(DOUBLES))
     }
 
     /// Returns whether the turns and reflections of all words of the period commute with a rotation.
-    fn commutes(&self, turn: &DMat3) -> bool {
+    fn commutes(&self, turn: &DMat3) -> Result<bool, NoGrowth> {
         if turn.abs_diff_eq(DMat3::IDENTITY, ROUNDING) {
-            return true;
+            return Ok(true);
         }
         let Steps { first, period, .. } = *self.steps;
         let commutes = |it: &Turned<Heading3>| {
@@ -226,13 +238,21 @@ impl Course<'_> {
             let mut turned = reading.sums.iter().chain(&reading.parts);
             turned.all(commutes)
         };
-        (first + 1..=first + period).all(|step| {
+        for step in first + 1..=first + period {
             let axiom =
-                { self.reader }.read(&self.reader.kinds.axiom, Some(self.steps.effects(step)));
-            let mut variables = 1..=self.reader.fertile.len();
-            axiom.is_ok_and(|axiom| all(&axiom))
-                && variables.all(|variable| all(self.steps.reading(step, variable)))
-        })
+                { self.reader }.read(&self.reader.kinds.axiom, Some(self.steps.effects(step)))?;
+            if !all(&axiom) {
+                return Ok(false);
+            }
+            for variable in 1..=self.reader.fertile.len() {
+                let reading = self.steps.reading(step, variable);
+                self.spend(reading.sums.len() + reading.parts.len())?;
+                if !all(reading) {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
     }
 
     /// Returns orthonormal displacements, of which the first is that of the first step of the period but for its length, and
@@ -242,7 +262,7 @@ impl Course<'_> {
         first[STEP] = DVec3::X;
         for step in 0..=self.steps.first {
             let lines = first[STEP];
-            first = self.next(step, &first);
+            first = self.next(step, &first)?;
             // Modules that are not replaced consist of lines.
             first[STEP] = lines;
         }
@@ -258,7 +278,7 @@ impl Course<'_> {
         while map.len() < space.len() {
             let mut image = space[map.len()].clone();
             for step in 1..=self.steps.period {
-                image = self.next(self.steps.first + step, &image);
+                image = self.next(self.steps.first + step, &image)?;
             }
             let size = length(&image);
             let mut column = vec![0.0; space.len()];
