@@ -312,45 +312,37 @@ def beside_strings(kfrac, folder, quick):
     )
 
 
-def beside_pov(kfrac, folder, quick):
-    """Compares a step of the Menger sponge, as a picture, with nested unions of cubes in POV-Ray."""
-    levels, ratio = (4, SPONGE[1]) if quick else SPONGE
+def beside_sponge(kfrac, folder, peer, theirs, levels, ratio):
+    """Compares a step of the Menger sponge, as a picture, with a peer's command, on one thread."""
     print()
-    row("beside POV-Ray", "kfrac", "POV-Ray", "ratio", "target", "", "memory", "its memory")
+    row(f"beside {peer}", "kfrac", peer, "ratio", "target", "", "memory", "its memory")
     ours = [kfrac, "grow", "menger", "--steps", levels, "--threads", 1, "-o", folder / "ours.png", "--quiet"]
-    theirs = ["povray", "+W1024", "+H1024", "+WT1", "-D", "-GA", f"Declare=Level={levels}"]
-    theirs += [f"+I{HERE / 'peers/menger.pov'}", f"+O{folder / 'theirs.png'}"]
-    (seconds, memory), (peer, its) = in_turn([ours, theirs], 1)
+    (seconds, memory), (others, its) = in_turn([ours, theirs], 1)
     row(
         f"Menger level {levels} to PNG 1024²",
         f"{seconds:.3f} s",
-        f"{peer:.2f} s",
-        f"{peer / seconds:.1f} x",
+        f"{others:.2f} s",
+        f"{others / seconds:.1f} x",
         f"{ratio} x",
-        verdict(peer / seconds >= ratio),
+        verdict(others / seconds >= ratio),
         f"{memory:.0f} MiB",
         f"{its:.0f} MiB",
     )
+
+
+def beside_pov(kfrac, folder, quick):
+    """Compares the sponge with nested unions of cubes in POV-Ray."""
+    levels, ratio = (4, SPONGE[1]) if quick else SPONGE
+    theirs = ["povray", "+W1024", "+H1024", "+WT1", "-D", "-GA", f"Declare=Level={levels}"]
+    theirs += [f"+I{HERE / 'peers/menger.pov'}", f"+O{folder / 'theirs.png'}"]
+    beside_sponge(kfrac, folder, "POV-Ray", theirs, levels, ratio)
 
 
 def beside_mitsuba(kfrac, folder, quick):
-    """Compares a deep step of the Menger sponge with instances of a mesh in Mitsuba, as whole commands."""
+    """Compares a deep sponge with instances of a mesh in Mitsuba."""
     levels, ratio = (5, DEEP_SPONGE[1]) if quick else DEEP_SPONGE
-    print()
-    row("beside Mitsuba", "kfrac", "Mitsuba", "ratio", "target", "", "memory", "its memory")
-    ours = [kfrac, "grow", "menger", "--steps", levels, "--threads", 1, "-o", folder / "ours.png", "--quiet"]
     theirs = [sys.executable, HERE / "peers/mitsuba_sponge.py", levels, folder / "theirs.png"]
-    (seconds, memory), (peer, its) = in_turn([ours, theirs], 1)
-    row(
-        f"Menger level {levels} to PNG 1024²",
-        f"{seconds:.3f} s",
-        f"{peer:.2f} s",
-        f"{peer / seconds:.1f} x",
-        f"{ratio} x",
-        verdict(peer / seconds >= ratio),
-        f"{memory:.0f} MiB",
-        f"{its:.0f} MiB",
-    )
+    beside_sponge(kfrac, folder, "Mitsuba", theirs, levels, ratio)
 
 
 def film_of(peer, name, folder, quick):

@@ -91,7 +91,7 @@ const MAX_WORK: usize = 1 << 20;
 
 /// Estimates the cost of pictures of a graph.
 ///
-/// The work of all estimates is bounded: none is made after them.
+/// The work of all estimates together is bounded: beyond, none is made.
 pub struct Estimator<'a> {
     graph: &'a Graph,
     options: &'a Options,

@@ -48,11 +48,12 @@ pub(super) struct Arguments {
     /// Prints the description as JSON
     ///
     /// Numbers that may be large are decimal strings. svg_bytes and seconds are estimates to two digits for
-    /// each step: the size of an SVG in the rule's own style, 1024 pixels large, and the time to draw it;
-    /// null where the rule does not determine them, they exceed a double or take too long. In space, area and volume are the surface and
-    /// the volume of all elements: exact unless they overlap or touch. instanced_svg_bytes is the size
-    /// of the last step with --svg instanced; null if that is not possible. limit_bounds is the bounding box
-    /// of the limit set, if there is one. lyapunov_exponent is that of a system of maps that is not known to contract,
+    /// each step: the size of an SVG in the rule's own style, 1024 pixels large, and the time to draw it; null
+    /// where the rule does not determine them, they exceed a double or take too long. steps is at most 10,000;
+    /// a warning states where the rule has more. In space, area and volume are the surface and the volume of
+    /// all elements: exact unless they overlap or touch. instanced_svg_bytes is the size of the last step with
+    /// --svg instanced; null if that is not possible or takes too long. limit_bounds is the bounding box of the
+    /// limit set, if there is one. lyapunov_exponent is that of a system of maps that is not known to contract,
     /// or an upper bound of it from products of so many maps; upper is null for minus infinity.
     #[arg(long)]
     json: bool,
@@ -241,14 +242,12 @@ fn forecast_steps(arguments: &Arguments, loaded: &Loaded, steps: u32) -> u32 {
     if arguments.steps.is_some() || steps <= MAX_STEPS {
         return steps;
     }
-    if !arguments.json {
-        let message = format!("only {MAX_STEPS} of {steps} steps are forecast: more take long");
-        let mut warning = Diagnostic::warning(message);
-        if let Some(written) = &loaded.document.kind().metadata().steps {
-            warning = warning.at(&written.place);
-        }
-        super::text::print_diagnostics(&warning.into());
+    let message = format!("only {MAX_STEPS} of {steps} steps are forecast: more take long");
+    let mut warning = Diagnostic::warning(message);
+    if let Some(written) = &loaded.document.kind().metadata().steps {
+        warning = warning.at(&written.place);
     }
+    super::text::print_diagnostics(&warning.into());
     MAX_STEPS
 }
 

@@ -108,16 +108,16 @@ fn steps_of_a_file_are_forecast_as_far_as_may_be() {
     let text = "initiator: segment\ngenerator: koch\nsteps: 1000000\n";
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("it.yaml"), text).unwrap();
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("kfrac"));
-    let output = command.current_dir(folder.path()).args(["info", "it.yaml"]);
-    let output = output.output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{said}");
-    assert!(
-        said.contains("only 10000 of 1000000 steps are forecast"),
-        "{said}"
-    );
-    assert!(said.contains("it.yaml:3:8"), "{said}");
+    for json in [&[][..], &["--json"]] {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("kfrac"));
+        command.current_dir(folder.path()).args(["info", "it.yaml"]);
+        let output = command.args(json).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        let warning = "only 10000 of 1000000 steps are forecast";
+        assert!(said.contains(warning), "{said}");
+        assert!(said.contains("it.yaml:3:8"), "{said}");
+    }
     let (status, said) = run(text, &["info", "it.yaml", "--steps", "10001"]);
     assert_eq!(status, Some(2), "{said}");
 }
