@@ -63,22 +63,34 @@ const WIDE_PATH: f64 = 34.0;
 
 /// Estimates the bytes of an SVG of nested instances by writing one of at most 32 steps to a counter. Returns
 /// `None` where the file cannot be made, or not with little work: if symbols instance more than 2²⁰ elements and symbols, or
-/// if more than 20,000 elements would have to be grown.
+/// if more than 20,000 elements would have to be grown. `bounds` returns the box of an approximant without strokes, about, by
+/// its step.
 #[must_use]
-pub fn instanced_bytes(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
+pub fn instanced_bytes(
+    graph: &Graph,
+    options: &Options,
+    steps: u32,
+    bounds: &dyn Fn(u32) -> Option<Bounds>,
+) -> Option<f64> {
     /// Beyond twice this number of steps, the size is extrapolated linearly from the last `SPAN` steps.
     const SPAN: u32 = 16;
     let [before, known] = [steps.min(SPAN), steps.min(2 * SPAN)];
-    let bytes = instanced_bytes_written(graph, options, known)?;
+    let written = |steps| instanced_bytes_written(graph, options, steps, bounds);
+    let bytes = written(known)?;
     if known == steps {
         return Some(bytes);
     }
-    let a_step = (bytes - instanced_bytes_written(graph, options, before)?) / f64::from(SPAN);
+    let a_step = (bytes - written(before)?) / f64::from(SPAN);
     Some(bytes + a_step * f64::from(steps - known))
 }
 
-fn instanced_bytes_written(graph: &Graph, options: &Options, steps: u32) -> Option<f64> {
-    let length = render::instanced_length(graph, options, steps)?;
+fn instanced_bytes_written(
+    graph: &Graph,
+    options: &Options,
+    steps: u32,
+    bounds: &dyn Fn(u32) -> Option<Bounds>,
+) -> Option<f64> {
+    let length = render::instanced_length(graph, options, steps, bounds)?;
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     Some(DOCUMENT + length as f64)
 }

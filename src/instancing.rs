@@ -86,7 +86,7 @@ pub enum Master<M: AffineMap = DAffine2> {
     /// Object, by number.
     Object(usize),
     /// Shape: a primitive.
-    Shape(M::Set),
+    Shape(Box<M::Set>),
 }
 
 /// Colour with its coverage (Hart 1992, section 5), and the drift of the colours that it yields.
@@ -244,7 +244,7 @@ impl Instancing {
                 instance.forms = [scaling, &instance.forms, scaling].concat().into();
             }
             if let Master::Shape(shape) = &mut instance.master {
-                *shape = shape.transformed(&back)?;
+                **shape = shape.transformed(&back)?;
             }
         }
         if let Some(initial) = &mut within.initial {

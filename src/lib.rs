@@ -34,6 +34,7 @@
 //! | all elements in memory, column by column | [`Fractal::columns`] |
 //! | points of random iteration, pixel by pixel | [`Fractal::histogram`] |
 //! | pictures of parts without a limit of magnification | [`Fractal::zoom`] |
+//! | wallpapers and friezes | [`Fractal::repeat`] |
 //! | the way to another fractal | [`Fractal::toward`], [`tween`] |
 //! | sizes before drawing, extent, dimension | [`Fractal::forecast`], [`Fractal::estimate`], [`Fractal::bounds`], [`Fractal::dimension`] |
 //! | all of these at once, distance of two fractals | [`Fractal::info`], [`Fractal::compare`] |
@@ -187,7 +188,9 @@ pub use bits::Bits;
 pub use count::Count;
 pub use draws::{Corner, Distribution, Path, Variable};
 pub use fit::fit;
-pub use fractal::{Dimension, Error, Fractal, Frames, Goal, Info, proposed_steps};
+pub use fractal::{
+    Dimension, Error, Fractal, Frames, Goal, Info, NoRepetition, Repetition, proposed_steps,
+};
 pub use grow::Element;
 pub use kind::Kind;
 pub use metadata::{Description, Metadata, Parameter};

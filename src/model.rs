@@ -16,6 +16,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::extent::NoLimit;
 use crate::geometry::{DAffine3, Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::ifs::System;
@@ -152,6 +153,12 @@ pub(crate) trait OfKind {
 
     /// Returns the model whose graph has the limit set, if it is another one: see [`Model::of_limit`].
     fn of_limit(&self) -> Option<Model> {
+        None
+    }
+
+    /// Returns why a model that [stands for a limit set](Self::of_limit) has none; `None` if it has one, and for any other
+    /// model.
+    fn no_limit(&self) -> Option<NoLimit> {
         None
     }
 

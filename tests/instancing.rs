@@ -22,7 +22,7 @@ fn expanded(
     for instance in instances {
         let map = at * instance.map;
         match &instance.master {
-            Master::Shape(shape) => found.push((map, Some(shape.clone()))),
+            Master::Shape(shape) => found.push((map, Some((**shape).clone()))),
             Master::Object(number) => {
                 let object = &structure.objects()[*number];
                 let map = map * object.map;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use kfrac::style::Named;
 use kfrac::symmetry::TilingGroup;
+use kfrac::{Fractal, Repetition};
 use resvg::tiny_skia::Pixmap;
 
 use crate::common::said;
@@ -180,4 +181,70 @@ fn mistakes_are_refused() {
         assert_ne!(status, Some(0), "{arguments:?}");
         assert!(said.contains(message), "{arguments:?}: {said}");
     }
+}
+
+/// Pictures of the façade are those of the command line; sets in space have no wallpapers.
+#[test]
+fn programs_repeat_sets_as_the_command_line_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let group = TilingGroup::from_name("cmm").unwrap();
+    let repeated = Repetition::from(group).cell(1.2).periods(2);
+    for (options, steps) in [("dragon --steps 8", Some(8)), ("barnsley-fern", None)] {
+        let mut arguments: Vec<&str> = options.split(' ').collect();
+        arguments.extend(["--tile", "cmm", "--cell", "1.2", "--repeat", "2"]);
+        let expected = drawn(folder.path(), &arguments);
+        let mut fractal = Fractal::named(arguments[0]).unwrap().repeat(Some(repeated));
+        if let Some(steps) = steps {
+            fractal = fractal.steps(steps);
+        }
+        let png = fractal.png(1024).unwrap();
+        assert_eq!(
+            Pixmap::decode_png(&png).unwrap().data(),
+            expected.data(),
+            "{options}"
+        );
+        fractal.write(folder.path().join("b.svg")).unwrap();
+        let text = fs::read_to_string(folder.path().join("b.svg")).unwrap();
+        assert_eq!(text, fractal.svg().unwrap());
+        let size = format!(
+            "width=\"{}\" height=\"{}\"",
+            expected.width(),
+            expected.height()
+        );
+        assert!(text.contains(&size), "{options}: no {size}");
+        // Numbers are those of the set itself.
+        assert_eq!(
+            fractal.bounds().unwrap(),
+            fractal.clone().repeat(None).bounds().unwrap()
+        );
+    }
+    let small = Repetition::from(group).cell(0.02).periods(100);
+    let koch = Fractal::named("koch").unwrap();
+    let error = koch
+        .clone()
+        .repeat(Some(small))
+        .png(300)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("more than 20000 copies meet the window"),
+        "{error}"
+    );
+    for cell in [f64::NAN, 0.0, 2000.0] {
+        let error = koch.clone().repeat(Some(small.cell(cell))).png(300);
+        let error = error.unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "the distance of copies has a factor from 0.01 to 1000"
+        );
+    }
+    let sponge = Fractal::named("menger")
+        .unwrap()
+        .steps(1)
+        .repeat(Some(repeated));
+    let error = sponge.png(100).unwrap_err().to_string();
+    assert!(
+        error.contains("wallpapers and friezes lie in the plane"),
+        "{error}"
+    );
 }

@@ -94,9 +94,19 @@ class Fit(NamedTuple):
     """Method by which it was found."""
 
 
-def restore(text: str, name: str, zoom: tuple[str, str, float] | None) -> Fractal:
+def restore(
+    text: str,
+    name: str,
+    zoom: tuple[str, str, float] | None,
+    repetition: tuple[str, float, int] | None = None,
+) -> Fractal:
     """Returns a fractal that was pickled."""
     from ._kfrac import parse
 
     fractal = parse(text, name)
-    return fractal if zoom is None else fractal.zoom(*zoom)
+    if zoom is not None:
+        fractal = fractal.zoom(*zoom)
+    if repetition is not None:
+        group, cell, periods = repetition
+        fractal = fractal.repeat(group, cell=cell, periods=periods)
+    return fractal

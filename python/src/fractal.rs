@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use kfrac::Repetition;
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::Source;
 use kfrac::document::Setting;
 use kfrac::measure::Precision;
 use kfrac::render::{Size, ZoomTarget};
-use kfrac::style::View;
+use kfrac::style::{Named, View};
+use kfrac::symmetry::TilingGroup;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -23,6 +25,9 @@ use crate::work::{long, quick};
 
 /// Limit of elements, unless another is given.
 const MOST: u64 = 50_000_000;
+
+/// Largest number of periods of a picture along both axes.
+const MOST_PERIODS: u32 = 100;
 
 /// Size in bytes up to which a notebook shows SVG.
 const NOTEBOOK: f64 = 300_000.0;
@@ -55,6 +60,8 @@ pub(crate) struct Fractal {
     name: String,
     /// Magnification and centre as written, and turn, of a zoom.
     zoom: Option<(String, String, f64)>,
+    /// Group, factor of the distance of copies, and number of periods of a repetition.
+    repetition: Option<(String, f64, u32)>,
 }
 
 /// Returns the fractal of a file, or of the library by its name.
@@ -169,6 +176,7 @@ impl Fractal {
             fractal,
             name,
             zoom: None,
+            repetition: None,
         }
     }
 
@@ -357,6 +365,43 @@ impl Fractal {
         zoomed.fractal = zoomed.fractal.zoom(Some(target));
         zoomed.zoom = Some((factor, at.to_owned(), turn));
         Ok(zoomed)
+    }
+
+    /// Returns the fractal with its pictures repeated under a wallpaper or frieze group. Of the default size and without a view,
+    /// opposite edges of a PNG continue each other. Elements and numbers are those of the set itself, and a zoom draws no
+    /// copies. Pictures of sets in space, and of more than 20,000 copies, are a `KfracError`.
+    ///
+    /// Parameters
+    /// ----------
+    /// group : str
+    ///     Wallpaper group, `p1` to `p6m`, or frieze group, `frieze-p1` to `frieze-p2mm`.
+    /// cell : float
+    ///     Factor of the distance of copies, 0.01 to 1000; below 1 they may overlap.
+    /// periods : int
+    ///     Number of periods that a picture without a view shows along both axes, 1 to 100.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     If there is no such group, or a number is out of range.
+    #[pyo3(signature = (group, *, cell=1.0, periods=1))]
+    fn repeat(&self, group: &str, cell: f64, periods: u32) -> PyResult<Self> {
+        let Some(known) = TilingGroup::from_name(group) else {
+            let names: Vec<&str> = TilingGroup::NAMES.iter().map(|(name, _)| *name).collect();
+            let message = format!("there is no group '{group}', but {}", names.join(", "));
+            return Err(PyValueError::new_err(message));
+        };
+        if !Repetition::CELLS.contains(&cell) || !(1..=MOST_PERIODS).contains(&periods) {
+            let (least, most) = Repetition::CELLS.into_inner();
+            let message =
+                format!("a cell is from {least} to {most}, and periods are 1 to {MOST_PERIODS}");
+            return Err(PyValueError::new_err(message));
+        }
+        let repetition = Repetition::from(known).cell(cell).periods(periods);
+        let mut repeated = self.clone();
+        repeated.fractal = repeated.fractal.repeat(Some(repetition));
+        repeated.repetition = Some((group.to_owned(), cell, periods));
+        Ok(repeated)
     }
 
     /// Returns the elements of the approximant, infertile and invisible ones included, as a table.
@@ -734,10 +779,14 @@ impl Fractal {
         let _ = (include, exclude);
         const SIZE: u32 = 512;
         let growing = Growing::steps(None, 0);
-        let is_zoomed = self.zoom.is_some();
+        let has_no_estimate = self.zoom.is_some() || self.repetition.is_some();
         let (svg, png) = self.grown(py, &growing, move |fractal| {
             let fractal = fractal.size(SIZE);
-            let estimate = if is_zoomed { None } else { fractal.estimate()? };
+            let estimate = if has_no_estimate {
+                None
+            } else {
+                fractal.estimate()?
+            };
             Ok(match estimate.is_some_and(|it| it.svg_bytes < NOTEBOOK) {
                 true => (Some(fractal.svg()?), None),
                 false => (None, Some(fractal.png(SIZE)?)),
@@ -761,10 +810,16 @@ impl Fractal {
         py: Python<'py>,
     ) -> PyResult<(
         Bound<'py, PyAny>,
-        (String, &str, Option<(String, String, f64)>),
+        (
+            String,
+            &str,
+            Option<(String, String, f64)>,
+            Option<(String, f64, u32)>,
+        ),
     )> {
         let restore = py.import("kfrac._results")?.getattr("restore")?;
-        Ok((restore, (self.yaml(py)?, &self.name, self.zoom.clone())))
+        let (zoom, repetition) = (self.zoom.clone(), self.repetition.clone());
+        Ok((restore, (self.yaml(py)?, &self.name, zoom, repetition)))
     }
 }
 

@@ -115,10 +115,11 @@ def test_distances_have_errors() -> None:
 
 
 def test_fractals_are_pickled(pythagoras: kfrac.Fractal) -> None:
-    tree = pythagoras.with_(angle=27).zoom("3^50", at="0.(1)")
-    for again in [pickle.loads(pickle.dumps(tree)), copy.deepcopy(tree)]:
-        assert (again.name, again.parameters) == (tree.name, tree.parameters)
-        assert again.png(size=64) == tree.png(size=64)
+    changed = pythagoras.with_(angle=27)
+    for tree in [changed.zoom("3^50", at="0.(1)"), changed.repeat("pmm", cell=1.5, periods=2)]:
+        for again in [pickle.loads(pickle.dumps(tree)), copy.deepcopy(tree)]:
+            assert (again.name, again.parameters) == (tree.name, tree.parameters)
+            assert again.png(size=64) == tree.png(size=64)
 
 
 def test_the_library_is_listed() -> None:

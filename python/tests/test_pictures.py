@@ -110,6 +110,20 @@ def test_zooms_have_no_limit() -> None:
         koch.zoom(3, at="here")
 
 
+def test_pictures_are_repeated() -> None:
+    dragon = kfrac.load("dragon")
+    pixels = dragon.repeat("p4", periods=2).pixels(8, size=(200, 200)).astype(float)
+    assert pixels.std() > 10
+    assert np.abs(pixels[:100] - pixels[100:]).mean() < 1
+    assert np.abs(pixels[:, :100] - pixels[:, 100:]).mean() < 1
+    with pytest.raises(ValueError, match="no group 'p5'"):
+        dragon.repeat("p5")
+    with pytest.raises(ValueError, match="cell"):
+        dragon.repeat("p1", cell=0)
+    with pytest.raises(kfrac.KfracError, match="plane"):
+        kfrac.load("menger").repeat("p1").png(1, size=64)
+
+
 def test_notebooks_show_svg_or_png() -> None:
     small = kfrac.load("koch")._repr_mimebundle_()
     assert set(small) == {"text/plain", "image/svg+xml"}

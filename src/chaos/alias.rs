@@ -18,7 +18,52 @@ struct Entry {
     alias: u32,
 }
 
+/// One row of an alias table of few entries, from which several choices are made at once.
+#[derive(Clone, Copy)]
+pub(super) struct FewAliases {
+    bits: u32,
+    rests: [u32; FewAliases::MOST],
+    aliases: [u32; FewAliases::MOST],
+}
+
+impl FewAliases {
+    /// Largest number of entries: a power of two.
+    pub(super) const MOST: usize = 32;
+
+    /// Chooses as [`AliasTable::choose`] does, for several words. Every line is for all words at once, so that it can be
+    /// vectorised.
+    #[inline(always)]
+    pub(super) fn choose<const N: usize>(&self, words: &[u32; N]) -> [u32; N] {
+        let mut chosen = [0; N];
+        for lane in 0..N {
+            let own = words[lane] >> (32 - self.bits);
+            let entry = own as usize % Self::MOST;
+            let keeps = (words[lane] << self.bits) < self.rests[entry];
+            chosen[lane] = if keeps { own } else { self.aliases[entry] };
+        }
+        chosen
+    }
+}
+
 impl AliasTable {
+    /// Returns the first row, if it has few entries.
+    pub(super) fn few(&self) -> Option<FewAliases> {
+        let row = self.entries.get(..1 << self.bits)?;
+        if row.len() > FewAliases::MOST {
+            return None;
+        }
+        let mut few = FewAliases {
+            bits: self.bits,
+            rests: [0; FewAliases::MOST],
+            aliases: [0; FewAliases::MOST],
+        };
+        for (place, entry) in row.iter().enumerate() {
+            few.rests[place] = entry.rest;
+            few.aliases[place] = entry.alias;
+        }
+        Some(few)
+    }
+
     /// Creates tables for rows of weights, all of one length and none all zero, one after the other.
     /// Probabilities are exact to 2⁻³² times the number of weights.
     pub(super) fn of_rows(rows: &[Vec<f64>]) -> Self {
@@ -107,6 +152,22 @@ mod tests {
         }
         let all = f64::from(1u32 << table.bits);
         chances.iter().map(|chance| chance / all).collect()
+    }
+
+    #[test]
+    fn few_aliases_choose_alike() {
+        let weights: Vec<f64> = (1..=20).map(f64::from).collect();
+        let table = AliasTable::of_rows(&[weights]);
+        let mut word = 0_u32;
+        let words: [u32; 1000] = std::array::from_fn(|_| {
+            word = word.wrapping_add(2_654_435_761);
+            word
+        });
+        let chosen = table.few().unwrap().choose(&words);
+        for (word, chosen) in words.into_iter().zip(chosen) {
+            assert_eq!(table.choose(0, word), chosen as usize);
+        }
+        assert!(AliasTable::of_rows(&[vec![1.0; 33]]).few().is_none());
     }
 
     #[test]

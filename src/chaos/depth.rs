@@ -2,6 +2,7 @@
 
 use crate::geometry::{DAffine3, DVec3, HalfSpace};
 
+use super::alike::Alike;
 use super::course::Course;
 use super::random::LANES;
 use super::real::Real;
@@ -86,6 +87,15 @@ impl DepthPicture {
         &keys[..keys.len() - 1]
     }
 
+    /// Returns the [keys](Self::keys) and the [hits](Self::hits).
+    #[must_use]
+    pub fn into_keys_and_hits(self) -> (Vec<u32>, Vec<u32>) {
+        let Nearest { mut keys, mut hits } = self.nearest;
+        keys.pop();
+        hits.pop();
+        (keys, hits)
+    }
+
     /// Returns the number of points of every pixel, at any depth; empty if they were not counted. Counts saturate at
     /// 2³² − 1.
     #[must_use]
@@ -138,15 +148,15 @@ pub fn play_in_space(
 
 /// Keys and counters of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Nearest {
-    keys: Vec<u32>,
+pub(super) struct Nearest {
+    pub(super) keys: Vec<u32>,
     /// Empty if hits are not counted.
-    hits: Vec<u32>,
+    pub(super) hits: Vec<u32>,
 }
 
 /// Pixel and key of a point.
 #[derive(Clone, Copy, Default)]
-struct Spot {
+pub(super) struct Spot {
     pixel: u32,
     key: u32,
 }
@@ -219,7 +229,9 @@ fn walk_in<T: Real>(
     });
     let cuts: Vec<[T; 4]> = cuts.collect();
     let lens = Lens::<T>::new(window, &cuts);
-    if is_free {
+    if let Some(mut alike) = { is_free }.then(|| Alike::new(course, lens)).flatten() {
+        run(course, wave, &mut alike, tally)
+    } else if is_free {
         run(
             course,
             wave,
@@ -239,11 +251,11 @@ fn walk_in<T: Real>(
 /// An affine map: its columns, each completed by a zero.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
-struct Affine3<T>([[T; 4]; 4]);
+pub(super) struct Affine3<T>([[T; 4]; 4]);
 
 /// The pixels and depths of a view.
 #[derive(Clone, Copy)]
-struct Lens<'a, T> {
+pub(super) struct Lens<'a, T> {
     /// Normals and distances of half-spaces.
     cuts: &'a [[T; 4]],
     size: [T; 2],
@@ -259,7 +271,7 @@ struct Lens<'a, T> {
 }
 
 impl<'a, T: Real> Lens<'a, T> {
-    fn new(window: &DepthWindow<'_>, cuts: &'a [[T; 4]]) -> Self {
+    pub(super) fn new(window: &DepthWindow<'_>, cuts: &'a [[T; 4]]) -> Self {
         let [width, height] = window.size;
         let [far, near] = window.range;
         let range = near - far;
@@ -282,7 +294,7 @@ impl<'a, T: Real> Lens<'a, T> {
     /// Returns the pixels and the depths of points in pixels. Every line is for all lanes at once, so that it can be
     /// vectorised.
     #[inline(always)]
-    fn spots(&self, [x, y, z]: &[[T; LANES]; 3]) -> [[u32; LANES]; 2] {
+    fn pixels_and_depths(&self, [x, y, z]: &[[T; LANES]; 3]) -> [[u32; LANES]; 2] {
         let [width, height] = self.size;
         let mut pixels = [0; LANES];
         for lane in 0..LANES {
@@ -338,13 +350,26 @@ impl<T: Real> Screen<DAffine3> for Lens<'_, T> {
 
     #[inline(always)]
     fn spots(&self, places: &Self::Places, classes: &[u32; LANES], spots: &mut [Spot; LANES]) {
-        const MOST: u32 = (1 << DepthPicture::CLASS_BITS) - 1;
         let mut seen = [[T::ZERO; LANES]; 3];
         for lane in 0..LANES {
             for axis in 0..3 {
                 seen[axis][lane] = places[lane][axis];
             }
         }
+        self.see(seen, classes, spots);
+    }
+}
+
+impl<T: Real> Lens<'_, T> {
+    /// Stores the pixels and the keys of points, which are given by their coordinates.
+    #[inline(always)]
+    pub(super) fn see(
+        &self,
+        mut seen: [[T; LANES]; 3],
+        classes: &[u32; LANES],
+        spots: &mut [Spot; LANES],
+    ) {
+        const MOST: u32 = (1 << DepthPicture::CLASS_BITS) - 1;
         let mut is_cut_off = [false; LANES];
         for [across, down, towards, distance] in self.cuts {
             let [x, y, z] = &seen;
@@ -364,7 +389,7 @@ impl<T: Real> Screen<DAffine3> for Lens<'_, T> {
                 y[lane] = middle[1] + y[lane] * scale;
             }
         }
-        let [mut pixels, depths] = Self::spots(self, &seen);
+        let [mut pixels, depths] = self.pixels_and_depths(&seen);
         if !self.cuts.is_empty() {
             for lane in 0..LANES {
                 pixels[lane] = if is_cut_off[lane] {

@@ -13,6 +13,7 @@
 //! that contract or else by an estimate along a walk; otherwise in double precision.
 
 mod alias;
+mod alike;
 mod course;
 mod depth;
 mod histogram;

@@ -403,12 +403,12 @@ impl Arguments {
                 Err(Failure::Usage(message.into()))
             }
             Plan::Chaos(table) => {
-                let tiled = self.tiled(&loaded, Goal::Detail(1.0))?;
+                let copies = self.copies(&loaded, Goal::Detail(1.0))?;
                 let mut view = self.view(loaded.model.metadata());
                 let (mut size, mut images) = (self.size.size, None);
-                if let Some(tiled) = &tiled {
-                    (view.window, size) = (Some(tiled.window), tiled.size);
-                    images = Some(&tiled.images[..]);
+                if let Some(copies) = &copies {
+                    (view.window, size) = (Some(copies.window), copies.size);
+                    images = Some(&copies.images[..]);
                 }
                 let game = PlaneGame::new(self.game(), &loaded, view, images)?;
                 self.write_picture(path, |out, progress| match table {

@@ -370,6 +370,14 @@ impl<'g> Boxes<'g> {
         self.known.as_ref()?.at(steps)
     }
 
+    /// Returns the bounding box of an approximant if the graph determines it, and with little work.
+    pub(super) fn known_soon(&self, steps: u32) -> Option<Bounds> {
+        /// Number of states that are looked at for all boxes, after which no more are found.
+        const MAX_LOOKED: usize = 1 << 18;
+        let known = self.known.as_ref()?;
+        (known.looked() < MAX_LOOKED).then(|| known.at(steps))?
+    }
+
     /// Returns the bounding box of an approximant.
     pub(super) fn at(&self, steps: u32) -> Option<Bounds> {
         self.known(steps).or_else(|| self.walked(steps))

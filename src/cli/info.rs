@@ -192,7 +192,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let steps = steps::choose_in_space(arguments.steps, &loaded, &graph);
         let steps = forecast_steps(arguments, &loaded, steps);
         let bounds = graph.bounds(steps);
-        let limit = loaded.other_limit_in_space()?;
+        let limit = loaded.other_limit_in_space(&graph)?;
         let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
         let own = info(&loaded, graphs, steps, bounds, |_, _| None);
         let surfaces = match loaded.model.rule_in_space() {
@@ -221,7 +221,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
         let most = steps.min(MAX_STEPS);
         let graph = known.map_or_else(|| loaded.compile(most), Ok)?;
         let steps = forecast_steps(arguments, &loaded, steps);
-        let limit = loaded.other_limit(steps)?;
+        let limit = loaded.other_limit(&graph, steps)?;
         let info = in_plane(&loaded, &graph, limit.as_ref().unwrap_or(&graph), steps);
         (info, graph.place().ratio())
     };
@@ -263,16 +263,19 @@ fn in_plane<'a>(loaded: &'a Loaded, graph: &Graph, limit: &Graph, steps: u32) ->
     let estimator = Estimator::new(graph, &options);
     // Every estimate after one that exceeds the range of doubles exceeds it too.
     let mut may_be = true;
-    let estimate = |step: u32, forecast: &Forecast<'_>| {
+    let roughly = |step: u32| {
         let own = Some(step).filter(|_| step < steps.min(SETTLED));
-        let bounds = own.and_then(|step| boxes.known(step)).or(last);
-        let estimate = bounds.filter(|_| may_be);
+        own.and_then(|step| boxes.known_soon(step)).or(last)
+    };
+    let estimate = |step: u32, forecast: &Forecast<'_>| {
+        let estimate = roughly(step).filter(|_| may_be);
         let estimate = estimate.and_then(|bounds| estimator.at(forecast, &bounds));
         may_be = estimate.is_some();
         estimate
     };
     Info {
-        instanced_svg_bytes: instanced_bytes(graph, &options, steps).map(readable::two_digits),
+        instanced_svg_bytes: instanced_bytes(graph, &options, steps, &roughly)
+            .map(readable::two_digits),
         system: SystemInfo::of(&loaded.model, graph.place()),
         ..info(loaded, [graph, limit], steps, bounds, estimate)
     }
@@ -408,7 +411,16 @@ fn rows<F: Bounded>(
 }
 
 pub(super) fn corners<P: Point>(bounds: &Bounds<P>) -> Corners {
-    let corner = |point: P| point.coordinates()[..P::DIMENSION].to_vec();
+    let far = bounds.min().abs().max(bounds.max().abs()).max_element();
+    // Coordinates that are less than the rounding error of the others are zero.
+    let rounded = |value: f64| {
+        if value.abs() <= f64::EPSILON * far {
+            0.0
+        } else {
+            value
+        }
+    };
+    let corner = |point: P| point.map(rounded).coordinates()[..P::DIMENSION].to_vec();
     Corners {
         min: corner(bounds.min()),
         max: corner(bounds.max()),

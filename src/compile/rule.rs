@@ -291,11 +291,12 @@ impl<'r, F: RuleFrame> Compiler<'r, F> {
         }
     }
 
-    /// Returns the number of conditions that are evaluated to find the generator of an element.
+    /// Returns the number of conditions that are evaluated to find the generator of an element; long ones count as several.
     fn conditions(&self, generator: Option<usize>) -> usize {
+        let programs = self.rule.selection().programs();
         match generator {
             Some(_) => 1,
-            None => self.rule.selection().programs().count() + 1,
+            None => 1 + programs.map(|program| 1 + program.work()).sum::<usize>(),
         }
     }
 

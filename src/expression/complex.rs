@@ -30,13 +30,14 @@ impl Expression {
         }
     }
 
-    /// Returns the expressions of the real and the imaginary part of an expression, in which `i` is the imaginary unit.
+    /// Returns the expressions of the real and the imaginary part of an expression, in which `i` is the imaginary unit, and
+    /// adds the number of parts of expressions that were copied on the way to `work`.
     ///
     /// # Errors
     ///
     /// Returns an error for operations that complex numbers do not have, and for powers that are not whole.
-    pub(crate) fn complex_parts(&self) -> Result<[Self; 2], ExpressionError> {
-        let parts = self.parts()?;
+    pub(crate) fn complex_parts(&self, work: &mut usize) -> Result<[Self; 2], ExpressionError> {
+        let parts = self.parts(work)?;
         let size: usize = parts.iter().map(Self::size).sum();
         match size <= MOST {
             true => Ok(parts),
@@ -44,7 +45,7 @@ impl Expression {
         }
     }
 
-    fn parts(&self) -> Result<Parts, ExpressionError> {
+    fn parts(&self, work: &mut usize) -> Result<Parts, ExpressionError> {
         let of = |node: Node| Self {
             node,
             range: self.range(),
@@ -57,18 +58,20 @@ impl Expression {
             Node::Number(_) | Node::Name(_) | Node::Part(..) | Node::Call(..) | Node::Unknown => {
                 [self.clone(), self.literal(0.0)]
             }
-            Node::Prefix(One::Negate, operand) => operand.parts()?.map(|part| self.negated(part)),
+            Node::Prefix(One::Negate, operand) => {
+                operand.parts(work)?.map(|part| self.negated(part))
+            }
             Node::Infix(operation, operands) => {
                 let [left, right] = &**operands;
                 if *operation == Two::Power {
-                    return self.power(left, right);
+                    return self.power(left, right, work);
                 }
-                let (a, b) = (left.parts()?, right.parts()?);
+                let (a, b) = (left.parts(work)?, right.parts(work)?);
                 match operation {
                     Two::Add => self.sum(Two::Add, a, b),
                     Two::Subtract => self.sum(Two::Subtract, a, b),
-                    Two::Multiply => self.product(&a, &b)?,
-                    Two::Divide => self.quotient(&a, &b)?,
+                    Two::Multiply => self.product(&a, &b, work)?,
+                    Two::Divide => self.quotient(&a, &b, work)?,
                     _ => return Err(self.not_complex()),
                 }
             }
@@ -76,8 +79,13 @@ impl Expression {
         })
     }
 
-    fn power(&self, base: &Self, exponent: &Self) -> Result<Parts, ExpressionError> {
-        let z = base.parts()?;
+    fn power(
+        &self,
+        base: &Self,
+        exponent: &Self,
+        work: &mut usize,
+    ) -> Result<Parts, ExpressionError> {
+        let z = base.parts(work)?;
         if z[1].is_zero() {
             let [base, zero] = z;
             return Ok([self.joined(Two::Power, base, exponent.clone()), zero]);
@@ -98,13 +106,13 @@ impl Expression {
         let one = [self.literal(1.0), self.literal(0.0)];
         let mut product = one.clone();
         for bit in (0..u32::BITS - whole.leading_zeros()).rev() {
-            product = self.product(&product.clone(), &product)?;
+            product = self.product(&product.clone(), &product, work)?;
             if whole >> bit & 1 == 1 {
-                product = self.product(&product, &z)?;
+                product = self.product(&product, &z, work)?;
             }
         }
         match negative {
-            true => self.quotient(&one, &product),
+            true => self.quotient(&one, &product, work),
             false => Ok(product),
         }
     }
@@ -114,8 +122,13 @@ impl Expression {
     }
 
     /// Returns (a + b i)(c + d i).
-    fn product(&self, [a, b]: &Parts, [c, d]: &Parts) -> Result<Parts, ExpressionError> {
-        self.check_size([a, b, c, d])?;
+    fn product(
+        &self,
+        [a, b]: &Parts,
+        [c, d]: &Parts,
+        work: &mut usize,
+    ) -> Result<Parts, ExpressionError> {
+        self.check_size([a, b, c, d], work)?;
         let times = |x: &Self, y: &Self| self.joined(Two::Multiply, x.clone(), y.clone());
         Ok([
             self.joined(Two::Subtract, times(a, c), times(b, d)),
@@ -124,8 +137,13 @@ impl Expression {
     }
 
     /// Returns (a + b i)/(c + d i). Where d is 0, the parts are divided by c alone.
-    fn quotient(&self, [a, b]: &Parts, [c, d]: &Parts) -> Result<Parts, ExpressionError> {
-        self.check_size([a, b, c, d])?;
+    fn quotient(
+        &self,
+        [a, b]: &Parts,
+        [c, d]: &Parts,
+        work: &mut usize,
+    ) -> Result<Parts, ExpressionError> {
+        self.check_size([a, b, c, d], work)?;
         let times = |x: &Self, y: &Self| self.joined(Two::Multiply, x.clone(), y.clone());
         let over = |x: Self, y: &Self| self.joined(Two::Divide, x, y.clone());
         if d.is_zero() {
@@ -151,9 +169,10 @@ impl Expression {
         }))
     }
 
-    /// Returns an error if parts are too long for one more operation.
-    fn check_size(&self, parts: [&Self; 4]) -> Result<(), ExpressionError> {
+    /// Returns an error if parts are too long for one more operation, which copies them.
+    fn check_size(&self, parts: [&Self; 4], work: &mut usize) -> Result<(), ExpressionError> {
         let size: usize = parts.into_iter().map(Self::size).sum();
+        *work += size;
         match size <= MOST {
             true => Ok(()),
             false => Err(self.too_long()),

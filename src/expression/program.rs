@@ -307,6 +307,13 @@ impl Program {
         run(ops, of, slots, &mut stack)
     }
 
+    /// Returns the time that the program takes, as a number of short programs: 0 for a few operations.
+    pub(crate) fn work(&self) -> usize {
+        /// Number of operations that take as long as the rest of what a short program is for.
+        const OPERATIONS: usize = 4;
+        self.ops.len() / OPERATIONS
+    }
+
     /// Returns whether the condition holds for the given slots.
     #[must_use]
     pub fn holds(&self, slots: &[f64]) -> bool {

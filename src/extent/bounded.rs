@@ -78,6 +78,9 @@ pub trait Hulls<F: Frame> {
     /// its maximum in the limit.
     fn along(&self, object: usize, vector: F::Point) -> [f64; 2];
 
+    /// Returns an upper bound of x·u over the subtree of an object, as [`along`](Self::along) does: found faster, and larger.
+    fn at_most(&self, object: usize, vector: F::Point) -> f64;
+
     /// Returns the radius of a ball about a point that contains the subtree of an object.
     fn radius(&self, object: usize, centre: F::Point) -> f64;
 

@@ -12,7 +12,7 @@ use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
-use super::terms::{SupportTerm, child, merged};
+use super::terms::{Merged, SupportTerm, child, falls_short};
 use crate::graph::{Graph, Instance, Object, Successor};
 
 /// Limit of the number of states at one level.
@@ -20,14 +20,20 @@ const MAX_STATES: usize = 20_000;
 /// Limit of the number of states at all levels together.
 const MAX_WORK: usize = 1_000_000;
 
-/// Limit of the number of states that are looked at, those that are dropped at once included.
+/// Limit of the work of a search: of states that are looked at, with what follows.
 const MAX_LOOKED: usize = 8 * MAX_WORK;
 
-/// Limit of that number where other bounds are tried afterwards.
+/// Limit of that work where other bounds are tried afterwards.
 const MAX_LOOKED_AT_FIRST: usize = 2 * MAX_WORK;
 
-/// Limit of the number of states at one level before equal ones are merged, where other bounds are tried afterwards.
-const MAX_NEXT_AT_FIRST: usize = MAX_WORK / 4;
+/// Work of comparing a state with others, beside looking at it.
+const COMPARED: usize = 2;
+
+/// Work of bounding a state closely, beside comparing it.
+const BOUNDED: usize = 2;
+
+/// Limit of the number of states at one level while others may still drop them.
+const MAX_NEXT: usize = MAX_WORK / 4;
 
 /// Limit of the number of levels.
 const MAX_LEVELS: u32 = 20_000;
@@ -75,6 +81,14 @@ impl<F: Frame> Reach<F> {
             Some(_) => -hulls.along(state.object, -state.vector)[0],
         };
         [state.offset + farthest, state.offset + least]
+    }
+
+    /// Returns an upper bound as [`span`](Self::span) does, but faster, and larger, where polygons bound the subtrees; infinite
+    /// where `span` is as fast.
+    fn at_most(&self, state: &SupportTerm<F>) -> f64 {
+        self.hulls.as_ref().map_or(f64::INFINITY, |(hulls, _)| {
+            state.offset + hulls.at_most(state.object, state.vector)
+        })
     }
 
     /// Returns the contribution of a state to its offset in the limit, if polygons determine it to within
@@ -238,13 +252,14 @@ impl<F: Bounded> Graph<F> {
                 * F::Point::splat(1.0).length()
                 + pad(&self.objects[object])
         };
-        let mut constant = (0..self.objects.len()).map(shape).fold(0.0, f64::max);
+        let shapes: Vec<f64> = (0..self.objects.len()).map(shape).collect();
+        let mut constant = shapes.iter().copied().fold(0.0, f64::max);
         for (_, instance) in self.instances() {
             let shift = instance.frame.origin().length();
             let own = if self.is_fertile(instance.object) {
                 0.0
             } else {
-                instance.length * shape(instance.object)
+                instance.length * shapes[instance.object]
             };
             constant = constant.max(shift + own);
         }
@@ -277,12 +292,13 @@ impl<F: Bounded> Graph<F> {
         (reach, spared): (&Reach<F>, f64),
     ) -> Option<f64> {
         let start = start.iter();
-        let mut states = merged(start.map(|instance| child(instance, direction, 0.0, 0.0)));
+        let start = start.map(|instance| child(instance, direction, 0.0, 0.0));
+        let mut states = Merged::from_iter(start).reaching(f64::NEG_INFINITY);
         let mut best = f64::NEG_INFINITY;
         let (mut work, mut looked) = (0, 0);
-        let [max_looked, max_next] = match reach.is_patient {
-            true => [MAX_LOOKED, MAX_WORK],
-            false => [MAX_LOOKED_AT_FIRST, MAX_NEXT_AT_FIRST],
+        let max_looked = match reach.is_patient {
+            true => MAX_LOOKED,
+            false => MAX_LOOKED_AT_FIRST,
         };
         for level in 0..=MAX_LEVELS {
             let last = steps == Some(level);
@@ -311,19 +327,16 @@ impl<F: Bounded> Graph<F> {
             // Rounding drops no state that reaches as far as the farthest one.
             let with_slack = |certain: f64| certain - reach.slack() * (1.0 + certain.abs());
             let mut certain = with_slack(certain);
-            // No comparison holds where nothing is certain yet.
-            let is_hopeless = |most: f64, certain: f64| most < certain;
             let left = levels.map(|levels| levels - 1);
             // The farthest states are looked at first: their children drop most of the others.
             let mut order: Vec<usize> = (0..states.len()).collect();
             order.sort_by(|a, b| spans[*b][0].total_cmp(&spans[*a][0]));
-            let mut next = Vec::new();
-            let mut room = MAX_STATES;
+            let mut next = Merged::default();
             for number in order {
                 let state = &states[number];
-                let hopeless = is_hopeless(spans[number][0], certain);
-                let dead = steps.is_none() && !reach.alive[state.object];
-                if hopeless || dead {
+                let is_short = falls_short(spans[number][0], certain);
+                let is_dead = steps.is_none() && !reach.alive[state.object];
+                if is_short || is_dead {
                     continue;
                 }
                 if let Some(successor) = self.objects[state.object].successor() {
@@ -342,17 +355,30 @@ impl<F: Bounded> Graph<F> {
                         }
                         continue;
                     }
+                    #[expect(clippy::cast_possible_truncation, reason = "states are limited")]
+                    let parent = number as u32;
                     let mut look = |instance| {
                         looked += 1;
                         reach.looked.set(reach.looked.get() + 1);
-                        let child = child(instance, state.vector, state.offset, state.lost);
+                        let mut child = child(instance, state.vector, state.offset, state.lost);
+                        child.parent = parent;
+                        if falls_short(reach.at_most(&child), certain) {
+                            return;
+                        }
+                        looked += COMPARED;
+                        let Some(slot) = next.slot(&child) else {
+                            return;
+                        };
+                        looked += BOUNDED;
                         let [most, surely] = reach.span(&child, left);
+                        if falls_short(most, certain) {
+                            return;
+                        }
                         if reach.alive[child.object] {
                             certain = certain.max(with_slack(surely));
                         }
-                        if !is_hopeless(most, certain) {
-                            next.push((number, most, child));
-                        }
+                        child.most = most;
+                        next.put(&slot, child);
                     };
                     let is_limit = steps.is_none();
                     let contenders = is_limit.then(|| reach.contenders(state, successor));
@@ -363,21 +389,21 @@ impl<F: Bounded> Graph<F> {
                         }
                         None => { successor.placed_instances() }.for_each(|(_, it)| look(it)),
                     }
-                    if next.len() > room {
-                        next.retain(|(_, most, _)| !is_hopeless(*most, certain));
-                        room = MAX_STATES.max(2 * next.len());
+                    if next.len() > MAX_NEXT {
+                        next.drop_short(certain);
+                        if next.len() > MAX_NEXT / 2 {
+                            return None;
+                        }
                     }
-                    if next.len() > max_next || looked > max_looked {
+                    if looked > max_looked {
                         return None;
                     }
                 }
             }
-            if next.is_empty() {
+            states = next.reaching(certain);
+            if states.is_empty() {
                 return best.is_finite().then_some(best);
             }
-            next.retain(|(_, most, _)| !is_hopeless(*most, certain));
-            next.sort_by_key(|(number, ..)| *number);
-            states = merged(next.into_iter().map(|(.., state)| state));
             work += states.len();
             if states.len() > MAX_STATES || work > MAX_WORK {
                 return None;
@@ -397,6 +423,12 @@ pub(super) fn ends<P: Point>(mut farthest: impl FnMut(P) -> Option<f64>) -> Opti
 }
 
 impl<F: Bounded> ApproximantBounds<'_, F> {
+    /// Returns the number of states that were looked at for all boxes so far.
+    #[cfg(feature = "cli")]
+    pub(crate) fn looked(&self) -> usize {
+        self.reach.looked.get()
+    }
+
     /// Returns the bounding box of approximant `steps`.
     #[must_use]
     pub fn at(&self, steps: u32) -> Option<Bounds<F::Point>> {

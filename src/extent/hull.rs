@@ -5,15 +5,15 @@ use std::cell::OnceCell;
 
 use crate::digraph::components;
 use crate::geometry::{
-    Bounds, DAffine2, DMat2, DVec2, Frame2, convex_hull, hausdorff_distance, thinned,
+    Bounds, DAffine2, DMat2, DVec2, Frame2, convex_hull, farthest, hausdorff_distance, thinned,
 };
 use crate::ifs::Shrinking;
 
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::contract::{Products, distinct};
-use super::policy::{farthest, followed, rightmost};
-use super::sectors::{MANY, Sectors, Whole};
-use super::union::Union;
+use super::policy::followed;
+use super::sectors::{MANY, Sectors, Support, Whole};
+use super::union::{Landmarks, Union};
 use crate::graph::{Graph, Instance};
 
 /// Relative rounding error of coordinates.
@@ -36,8 +36,8 @@ struct Polygons {
     of: Vec<usize>,
     /// Corners of the polygons, counter-clockwise; none for an empty subtree.
     corners: Vec<Vec<DVec2>>,
-    /// Number of the rightmost corner of each polygon; the leftmost corner is the first.
-    rightmost: Vec<usize>,
+    /// Landmarks of the polygons.
+    landmarks: Vec<Landmarks>,
     /// Error of each polygon: the distance within which it contains the subtree; in the limit, the
     /// Hausdorff distance from the hull.
     within: Vec<f64>,
@@ -48,6 +48,10 @@ struct Polygons {
 impl Hulls<Frame2> for Polygons {
     fn along(&self, object: usize, vector: DVec2) -> [f64; 2] {
         self.reach(self.of[object], vector)
+    }
+
+    fn at_most(&self, object: usize, vector: DVec2) -> f64 {
+        self.at_most(self.of[object], vector)
     }
 
     fn radius(&self, object: usize, centre: DVec2) -> f64 {
@@ -65,11 +69,13 @@ impl Hulls<Frame2> for Polygons {
             return None;
         }
         let behaviour = self.of[object];
-        let reach = |number: u32, vector| {
+        let image = |number: u32| {
             let Instance { object, frame, .. } = &instances[number as usize];
-            self.reach_of(frame.map(), self.of[*object], vector)
+            (frame.map(), self.of[*object])
         };
-        let whole = self.whole(behaviour, &reach);
+        let reach = |number, vector| self.reach_of(image(number), vector);
+        let at_most = |number, vector| self.at_most_of(image(number), vector);
+        let whole = self.whole(behaviour, &reach, &at_most);
         let sectors = self.sectors.get(behaviour)?;
         let sectors = sectors.get_or_init(|| Sectors::of(distinct(instances), &whole));
         sectors.along(vector, &whole)
@@ -93,7 +99,7 @@ impl Polygons {
     /// the limit.
     fn reach(&self, polygon: usize, vector: DVec2) -> [f64; 2] {
         let corners = &self.corners[polygon];
-        let along = match farthest(corners, self.rightmost[polygon], vector) {
+        let along = match farthest(corners, self.landmarks[polygon].rightmost, vector) {
             Some(corner) => corners[corner].dot(vector),
             None => f64::NEG_INFINITY,
         };
@@ -102,17 +108,34 @@ impl Polygons {
     }
 
     /// Returns the hull that a behaviour's polygon stands for.
-    fn whole<'a>(&'a self, behaviour: usize, reach: &'a dyn Fn(u32, DVec2) -> f64) -> Whole<'a> {
+    fn whole<'a>(
+        &'a self,
+        behaviour: usize,
+        reach: Support<'a>,
+        at_most: Support<'a>,
+    ) -> Whole<'a> {
         Whole {
             corners: &self.corners[behaviour],
             within: self.within[behaviour],
             reach,
+            at_most,
         }
     }
 
     /// Returns an upper bound of x·u over the image of what a polygon stands for.
-    fn reach_of(&self, map: &DAffine2, polygon: usize, vector: DVec2) -> f64 {
+    fn reach_of(&self, (map, polygon): (&DAffine2, usize), vector: DVec2) -> f64 {
         let [most, _] = self.reach(polygon, map.matrix2.transpose() * vector);
+        vector.dot(map.translation) + most
+    }
+
+    /// Returns an upper bound of x·u over what a polygon stands for, faster than [`reach`](Self::reach) does, and larger.
+    fn at_most(&self, polygon: usize, vector: DVec2) -> f64 {
+        self.landmarks[polygon].at_most(vector) + vector.length() * self.within[polygon]
+    }
+
+    /// Returns that bound over the image of what a polygon stands for.
+    fn at_most_of(&self, (map, polygon): (&DAffine2, usize), vector: DVec2) -> f64 {
+        let most = self.at_most(polygon, map.matrix2.transpose() * vector);
         vector.dot(map.translation) + most
     }
 
@@ -123,11 +146,13 @@ impl Polygons {
                 continue;
             }
             let contending = {
-                let reach = |number: u32, vector| {
+                let image = |number: u32| {
                     let (map, polygon) = &images[number as usize];
-                    self.reach_of(map, *polygon, vector)
+                    (map, *polygon)
                 };
-                let whole = self.whole(behaviour, &reach);
+                let reach = |number, vector| self.reach_of(image(number), vector);
+                let at_most = |number, vector| self.at_most_of(image(number), vector);
+                let whole = self.whole(behaviour, &reach, &at_most);
                 Sectors::of((0..).take(images.len()).collect(), &whole).anywhere(&whole)
             };
             let kept = { contending.into_iter() }.map(|number| images[number as usize]);
@@ -153,7 +178,7 @@ impl Polygons {
         order.sort_by_key(|behaviour| component[*behaviour]);
         let mut work = 0;
         let max_corners = fineness.corners_from_below(images);
-        let mut rights: Vec<usize> = { self.corners.iter() }.map(|it| rightmost(it)).collect();
+        let mut landmarks = Landmarks::of_all(&self.corners);
         for behaviour in order {
             let images = &images[behaviour];
             let leads_to_itself = || images.iter().any(|(_, inner)| *inner == behaviour);
@@ -164,7 +189,7 @@ impl Polygons {
                 points: &points[behaviour],
                 images,
                 polygons: &self.corners,
-                rightmost: &rights,
+                landmarks: &landmarks,
             };
             let hull = union.hull(0.0);
             work += hull.work;
@@ -176,15 +201,15 @@ impl Polygons {
                 corners = thinned(&corners, tolerance);
                 tolerance *= 2.0;
             }
-            rights[behaviour] = rightmost(&corners);
+            landmarks[behaviour] = Landmarks::of(&corners);
             self.corners[behaviour] = corners;
         }
         work
     }
 
-    /// Finds the rightmost corners of all polygons.
-    fn find_rightmost(&mut self) {
-        self.rightmost = { self.corners.iter() }.map(|it| rightmost(it)).collect();
+    /// Finds the landmarks of all polygons.
+    fn find_landmarks(&mut self) {
+        self.landmarks = Landmarks::of_all(&self.corners);
     }
 }
 
@@ -255,14 +280,14 @@ impl Graph {
         let (mut tolerance, mut coarse, mut is_fine) = (0.0, 0.25, false);
         for round in 0.. {
             let polygons = &hulls.corners[..images.len()];
-            let rights: Vec<usize> = polygons.iter().map(|it| rightmost(it)).collect();
+            let landmarks = Landmarks::of_all(polygons);
             let mut lost = tolerance;
             let next = points.iter().zip(&images).map(|(points, images)| {
                 let union = Union {
                     points,
                     images,
                     polygons,
-                    rightmost: &rights,
+                    landmarks: &landmarks,
                 };
                 let hull = union.hull(tolerance);
                 work += OVERHEAD + hull.work;
@@ -307,7 +332,7 @@ impl Graph {
                 let error = within.iter().copied().fold(0.0, f64::max);
                 let is_known = within.iter().all(|it| it.is_finite());
                 let is_close = within.iter().all(|within| *within <= wanted);
-                hulls.find_rightmost();
+                hulls.find_landmarks();
                 if ends || settled || is_close {
                     return is_known.then_some(hulls);
                 }
@@ -346,7 +371,7 @@ impl Graph {
         let mut hulls = Polygons {
             of: Vec::new(),
             corners: vec![Vec::new(); behaviours],
-            rightmost: Vec::new(),
+            landmarks: Vec::new(),
             within: vec![f64::INFINITY; behaviours],
             sectors: (0..behaviours).map(|_| OnceCell::new()).collect(),
         };
@@ -386,7 +411,7 @@ impl Graph {
 
     /// Returns points whose convex hull contains an object's outline with padding.
     fn corners(&self, object: usize, pad: f64) -> Vec<DVec2> {
-        let points = self.base_elements()[self.objects[object].base_element].control_points();
+        let points = self.base_elements()[self.objects[object].base_element].hull_points();
         if pad > 0.0 {
             points.flat_map(|point| around(point, pad)).collect()
         } else {

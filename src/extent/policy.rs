@@ -3,7 +3,7 @@
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
 use super::sectors::MANY;
-use super::union::{Farthest, Union};
+use super::union::{Farthest, Landmarks, Union};
 
 /// Origin of a corner.
 #[derive(Clone, Copy)]
@@ -59,7 +59,7 @@ pub(super) fn followed(
         }
         best.1
     };
-    let rights: Vec<usize> = polygons.iter().map(|it| rightmost(it)).collect();
+    let landmarks = Landmarks::of_all(polygons);
     let mut origins: Vec<Option<Origin>> = Vec::with_capacity(all.len());
     for (kind, corners) in polygons.iter().enumerate() {
         if images[kind].len() < MANY {
@@ -70,7 +70,7 @@ pub(super) fn followed(
             points: &points[kind],
             images: &images[kind],
             polygons,
-            rightmost: &rights,
+            landmarks: &landmarks,
         };
         let farthest = Farthest::of(&union);
         origins.extend(directions(corners).map(|direction| {
@@ -164,12 +164,6 @@ fn directions(corners: &[DVec2]) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// Returns the number of the rightmost corner.
-pub(super) fn rightmost(corners: &[DVec2]) -> usize {
-    let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
-    (0..corners.len()).max_by(order).unwrap_or_default()
-}
-
 /// Returns the number of the corner that is farthest along a vector, found from another one.
 fn farthest_near(corners: &[DVec2], near: usize, vector: DVec2) -> Option<usize> {
     let count = corners.len();
@@ -185,26 +179,4 @@ fn farthest_near(corners: &[DVec2], near: usize, vector: DVec2) -> Option<usize>
         }
     }
     Some(at)
-}
-
-/// Returns the number of the corner that is farthest along a vector; `right` is the rightmost corner.
-pub(super) fn farthest(corners: &[DVec2], right: usize, vector: DVec2) -> Option<usize> {
-    let first = corners.first()?;
-    // Along the lower and along the upper half, the distance increases up to one corner, then decreases.
-    let half = if vector.y < 0.0 {
-        0..right
-    } else {
-        right..corners.len()
-    };
-    let (mut low, mut high) = (half.start, half.end);
-    while low < high {
-        let middle = usize::midpoint(low, high);
-        let next = corners.get(middle + 1).unwrap_or(first);
-        if (*next - corners[middle]).dot(vector) > 0.0 {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    Some(if low < corners.len() { low } else { 0 })
 }

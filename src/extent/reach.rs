@@ -87,7 +87,9 @@ impl<F: Bounded> Graph<F> {
                 break;
             }
         }
-        if self.affine && ratio > LITTLE {
+        // Polygons of many behaviours take long, but no radius at all lets nothing be culled.
+        let is_worth_it = most.is_infinite() || !self.has_many_behaviours();
+        if self.affine && ratio > LITTLE && is_worth_it {
             self.narrow(&mut radii, &own);
         }
         radii

@@ -22,14 +22,22 @@ const MAX_WORK: usize = 32;
 /// Distance by which the others must fall short, relative to the size, so that rounding drops none.
 const MARGIN: f64 = 1e-9;
 
+/// Directions between which the quarters lie.
+pub(super) const AXES: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+
+/// Bound of the support function of an image, by number and direction.
+pub(super) type Support<'a> = &'a dyn Fn(u32, DVec2) -> f64;
+
 /// A convex set that is the hull of images, approximated by a polygon.
 pub(super) struct Whole<'a> {
     /// Corners of the polygon.
     pub(super) corners: &'a [DVec2],
     /// Distance within which the set contains the corners.
     pub(super) within: f64,
-    /// Upper bound of the support function of an image, by number and direction.
-    pub(super) reach: &'a dyn Fn(u32, DVec2) -> f64,
+    /// Upper bound of the support functions of images.
+    pub(super) reach: Support<'a>,
+    /// Upper bound that is found faster, and no less than the other but for rounding.
+    pub(super) at_most: Support<'a>,
 }
 
 impl Whole<'_> {
@@ -64,14 +72,19 @@ struct Sector {
 impl Sectors {
     /// Examines images along the axes.
     pub(super) fn of(images: Vec<u32>, whole: &Whole<'_>) -> Self {
-        let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
-        let far = axes.map(|axis| whole.farthest(axis).map_or(0.0, |corner| corner.dot(axis)));
+        let far = AXES.map(|axis| whole.farthest(axis).map_or(0.0, |corner| corner.dot(axis)));
         let lost = whole.within + MARGIN * far.map(f64::abs).into_iter().fold(0.0, f64::max);
-        let reached = axes.map(|axis| images.iter().map(|it| (whole.reach)(*it, axis)).collect());
+        let along = |images: &[u32], axis, support: Support<'_>| -> Vec<f64> {
+            images.iter().map(|it| support(*it, axis)).collect()
+        };
+        let most = AXES.map(|axis| along(&images, axis, whole.at_most));
         let quarters = [0, 1, 2, 3].map(|quarter| {
             let sides = [quarter, (quarter + 1) % 4];
-            let ends = sides.map(|side: usize| -> &Vec<f64> { &reached[side] });
-            Sector::of(&images, sides.map(|side| axes[side]), ends, lost, whole)
+            let axes = sides.map(|side: usize| AXES[side]);
+            let ends = sides.map(|side| &most[side]);
+            let images = Sector::of(&images, axes, ends, lost, whole).contenders;
+            let ends = axes.map(|axis| along(&images, axis, whole.reach));
+            Sector::of(&images, axes, ends.each_ref(), lost, whole)
         });
         Self {
             quarters,

@@ -2,10 +2,9 @@
 
 use std::cell::Cell;
 
-use crate::geometry::{DAffine2, DVec2, convex_hull, thinned};
+use crate::geometry::{DAffine2, DVec2, convex_hull, farthest, rightmost, thinned};
 
-use super::policy::{farthest, rightmost};
-use super::sectors::{MANY, Sectors, Whole};
+use super::sectors::{AXES, MANY, Sectors, Support, Whole};
 
 /// Number of points beyond which a hull is computed from directions, however few images have them.
 const MANY_POINTS: usize = 4096;
@@ -19,8 +18,14 @@ const FIRST: f64 = 1e-6;
 /// Relative rounding error of coordinates.
 const ROUNDING: f64 = 1e-15;
 
-/// Number of support functions whose evaluation takes as long as a point of a hull.
-const EVALUATIONS: usize = 8;
+/// Relative rounding error of sums of products of coordinates, as a multiple of the sum of their absolute values.
+const PRODUCTS: f64 = 4e-15;
+
+/// Number of bounds whose evaluation takes as long as that of a support function.
+const BOUNDS_A_SUPPORT: usize = 6;
+
+/// Number of bounds whose evaluation takes as long as a point of a hull.
+const BOUNDS_A_POINT: usize = 5;
 
 /// A convex polygon, and images of convex polygons.
 pub(super) struct Union<'a> {
@@ -30,8 +35,47 @@ pub(super) struct Union<'a> {
     pub(super) images: &'a [(DAffine2, usize)],
     /// Corners of the polygons, counter-clockwise from the leftmost.
     pub(super) polygons: &'a [Vec<DVec2>],
-    /// Numbers of the rightmost corners of the polygons.
-    pub(super) rightmost: &'a [usize],
+    /// Landmarks of the polygons.
+    pub(super) landmarks: &'a [Landmarks],
+}
+
+/// Rightmost corner of a convex polygon, and a disc about a point of the polygon that contains it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landmarks {
+    pub(super) rightmost: usize,
+    centre: DVec2,
+    radius: f64,
+    /// Upper bound of the distance of the polygon from the origin.
+    away: f64,
+}
+
+impl Landmarks {
+    /// Finds the landmarks of a polygon by its corners, counter-clockwise from the leftmost.
+    pub(super) fn of(corners: &[DVec2]) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "corners are held in memory")]
+        let share = 1.0 / corners.len().max(1) as f64;
+        let centre = corners.iter().map(|corner| *corner * share).sum::<DVec2>();
+        let far = corners.iter().map(|corner| corner.distance(centre));
+        let radius = far.fold(0.0, f64::max);
+        Self {
+            rightmost: rightmost(corners),
+            centre,
+            radius,
+            away: centre.length() + radius,
+        }
+    }
+
+    /// Returns all landmarks of polygons.
+    pub(super) fn of_all(polygons: &[Vec<DVec2>]) -> Vec<Self> {
+        polygons.iter().map(|corners| Self::of(corners)).collect()
+    }
+
+    /// Returns an upper bound of x·u, rounded, over the points x of the polygon, u being the vector. Much faster than to seek
+    /// the farthest corner, and larger.
+    pub(super) fn at_most(&self, vector: DVec2) -> f64 {
+        let length = vector.length();
+        self.centre.dot(vector) + (self.radius + PRODUCTS * self.away) * length
+    }
 }
 
 /// A polygon that approximates a convex hull from inside.
@@ -99,31 +143,51 @@ impl Union<'_> {
         Hull {
             corners: convex_hull(corners, 0.0),
             lost,
-            work: farthest.work.get() / EVALUATIONS,
+            work: farthest.work.get() / BOUNDS_A_POINT,
         }
     }
 
-    /// Returns the farthest point of the polygon and of some images along a direction; `None` if there is none.
+    /// Returns the farthest point of the polygon and of some images along a direction; `None` if there is none; and the number
+    /// of bounds that were evaluated, or as much work.
     fn reached(
         &self,
         images: impl Iterator<Item = u32>,
         right: usize,
         direction: DVec2,
-    ) -> Option<Reached> {
+    ) -> (Option<Reached>, usize) {
+        let mut work = 0;
         let own = farthest(self.points, right, direction).map(|corner| Reached {
             point: self.points[corner],
             from: None,
         });
-        let of_images = images.filter_map(|number| self.reached_by(number, direction));
-        let mut best = None;
-        let mut most = f64::NEG_INFINITY;
-        for reached in own.into_iter().chain(of_images) {
+        let mut best = own;
+        let mut most = own.map_or(f64::NEG_INFINITY, |reached| reached.point.dot(direction));
+        for number in images {
+            work += 1;
+            if self.at_most(number, direction) < most {
+                continue;
+            }
+            work += BOUNDS_A_SUPPORT;
+            let Some(reached) = self.reached_by(number, direction) else {
+                continue;
+            };
             let along = reached.point.dot(direction);
             if along > most {
                 (best, most) = (Some(reached), along);
             }
         }
-        best
+        (best, work)
+    }
+
+    /// Returns an upper bound of how far an image reaches along a direction, rounded: see [`Landmarks::at_most`].
+    fn at_most(&self, number: u32, direction: DVec2) -> f64 {
+        let (map, polygon) = &self.images[number as usize];
+        let landmarks = &self.landmarks[*polygon];
+        let shift = map.translation.dot(direction);
+        let most = landmarks.at_most(map.matrix2.transpose() * direction);
+        let matrix = map.matrix2.x_axis.abs() + map.matrix2.y_axis.abs();
+        let terms = matrix.element_sum() * landmarks.away + map.translation.abs().element_sum();
+        shift + most + PRODUCTS * terms * direction.abs().element_sum()
     }
 
     /// Returns the farthest point of an image along a direction.
@@ -131,7 +195,7 @@ impl Union<'_> {
         let (map, polygon) = self.images[number as usize];
         let corners = &self.polygons[polygon];
         let along = map.matrix2.transpose() * direction;
-        let corner = farthest(corners, self.rightmost[polygon], along)?;
+        let corner = farthest(corners, self.landmarks[polygon].rightmost, along)?;
         Some(Reached {
             point: map.transform_point2(corners[corner]),
             from: Some((number, corner)),
@@ -156,7 +220,7 @@ pub(super) struct Farthest<'u> {
     known: Vec<DVec2>,
     /// The images, if they are many.
     sectors: Option<Sectors>,
-    /// Number of support functions that were evaluated.
+    /// Number of bounds that were evaluated, or as much work.
     work: Cell<usize>,
 }
 
@@ -165,21 +229,37 @@ impl<'u> Farthest<'u> {
     pub(super) fn of(union: &'u Union<'u>) -> Self {
         let all = || (0..).take(union.images.len());
         let right = rightmost(union.points);
+        let mut work = 0;
+        // The farthest image of one direction reaches far along the next one.
+        let mut before = None;
         let starts = (0..DIRECTIONS).filter_map(|number| {
             let angle = std::f64::consts::TAU * f64::from(number) / f64::from(DIRECTIONS);
             let direction = DVec2::new(libm::cos(angle), libm::sin(angle));
-            Some(union.reached(all(), right, direction)?.point)
+            let images = before.into_iter().chain(all());
+            let (reached, evaluated) = union.reached(images, right, direction);
+            work += evaluated;
+            let reached = reached?;
+            before = reached.from.map(|(number, _)| number);
+            Some(reached.point)
         });
         let mut farthest = Self {
+            known: convex_hull(starts.collect(), 0.0),
             union,
             right,
-            known: convex_hull(starts.collect(), 0.0),
             sectors: None,
-            work: Cell::new(union.images.len() * (DIRECTIONS as usize + 4)),
+            work: Cell::new(work),
         };
         if union.images.len() >= MANY {
-            let reach = |number, direction| farthest.reach(number, direction);
-            let sectors = Sectors::of(all().collect(), &farthest.whole(&reach));
+            let evaluated = Cell::new(0);
+            let reach = |number, direction| {
+                evaluated.set(evaluated.get() + BOUNDS_A_SUPPORT);
+                farthest.reach(number, direction)
+            };
+            let at_most = |number, direction| union.at_most(number, direction);
+            let whole = farthest.whole(&reach, &at_most);
+            let sectors = Sectors::of(all().collect(), &whole);
+            let bounds = AXES.len() * union.images.len();
+            farthest.work.set(work + bounds + evaluated.get());
             farthest.sectors = Some(sectors);
         }
         farthest
@@ -188,11 +268,10 @@ impl<'u> Farthest<'u> {
     /// Returns the farthest point along a direction; `None` if there is none.
     pub(super) fn along(&self, direction: DVec2) -> Option<Reached> {
         let reach = |number, direction| self.reach(number, direction);
-        let whole = self.whole(&reach);
+        let at_most = |number, direction| self.union.at_most(number, direction);
+        let whole = self.whole(&reach, &at_most);
         let contenders = { self.sectors.as_ref() }.and_then(|it| it.along(direction, &whole));
-        let count = contenders.map_or(self.union.images.len(), <[u32]>::len);
-        self.work.set(self.work.get() + count);
-        match contenders {
+        let (reached, work) = match contenders {
             Some(contenders) => {
                 let contenders = contenders.iter().copied();
                 self.union.reached(contenders, self.right, direction)
@@ -201,13 +280,16 @@ impl<'u> Farthest<'u> {
                 let all = (0..).take(self.union.images.len());
                 self.union.reached(all, self.right, direction)
             }
-        }
+        };
+        self.work.set(self.work.get() + work);
+        reached
     }
 
-    fn whole<'a>(&'a self, reach: &'a dyn Fn(u32, DVec2) -> f64) -> Whole<'a> {
+    fn whole<'a>(&'a self, reach: Support<'a>, at_most: Support<'a>) -> Whole<'a> {
         Whole {
             corners: &self.known,
             within: 0.0,
+            at_most,
             reach,
         }
     }

@@ -11,6 +11,8 @@ use crate::output_file::WriteError;
 use crate::render::RenderError;
 use crate::tween::TweenError;
 
+use super::repetition::NoRepetition;
+
 /// An error of [`Fractal`](super::Fractal).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -36,6 +38,9 @@ pub enum Error {
     /// There is no tween between two fractals.
     #[error(transparent)]
     Tween(#[from] TweenError),
+    /// The set is not repeated.
+    #[error(transparent)]
+    Repetition(#[from] NoRepetition),
     /// Points cannot be drawn from the system of maps at random.
     #[error(transparent)]
     System(#[from] SystemError),

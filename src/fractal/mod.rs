@@ -10,6 +10,7 @@ mod frames;
 mod goal;
 mod options;
 mod points;
+mod repetition;
 mod results;
 mod scene;
 mod space;
@@ -39,6 +40,9 @@ pub use frames::Frames;
 #[cfg(feature = "cli")]
 pub(crate) use goal::steps_of_graph;
 pub use goal::{Goal, proposed_steps};
+#[cfg(feature = "cli")]
+pub(crate) use repetition::Copies;
+pub use repetition::{NoRepetition, Repetition};
 pub use results::Dimension;
 
 /// A linear fractal, and the options of growing and drawing it.
@@ -65,6 +69,7 @@ pub struct Fractal {
     size: Size,
     style: Option<Style>,
     view: Option<View>,
+    repetition: Option<Repetition>,
     space: Option<SpaceOptions>,
     zoom: Option<ZoomTarget>,
     png_encoding: PngEncoding,
@@ -92,6 +97,7 @@ impl From<Model> for Fractal {
             size: Size::Long(1024),
             style: None,
             view: None,
+            repetition: None,
             space: None,
             zoom: None,
             png_encoding: PngEncoding::default(),

@@ -10,7 +10,7 @@ use crate::render::space::SpaceOptions;
 use crate::render::{PngEncoding, Size, ZoomTarget};
 use crate::style::{Style, View};
 
-use super::{Error, Fractal};
+use super::{Error, Fractal, Repetition};
 
 impl Fractal {
     /// Sets a parameter of the file; `model().metadata().parameters` lists them.
@@ -133,6 +133,30 @@ impl Fractal {
     #[must_use]
     pub fn view(mut self, view: View) -> Self {
         self.view = Some(view);
+        self
+    }
+
+    /// Repeats pictures of a set of the plane under a wallpaper or frieze group, which
+    /// [`TilingGroup::from_name`](crate::style::Named::from_name) finds by its name. The set keeps its size: its box is inscribed
+    /// in a fundamental domain of the group. Without a [window](Self::view), a picture shows as many
+    /// [periods](Repetition::periods) as are asked for; of the default size, opposite edges of a PNG continue each other.
+    /// Elements and numbers are those of the set itself, and a [zoom](Self::zoom) draws no copies. Pictures of sets in space are
+    /// refused, and those for which there is a [reason](crate::NoRepetition).
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kfrac::Error> {
+    /// use kfrac::{Fractal, Repetition, style::Named, symmetry::TilingGroup};
+    ///
+    /// let group = TilingGroup::from_name("p4g").unwrap();
+    /// let dragon = Fractal::named("dragon")?.steps(8);
+    /// let wallpaper = dragon.repeat(Some(Repetition::from(group).periods(2)));
+    /// assert_eq!(wallpaper.pixels((300, 300))?.size(), [300, 300]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn repeat(mut self, repetition: Option<Repetition>) -> Self {
+        self.repetition = repetition;
         self
     }
 

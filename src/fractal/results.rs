@@ -389,7 +389,7 @@ impl Fractal {
             format,
             size,
             style,
-            view: self.view.unwrap_or(metadata.view),
+            view: self.shown(),
             threads: self.threads,
             png: self.png_encoding,
             detail: match self.model.is_in_space() {
@@ -448,7 +448,7 @@ impl Fractal {
         })
     }
 
-    /// Draws the approximant of the goal. The window is that of the file's coordinates.
+    /// Draws the approximant of the goal, and its copies if it is repeated. The window is that of the file's coordinates.
     pub(super) fn draw_by<T>(
         &self,
         options: &Options,
@@ -456,9 +456,12 @@ impl Fractal {
     ) -> Result<T, Error> {
         self.check_cancelled()?;
         let goal = self.goal()?;
-        let compile = |steps| self.compile(steps);
         let graph = self.compile_for(goal.steps(), options.style.color_by)?;
-        let drawn = goal.reach(graph, compile, |graph, steps| {
+        let copies = self.copies(&graph, goal, options)?;
+        let copied = |graph| { copies.iter() }.fold(graph, |graph, copies| copies.of(graph));
+        let options = { copies.iter() }.fold(options.clone(), |all, copies| copies.shown(all));
+        let compile = |steps| self.compile(steps).map(copied);
+        let drawn = goal.reach(copied(graph), compile, |graph, steps| {
             let options = Options {
                 style: options.style.clone().within(graph.place()),
                 view: options.view.within(graph.place()),

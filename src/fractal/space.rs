@@ -177,6 +177,9 @@ impl Fractal {
                 "its camera has a zoom, and no address to look at",
             ));
         }
+        if self.repetition.is_some() {
+            return Err(Error::InSpace("wallpapers and friezes lie in the plane"));
+        }
         self.drawn_in_space("it has windows").map(Some)
     }
 

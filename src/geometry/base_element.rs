@@ -1,7 +1,11 @@
 //! Base elements: outlines of lines and cubic Bézier curves in the unit frame, their extent and their
 //! area.
 
-use super::{Bounds, Corners, Corners2, DAffine2, DVec2, Frame2, Outline};
+use std::ops::RangeInclusive;
+
+use super::{
+    Bounds, Corners, Corners2, DAffine2, DVec2, Frame2, Outline, convex_hull, farthest, rightmost,
+};
 
 /// Piece of a base element's outline; it starts where the preceding piece ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +66,45 @@ pub struct BaseElement {
     backwards: (DVec2, Vec<Piece>),
     signed_area: f64,
     closed: bool,
+    hull: Option<Box<Hull>>,
+}
+
+/// Convex hull of an outline of many lines.
+#[derive(Clone, Debug, PartialEq)]
+struct Hull {
+    /// Corners, counter-clockwise from the leftmost.
+    corners: Vec<DVec2>,
+    /// Number of the rightmost corner.
+    rightmost: usize,
+}
+
+impl Hull {
+    /// Returns the hull of an outline; `None` if it has few lines, or curves, or if products of its coordinates may leave the
+    /// range of doubles.
+    fn of(start: DVec2, pieces: &[Piece]) -> Option<Box<Self>> {
+        /// Number of lines from which support functions are sought on the hull.
+        const MANY: usize = 32;
+        /// Sizes whose products are far from the ends of the range of doubles.
+        const SIZES: RangeInclusive<f64> = 1e-100..=1e100;
+        let is_line = |piece: &Piece| matches!(piece, Piece::Line(_));
+        if pieces.len() < MANY || !pieces.iter().all(is_line) {
+            return None;
+        }
+        let points: Vec<DVec2> = std::iter::once(start)
+            .chain(pieces.iter().map(Piece::end))
+            .collect();
+        let mut bounds = Bounds::EMPTY;
+        points.iter().for_each(|point| bounds.add(*point));
+        let far = bounds.min().abs().max(bounds.max().abs()).max_element();
+        if !SIZES.contains(&bounds.size().max_element()) || !SIZES.contains(&far) {
+            return None;
+        }
+        let corners = convex_hull(points, 0.0);
+        Some(Box::new(Self {
+            rightmost: rightmost(&corners),
+            corners,
+        }))
+    }
 }
 
 impl BaseElement {
@@ -94,6 +137,7 @@ impl BaseElement {
         Some(Self {
             backwards: backwards(start, &pieces),
             signed_area: signed_area(start, &pieces),
+            hull: Hull::of(start, &pieces),
             start,
             pieces,
             closed,
@@ -118,6 +162,7 @@ impl BaseElement {
         Self {
             backwards: backwards(start, &pieces),
             signed_area: signed_area(start, &pieces),
+            hull: None,
             start,
             pieces,
             closed: false,
@@ -199,6 +244,14 @@ impl BaseElement {
         std::iter::once(self.start).chain(points)
     }
 
+    /// Iterates over points whose convex hull contains the outline, fewer than [`control_points`](Self::control_points) where
+    /// the outline consists of many lines.
+    pub(crate) fn hull_points(&self) -> impl Iterator<Item = DVec2> {
+        let known = self.hull.iter().flat_map(|hull| &hull.corners).copied();
+        let others = self.hull.is_none().then(|| self.control_points());
+        known.chain(others.into_iter().flatten())
+    }
+
     /// Extends `bounds` by the box of the outline placed in a frame, padded by `pad` on every side.
     pub fn add_to(&self, bounds: &mut Bounds, frame: &Frame2, pad: f64) {
         let mut from = frame.apply(self.start);
@@ -241,6 +294,11 @@ impl Outline<Frame2> for BaseElement {
     }
 
     fn support(&self, direction: DVec2) -> f64 {
+        if let Some(Hull { corners, rightmost }) = self.hull.as_deref()
+            && let Some(corner) = farthest(corners, *rightmost, direction)
+        {
+            return corners[corner].dot(direction);
+        }
         let mut from = self.start.dot(direction);
         let mut largest = from;
         for piece in &self.pieces {
@@ -357,4 +415,33 @@ pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
         number += 1.0;
     }
     Some(pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outlines of many lines have a hull; a curve that adds nothing takes it away.
+    #[test]
+    fn supports_of_hulls_are_those_of_all_points() {
+        let corner = |number: u32| {
+            let angle = f64::from(number) * 2.4;
+            DVec2::from_angle(angle) * DVec2::new(3.0, 1.0) * f64::from(1 + number % 7)
+        };
+        let sizes = [(31, 1.0), (32, 1.0), (500, 1.0), (40, 1e155), (40, 1e-170)];
+        for (count, size) in sizes {
+            let points: Vec<DVec2> = (0..count).map(|number| corner(number) * size).collect();
+            let lines = points[1..].iter().map(|point| Piece::Line(*point));
+            let outline = BaseElement::new(points[0], lines.collect(), true).unwrap();
+            assert_eq!(outline.hull.is_some(), count >= 32 && size == 1.0);
+            for angle in 0..100 {
+                let direction = DVec2::from_angle(f64::from(angle)) * 0.3;
+                let along = points.iter().map(|point| point.dot(direction));
+                let most = along.fold(f64::NEG_INFINITY, f64::max);
+                assert!((outline.support(direction) - most).abs() <= 1e-15 * most.abs());
+                let of_hull = outline.hull_points().map(|point| point.dot(direction));
+                assert!(of_hull.fold(f64::NEG_INFINITY, f64::max) >= most - 1e-14 * size);
+            }
+        }
+    }
 }

@@ -106,6 +106,35 @@ pub(crate) fn thinned(corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     kept
 }
 
+/// Returns the number of the rightmost corner of a polygon.
+pub(crate) fn rightmost(corners: &[DVec2]) -> usize {
+    let order = |a: &usize, b: &usize| corners[*a].x.total_cmp(&corners[*b].x);
+    (0..corners.len()).max_by(order).unwrap_or_default()
+}
+
+/// Returns the number of the corner of a convex polygon, counter-clockwise from the leftmost, that is farthest along a vector;
+/// `right` is the rightmost corner.
+pub(crate) fn farthest(corners: &[DVec2], right: usize, vector: DVec2) -> Option<usize> {
+    let first = corners.first()?;
+    // Along the lower and along the upper half, the distance increases up to one corner, then decreases.
+    let half = if vector.y < 0.0 {
+        0..right
+    } else {
+        right..corners.len()
+    };
+    let (mut low, mut high) = (half.start, half.end);
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        let next = corners.get(middle + 1).unwrap_or(first);
+        if (*next - corners[middle]).dot(vector) > 0.0 {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    Some(if low < corners.len() { low } else { 0 })
+}
+
 /// Returns the Hausdorff distance of two convex polygons, each given counter-clockwise from the leftmost corner, the
 /// lower one of two: the largest difference of their extents along a direction. Infinite if one of them is empty.
 pub(crate) fn hausdorff_distance(a: &[DVec2], b: &[DVec2]) -> f64 {

@@ -49,5 +49,7 @@ pub(crate) use clip::clip;
 pub(crate) use frame::LARGEST_ENTRY;
 pub(crate) use frame2::stretch;
 pub(crate) use homothety::exponent_of;
-pub(crate) use hull::{EIGHT_WAYS, convex_hull, distance_to_segment, hausdorff_distance, thinned};
+pub(crate) use hull::{
+    EIGHT_WAYS, convex_hull, distance_to_segment, farthest, hausdorff_distance, rightmost, thinned,
+};
 pub(crate) use polygon::triangulated;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use crate::digraph::Ancestry;
 use crate::expression::Interval;
-use crate::fast_hash::FastMap;
+use crate::fast_hash::{FastMap, FastSet};
 use crate::geometry::{Frame, Point};
 use crate::rule::Placement;
 
-use super::{Graph, Instance, Replacement};
+use super::{Graph, Instance, Object, Replacement};
 
 /// Object in the place of another one, or seeded by it.
 pub(crate) struct Edge {
@@ -203,9 +203,12 @@ impl<F: Frame> Graph<F> {
         successor.flat_map(|successor| successor.placed_instances())
     }
 
-    /// Iterates over all instances of fixed successors, with their placements.
+    /// Iterates over all instances of fixed successors, those of a shared one once, with their placements.
     pub(crate) fn instances(&self) -> impl Iterator<Item = (Placement, &Instance<F>)> {
-        (0..self.objects.len()).flat_map(|object| self.children(object))
+        let mut known = FastSet::default();
+        let successors = self.objects.iter().filter_map(Object::successor);
+        let distinct = successors.filter(move |it| known.insert(Arc::as_ptr(it).addr()));
+        distinct.flat_map(|successor| successor.placed_instances())
     }
 
     /// Returns the largest ratio of a fertile instance.

@@ -157,7 +157,8 @@ impl<F: Frame> Graph<F> {
         &**source
     }
 
-    /// Returns the number of conditions, weights and generators that may be looked at to replace an element.
+    /// Returns the number of conditions, weights and generators that may be looked at to replace an element; a long condition
+    /// counts as several.
     #[must_use]
     pub fn choices(&self) -> u64 {
         self.source.as_ref().map_or(1, |source| source.choices())
@@ -320,6 +321,16 @@ impl<F: Frame> Graph<F> {
     #[must_use]
     pub fn tints(&self) -> bool {
         self.tints
+    }
+
+    /// Returns the graph as that of a model which has no limit set for a reason that the graph does not show.
+    #[cfg(feature = "cli")]
+    pub(crate) fn without_limit(&self, reason: NoLimit) -> Self {
+        Self {
+            no_limit: Some(reason),
+            limit_bounds: None,
+            ..self.clone()
+        }
     }
 
     /// Returns whether maps may be arbitrary affine maps, as in systems; those of rules are similarities.

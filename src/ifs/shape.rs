@@ -143,18 +143,21 @@ impl Shape {
 }
 
 /// Size of an outline, and the moments of the uniform distribution on it.
-struct Measured {
-    length: f64,
+struct Measured<'o> {
+    outline: &'o BaseElement,
+    /// Power of 2 near to the size of the outline, in which lengths are measured: squares could leave the range of doubles.
+    unit: f64,
+    /// Length of the control polygon, which is no less than that of the outline.
+    span: f64,
     /// The enclosed area of a closed outline.
     area: Option<f64>,
     moments: Moments,
 }
 
-impl Measured {
+impl<'o> Measured<'o> {
     /// Measures an outline; `None` if a number is not finite, it has no extent, or it is closed and has no
     /// area.
-    fn of(outline: &BaseElement) -> Option<Self> {
-        // The outline is measured in units of its own size: squares could leave the range of doubles.
+    fn of(outline: &'o BaseElement) -> Option<Self> {
         let mut bounds = Bounds::EMPTY;
         outline.control_points().for_each(|point| bounds.add(point));
         let size = bounds.size().max_element();
@@ -163,41 +166,40 @@ impl Measured {
             return None;
         }
         let unit = libm::ldexp(1.0, exponent_of(size));
-        let (mut length, mut around) = (Sums::NONE, Sums::NONE);
+        let relative = |from: DVec2, piece: &Piece, t: f64| {
+            let (point, velocity) = at(from, piece, t);
+            // Coordinates relative to the start keep the digits of distant shapes.
+            ((point - outline.start()) / unit, velocity / unit)
+        };
+        let mut sums = Sums::NONE;
         let mut from = outline.start();
         for piece in outline.pieces() {
-            let parts = if matches!(piece, Piece::Line(_)) {
-                1
-            } else {
-                PARTS
-            };
-            let share = 1.0 / f64::from(parts);
-            for part in 0..parts {
+            if outline.is_closed() {
                 for (node, weight) in GAUSS {
-                    let (point, velocity) = at(from, piece, (f64::from(part) + node) * share);
-                    // Coordinates relative to the start keep the digits of distant shapes.
-                    let (point, velocity) = ((point - outline.start()) / unit, velocity / unit);
-                    length.add(point, weight * share * velocity.length());
-                    around.add_around(point, weight * share * velocity);
+                    let (point, velocity) = relative(from, piece, node);
+                    sums.add_around(point, weight * velocity);
+                }
+            } else {
+                for (t, weight) in nodes(piece) {
+                    let (point, velocity) = relative(from, piece, t);
+                    sums.add(point, weight * velocity.length());
                 }
             }
             from = piece.end();
         }
-        let has_area = around.total.abs() > 1e-14 * length.total * length.total;
+        let span = span(outline, unit);
+        let has_area = sums.total.abs() > 1e-14 * span * span;
         if outline.is_closed() && !has_area {
             return None;
         }
-        let sums = if outline.is_closed() {
-            &around
-        } else {
-            &length
-        };
         let mean = sums.first / sums.total;
         let covariance = sums.second * (1.0 / sums.total) - square(mean);
         let is_finite = mean.is_finite() && covariance.is_finite();
         is_finite.then(|| Self {
-            length: length.total * unit,
-            area: { outline.is_closed() }.then_some(around.total.abs() * unit * unit),
+            outline,
+            unit,
+            span: span * unit,
+            area: { outline.is_closed() }.then_some(sums.total.abs() * unit * unit),
             moments: Moments {
                 mean: mean * unit + outline.start(),
                 covariance: covariance * unit * unit,
@@ -205,24 +207,37 @@ impl Measured {
         })
     }
 
-    /// Returns whether the outline stands for a point: whether its length is that of rounding errors at its
+    /// Returns the length of the outline.
+    fn length(&self) -> f64 {
+        let mut length = 0.0;
+        let mut from = self.outline.start();
+        for piece in self.outline.pieces() {
+            let speed = |t| (at(from, piece, t).1 / self.unit).length();
+            let speeds = nodes(piece).map(|(t, weight)| weight * speed(t));
+            length += speeds.sum::<f64>();
+            from = piece.end();
+        }
+        length * self.unit
+    }
+
+    /// Returns whether the outline stands for a point: whether its size is that of rounding errors at its
     /// place.
     fn is_point(&self) -> bool {
-        self.length <= 1e-15 * (1.0 + self.moments.mean.abs().max_element())
+        self.span <= 1e-15 * (1.0 + self.moments.mean.abs().max_element())
     }
 }
 
 /// Returns the weights of [`Shape::shares`].
-fn shares(measured: &[Measured]) -> Vec<f64> {
+fn shares(measured: &[Measured<'_>]) -> Vec<f64> {
     if measured.iter().all(Measured::is_point) {
         return vec![1.0; measured.len()];
     }
     let areas: Option<Vec<f64>> = measured.iter().map(|outline| outline.area).collect();
-    areas.unwrap_or_else(|| measured.iter().map(|outline| outline.length).collect())
+    areas.unwrap_or_else(|| measured.iter().map(Measured::length).collect())
 }
 
 /// Returns the moments of the mixture of outlines; `None` if they are not finite.
-fn union(measured: &[Measured]) -> Option<Moments> {
+fn union(measured: &[Measured<'_>]) -> Option<Moments> {
     let shares = shares(measured);
     let total: f64 = shares.iter().sum();
     let mixed = || shares.iter().map(|share| share / total).zip(measured);
@@ -240,6 +255,30 @@ fn union(measured: &[Measured]) -> Option<Moments> {
         mean,
         covariance: spread,
     })
+}
+
+/// Returns the parameters and weights by which functions of a piece are integrated that are no polynomials.
+fn nodes(piece: &Piece) -> impl Iterator<Item = (f64, f64)> {
+    let parts = match piece {
+        Piece::Line(_) => 1,
+        Piece::Cubic(..) => PARTS,
+    };
+    let share = 1.0 / f64::from(parts);
+    (0..parts).flat_map(move |part| {
+        let nodes = GAUSS.into_iter();
+        nodes.map(move |(node, weight)| ((f64::from(part) + node) * share, weight * share))
+    })
+}
+
+/// Returns the length of the control polygon of an outline, in units.
+fn span(outline: &BaseElement, unit: f64) -> f64 {
+    let mut from = outline.start();
+    let sides = outline.control_points().map(|point| {
+        let side = ((point - from) / unit).length();
+        from = point;
+        side
+    });
+    sides.sum()
 }
 
 /// Returns point and velocity of a piece at the parameter `t` from 0 to 1.

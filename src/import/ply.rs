@@ -173,6 +173,10 @@ pub fn read_ply(mut input: impl BufRead) -> Result<Vec<DVec3>, PlyError> {
         }
         // A false number must not reserve memory.
         let mut points = Vec::with_capacity(element.count.min(1 << 20));
+        if encoding != Encoding::Text && element.properties.iter().all(|it| it.length.is_none()) {
+            values.read_rows(element, [x, y, z], &mut points)?;
+            return Ok(points);
+        }
         let mut row = vec![0.0; element.properties.len()];
         for number in 1..=element.count {
             values.read(element, number, &mut row)?;
@@ -297,6 +301,43 @@ impl<R: BufRead> Values<R> {
                     next()?;
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Reads the points of all elements, which have no lists: their coordinates are the properties of these numbers.
+    fn read_rows(
+        &mut self,
+        element: &Element,
+        coordinates: [usize; 3],
+        points: &mut Vec<DVec3>,
+    ) -> Result<(), PlyError> {
+        /// Number of bytes that are read at once, but for a longer row.
+        const CHUNK: usize = 1 << 16;
+        let mut size = 0;
+        let places = element.properties.iter().map(|property| {
+            size += property.scalar.size();
+            (size - property.scalar.size(), property.scalar)
+        });
+        let places: Vec<(usize, Scalar)> = places.collect();
+        let places = coordinates.map(|number| places[number]);
+        let is_big = self.encoding == Encoding::Big;
+        let mut bytes = vec![0; size * (CHUNK / size).max(1)];
+        let mut left = element.count;
+        while left > 0 {
+            let rows = left.min(bytes.len() / size);
+            let bytes = &mut bytes[..rows * size];
+            self.input.read_exact(bytes)?;
+            for row in bytes.chunks_exact(size) {
+                let point = places.map(|(place, scalar)| scalar.value(&row[place..], is_big));
+                let point = DVec3::from(point);
+                if !point.is_finite() {
+                    let vertex = points.len() + 1;
+                    return Err(PlyError::NotFinite { vertex });
+                }
+                points.push(point);
+            }
+            left -= rows;
         }
         Ok(())
     }

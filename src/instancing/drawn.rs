@@ -13,7 +13,7 @@ pub(crate) const FIRST: usize = 1;
 
 /// Returns the number of cells into which the ranges of draws are divided for each of some instances.
 pub(crate) fn cells_of_each(instances: usize) -> usize {
-    const MAX_OF_ALL: usize = 1 << 20;
+    const MAX_OF_ALL: usize = 1 << 19;
     (MAX_OF_ALL / instances.max(1)).clamp(1, MAX_CELLS)
 }
 

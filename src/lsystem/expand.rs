@@ -162,7 +162,8 @@ impl<'s> Expander<'s> {
             if let Some(template) = system.productions[production].successor.get(position) {
                 arguments.clear();
                 let slots = &self.slots[last.slots..];
-                system.evaluate((production, position), slots, step, arguments)?;
+                let work = system.evaluate((production, position), slots, step, arguments)?;
+                self.rewriter.work += work;
                 let path = last.path.map(|path| path.child(number(position)));
                 return Ok(Some((template.symbol, path)));
             }

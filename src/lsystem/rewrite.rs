@@ -1,6 +1,7 @@
 //! Rewriting of words, step by step, within limits of length and work.
 
 use crate::draws::{Path, pick_by_weight};
+use crate::expression::Program;
 
 use crate::readable::grouped;
 
@@ -261,7 +262,7 @@ impl LSystem {
 
 impl LSystem {
     /// Appends the arguments of a module of a production's successor, evaluated with the arguments that the
-    /// production sees.
+    /// production sees. Returns the [work](Program::work) of that.
     ///
     /// # Errors
     ///
@@ -272,7 +273,8 @@ impl LSystem {
         slots: &[f64],
         step: u32,
         arguments: &mut Vec<f64>,
-    ) -> Result<(), RewriteError> {
+    ) -> Result<u64, RewriteError> {
+        let mut work = 0;
         let template = &self.productions[production].successor[position];
         for argument in &template.arguments {
             let value = argument.eval(slots);
@@ -284,8 +286,9 @@ impl LSystem {
                 });
             }
             arguments.push(value);
+            work += argument.work() as u64;
         }
-        Ok(())
+        Ok(work)
     }
 }
 
@@ -302,7 +305,7 @@ pub(super) struct Rewriter<'s> {
     system: &'s LSystem,
     /// Arguments that the production chosen last sees, and its variables.
     pub(super) slots: Vec<f64>,
-    /// The number of modules and productions examined so far.
+    /// The number of modules and productions examined so far, and the work of their formulas.
     pub(super) work: u64,
 }
 
@@ -342,6 +345,8 @@ impl<'s> Rewriter<'s> {
                     }
                 }
             }
+            let formulas = production.condition.iter().chain(&production.weight);
+            *work += formulas.map(Program::work).sum::<usize>() as u64;
             let condition = production.condition.as_ref();
             let holds = condition.is_none_or(|condition| condition.holds(slots));
             let weight = production.weight.as_ref();
@@ -354,6 +359,7 @@ impl<'s> Rewriter<'s> {
             for variable in &system.productions[chosen].variables {
                 let drawn = variable.draw(path, slots);
                 slots.push(drawn);
+                *work += 1;
             }
         }
         Some(chosen)
@@ -380,7 +386,8 @@ impl<'s> Rewriter<'s> {
                 for (position, template) in successor.iter().enumerate() {
                     next.symbols.push(number(template.symbol));
                     let arguments = &mut next.arguments;
-                    system.evaluate((chosen, position), &self.slots, step, arguments)?;
+                    self.work +=
+                        system.evaluate((chosen, position), &self.slots, step, arguments)?;
                     next.paths
                         .extend(path.map(|path| path.child(number(position))));
                 }

@@ -17,8 +17,9 @@ const MAX_ROUNDS: usize = 100_000;
 /// Maximum number of entries that all iterations together multiply.
 const MAX_WORK: usize = 1_000_000_000;
 
-/// Number of iterations without a narrower enclosure after which only rounding is left.
-const PATIENCE: usize = 50;
+/// Number of iterations without a narrower enclosure after which only rounding is left, if the enclosure is as narrow as
+/// [`ROUNDING`]. No iteration widens it, but for rounding.
+const PATIENCE: usize = 16;
 
 /// Relative width at which an enclosure counts as a value.
 const NARROW: f64 = 4e-16;
@@ -38,8 +39,11 @@ pub(super) fn perron(size: usize, entries: &[Entry], enough: impl Fn([f64; 2]) -
     let (mut narrowest, mut since) = (f64::INFINITY, 0);
     for _ in 0..MAX_ROUNDS.min(MAX_WORK / entries.len().max(1)) {
         let mut next = vector.clone();
-        for &(row, column, value) in entries {
-            next[row] += value * vector[column];
+        // Entries of a row are next to each other, as a rule, and are summed without stores.
+        for entries in entries.chunk_by(|a, b| a.0 == b.0) {
+            let products = entries.iter();
+            let products = products.map(|(_, column, value)| value * vector[*column]);
+            next[entries[0].0] += products.sum::<f64>();
         }
         let quotients = next
             .iter()

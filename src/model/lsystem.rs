@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::extent::NoLimit;
 use crate::graph::{CompileError, Graph};
 use crate::lsystem::{LSystem, LSystemInSpace};
 use crate::metadata::Metadata;
@@ -38,9 +39,14 @@ impl OfKind for Arc<LSystem> {
         (self.is_deterministic() && !self.in_limit).then(|| LSystem::in_limit(self).into())
     }
 
+    fn no_limit(&self) -> Option<NoLimit> {
+        let reason = { self.in_limit }.then(|| self.check_growth().err());
+        reason.flatten().map(NoLimit::from)
+    }
+
     fn starts_anew(&self) -> bool {
         match self.in_limit {
-            true => self.check_growth().is_err(),
+            true => self.no_limit().is_some(),
             false => !Graph::rewrites_edges(self),
         }
     }
@@ -69,8 +75,13 @@ impl OfKind for Arc<LSystemInSpace> {
         (words.is_deterministic() && !words.in_limit).then(|| LSystemInSpace::in_limit(self).into())
     }
 
+    fn no_limit(&self) -> Option<NoLimit> {
+        let reason = { self.words.in_limit }.then(|| self.check_growth().err());
+        reason.flatten().map(NoLimit::from)
+    }
+
     fn starts_anew(&self) -> bool {
-        !self.words.in_limit || self.check_growth().is_err()
+        !self.words.in_limit || self.no_limit().is_some()
     }
 
     fn deepest(&self, most_steps: u32, max_elements: u64) -> Option<u32> {

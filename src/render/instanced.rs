@@ -61,7 +61,7 @@ impl Work {
     fn of(purpose: Purpose) -> Self {
         match purpose {
             Purpose::Drawing => Self::FILE,
-            Purpose::Estimate => Self {
+            Purpose::Estimate(_) => Self {
                 instances: 1 << 20,
                 ..Self::FILE
             },
@@ -93,7 +93,12 @@ pub(super) fn write(
 /// Returns the length in bytes of an SVG of nested instances, which is written to a counter; `None` where it cannot be made,
 /// or not with little work: if the symbols instance more than 2²⁰ elements and symbols, of which those of different maps count
 /// as several, or if more than 20,000 elements would have to be grown.
-pub(crate) fn length(graph: &Graph, options: &Options, steps: u32) -> Option<u64> {
+pub(crate) fn length(
+    graph: &Graph,
+    options: &Options,
+    steps: u32,
+    bounds: &dyn Fn(u32) -> Option<Bounds>,
+) -> Option<u64> {
     const MAX_GROWN: u64 = 20_000;
     /// Number of points of the outlines of all elements that are grown.
     const MAX_POINTS: u64 = 1 << 20;
@@ -120,12 +125,13 @@ pub(crate) fn length(graph: &Graph, options: &Options, steps: u32) -> Option<u64
         ..Growth::steps(steps)
     };
     let mut length = Length(0);
-    write_for(Purpose::Estimate, graph, &growth, &options, &mut length).ok()?;
+    let purpose = Purpose::Estimate(bounds);
+    write_for(purpose, graph, &growth, &options, &mut length).ok()?;
     Some(length.0)
 }
 
 fn write_for(
-    purpose: Purpose,
+    purpose: Purpose<'_>,
     graph: &Graph,
     growth: &Growth<'_>,
     options: &Options,

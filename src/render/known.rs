@@ -22,20 +22,21 @@ const SPECK: f64 = 1e-6;
 const MAX_AGES: u32 = 256;
 
 /// Purpose of what is known of an approximant, on which the work that it may take depends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Purpose {
+#[derive(Clone, Copy)]
+pub(super) enum Purpose<'b> {
     /// Drawing: all that is known is exact, and found if that is possible at all.
     Drawing,
-    /// Estimate of the size of a file, which is not made if it takes much work.
-    Estimate,
+    /// Estimate of the size of a file, which is not made if it takes much work. The boxes of approximants are known by their
+    /// steps, about.
+    Estimate(&'b dyn Fn(u32) -> Option<Bounds>),
 }
 
-impl Purpose {
+impl Purpose<'_> {
     /// Returns the number of kinds of children that may be looked at.
     fn most_kinds(self) -> usize {
         match self {
             Self::Drawing => usize::MAX,
-            Self::Estimate => 1 << 18,
+            Self::Estimate(_) => 1 << 18,
         }
     }
 
@@ -43,7 +44,22 @@ impl Purpose {
     fn limits(self) -> Limits {
         match self {
             Self::Drawing => Limits::DRAWING,
-            Self::Estimate => Limits::ESTIMATE,
+            Self::Estimate(_) => Limits::ESTIMATE,
+        }
+    }
+
+    /// Returns the bounding box of an approximant, with padding around every object, if the graph determines it.
+    fn padded_bounds(
+        self,
+        graph: &Graph,
+        steps: u32,
+        pad: impl Fn(&Object) -> f64,
+    ) -> Option<Bounds> {
+        match self {
+            Self::Estimate(bounds) if graph.objects().iter().all(|it| pad(it) == 0.0) => {
+                bounds(steps)
+            }
+            _ => graph.padded_bounds(steps, pad),
         }
     }
 }
@@ -91,7 +107,7 @@ impl<'g> Prepass<'g> {
         style: &'g Style,
         steps: u32,
         seeds: bool,
-        purpose: Purpose,
+        purpose: Purpose<'_>,
     ) -> Option<Self> {
         let mut prepass = Self::new(graph, style, steps);
         if prepass.needs_lengths() {
@@ -99,7 +115,7 @@ impl<'g> Prepass<'g> {
         }
         let with_ages = style.color_by == ColorBy::Age && seeds;
         let stands = ElementKinds::at(graph, growth.steps, with_ages, purpose.most_kinds())?;
-        prepass.bounds = prepass.known_bounds(growth, purpose.limits())?;
+        prepass.bounds = prepass.known_bounds(growth, purpose)?;
         let used: Vec<u128> = match style.color_by.property() {
             ColorProperty::Uniform | ColorProperty::Tint | ColorProperty::Frame => vec![0],
             ColorProperty::Age if seeds => {
@@ -128,16 +144,18 @@ impl<'g> Prepass<'g> {
     }
 
     /// Computes the bounding box from the graph, or by a search.
-    fn known_bounds(&self, growth: &Growth<'_>, limits: Limits) -> Option<Bounds> {
+    fn known_bounds(&self, growth: &Growth<'_>, purpose: Purpose<'_>) -> Option<Bounds> {
         let pad = |object: &Object| self.pad(object);
-        if let Some(bounds) = self.graph().padded_bounds(growth.steps, pad) {
+        if let Some(bounds) = purpose.padded_bounds(self.graph(), growth.steps, pad) {
             // The precision of the box is relative to the unit length and to the coordinates, not to its size.
             let corners = [bounds.min(), bounds.max()];
             let far = corners.map(|corner| corner.abs().max_element());
             let is_speck = bounds.size().max_element() < SPECK * (1.0 + far[0].max(far[1]));
             return (!is_speck).then_some(bounds);
         }
-        let glimpsed = self.clone().glimpsed(growth, &self.reaches(), limits)?;
+        let glimpsed = self
+            .clone()
+            .glimpsed(growth, &self.reaches(), purpose.limits())?;
         Some(glimpsed.bounds)
     }
 }

@@ -108,12 +108,12 @@ struct Prepared<M: StructureMap> {
     master: Option<PreparedMaster<M>>,
     transforms: Arc<[M::Written]>,
     forms: Arc<[LinearForm]>,
-    tint: Option<PreparedTint>,
+    tint: Option<Box<PreparedTint>>,
     place: Place,
 }
 
 enum PreparedMaster<M: StructureMap> {
-    Shape(M::Set),
+    Shape(Box<M::Set>),
     Object {
         name: String,
         level: Option<Program>,
@@ -175,9 +175,8 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             instance.transforms = [&instance.transforms[..], &whole_scene].concat().into();
         }
         let mut objects = Vec::new();
-        while let Some(&(union, level)) = self.kind.reached.get(objects.len()) {
-            let union = std::mem::replace(&mut self.kind.unions[union], Union::nothing());
-            let number = self.kind.reached[objects.len()].0;
+        while let Some(&(number, level)) = self.kind.reached.get(objects.len()) {
+            let union = std::mem::replace(&mut self.kind.unions[number], Union::nothing());
             let slots = self.slots(level);
             let (instances, alternatives) = self.content(&union, level);
             objects.push(ObjectDefinition {
@@ -191,7 +190,10 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 transforms: Arc::clone(&union.transforms),
                 slots,
             });
-            self.kind.unions[number] = union;
+            // Other levels may be reached later, but an object without levels once.
+            if level.is_some() {
+                self.kind.unions[number] = union;
+            }
             if self.kind.size > MAX_INSTANCES {
                 let message = format!(
                     "with all their levels the objects hold more than {MAX_INSTANCES} instances and \
@@ -332,12 +334,15 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
 
     fn prepared(&mut self, document: &InstanceDocument, scope: &UnionScope) -> Prepared<M> {
         let master = document.master.as_ref().and_then(|master| match master {
-            MasterDocument::Shape(shape) => M::set(self, shape).map(PreparedMaster::Shape),
+            MasterDocument::Shape(shape) => {
+                let set = M::set(self, shape)?;
+                Some(PreparedMaster::Shape(Box::new(set)))
+            }
             MasterDocument::Object { name, level } => {
                 let is_free = level.is_none() && !self.kind.written.contains(&name.value);
                 let primitive = is_free.then(|| M::primitive(&name.value)).flatten();
                 Some(match primitive {
-                    Some(primitive) => PreparedMaster::Shape(primitive),
+                    Some(primitive) => PreparedMaster::Shape(Box::new(primitive)),
                     None => PreparedMaster::Object {
                         name: name.value.clone(),
                         level: level
@@ -348,7 +353,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 })
             }
         });
-        let tint = { document.tint.as_deref() }.map(|tint| self.tint(tint, &scope.fixed));
+        let tint = { document.tint.as_deref() }.map(|tint| Box::new(self.tint(tint, &scope.fixed)));
         Prepared {
             master,
             transforms: self.transforms(&document.transforms, &scope.drawn),

@@ -73,7 +73,9 @@ fn instances<M: Tweened>(tween: Tween, both: [&[ObjectInstance<M>]; 2]) -> Vec<O
 fn between<M: Tweened>(tween: Tween, both: [&ObjectInstance<M>; 2]) -> ObjectInstance<M> {
     let map = M::between(tween, both.map(|it| &it.map));
     let shape = match both.map(|it| &it.master) {
-        [Master::Shape(a), Master::Shape(b)] => M::set(tween, [a, b]).map(Master::Shape),
+        [Master::Shape(a), Master::Shape(b)] => {
+            M::set(tween, [a, b]).map(|set| Master::Shape(Box::new(set)))
+        }
         _ => None,
     };
     ObjectInstance {

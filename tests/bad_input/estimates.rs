@@ -42,10 +42,13 @@ fn complete(count: usize) -> String {
 #[test]
 fn files_of_nested_instances_are_estimated_where_they_take_little_work() {
     let (graph, options) = compiled(&complete(40), 32);
-    assert!(instanced_bytes(&graph, &options, 32).is_some());
+    assert!(instanced_bytes(&graph, &options, 32, &|steps| graph.bounds(steps)).is_some());
     let (graph, options) = compiled(&complete(165), 32);
     let before = ThreadTime::now();
-    assert_eq!(instanced_bytes(&graph, &options, 32), None);
+    assert_eq!(
+        instanced_bytes(&graph, &options, 32, &|steps| graph.bounds(steps)),
+        None
+    );
     assert!(before.elapsed().as_secs_f64() < 10.0);
 }
 
@@ -63,7 +66,7 @@ fn elements_that_are_replaced_alike_are_looked_at_once() {
     }
     let (graph, options) = compiled(&text, 32);
     let before = ThreadTime::now();
-    let _ = instanced_bytes(&graph, &options, 32);
+    let _ = instanced_bytes(&graph, &options, 32, &|steps| graph.bounds(steps));
     assert!(before.elapsed().as_secs_f64() < 10.0);
 }
 

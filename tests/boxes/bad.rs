@@ -42,7 +42,20 @@ fn bad_input_is_refused_with_a_reason() {
     no_width[16..20].fill(0);
     let mut huge = white.clone();
     huge[16..24].fill(0x7f);
-    let cases: [(&str, &[u8], &str); 20] = [
+    // Rows with a byte beside the coordinates, more than are read at once.
+    let mut many = b"ply\nformat binary_little_endian 1.0\nelement vertex 40000\nproperty uchar red\nproperty float x\nproperty double y\nproperty float z\nend_header\n".to_vec();
+    for vertex in 1..=40_000_u16 {
+        let y = if vertex < 30_000 {
+            f64::from(vertex)
+        } else {
+            f64::NAN
+        };
+        many.push(7);
+        many.extend(1_f32.to_le_bytes());
+        many.extend(y.to_le_bytes());
+        many.extend(2_f32.to_le_bytes());
+    }
+    let cases: [(&str, &[u8], &str); 21] = [
         ("empty.csv", b"", "there are no points"),
         ("header.csv", b"x,y\n", "there are no points"),
         ("one.csv", b"1,2\n", "all points are equal"),
@@ -88,6 +101,7 @@ fn bad_input_is_refused_with_a_reason() {
             b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 one 0\n",
             "vertex 1: 'one' is not a number",
         ),
+        ("infinite.ply", &many, "vertex 30000: a coordinate is not finite"),
         (
             "far.csv",
             b"-1e308,0\n1e308,0\n",

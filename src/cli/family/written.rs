@@ -38,7 +38,7 @@ fn formulas(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
     }
     let mut sides = [Vec::new(), Vec::new()];
     for formula in &formulas {
-        let halves = formula.complex_parts().map_err(described)?;
+        let halves = formula.complex_parts(&mut 0).map_err(described)?;
         for (side, half) in sides.iter_mut().zip(halves) {
             side.push(half);
         }

@@ -17,8 +17,8 @@ use super::super::length::Paper;
 use super::super::rule::Loaded;
 use super::super::{Failure, growth, length, light, output, readable};
 use super::plan::ShownPart;
-use super::tile::Tiled;
 use super::{Arguments, plot, svg, zoom};
+use crate::fractal::Copies;
 
 /// Seconds that one core of 2026 takes to draw a pixel in a band, within a factor of about 3.
 const SECONDS_A_PIXEL: f64 = 1.3e-8;
@@ -31,7 +31,7 @@ pub(super) struct Drawing<'a> {
     shown: &'a ShownPart,
     pub(super) goal: Goal,
     pub(super) path: &'a Path,
-    tiled: Option<Tiled>,
+    copies: Option<Copies>,
 }
 
 impl<'a> Drawing<'a> {
@@ -70,8 +70,8 @@ impl<'a> Drawing<'a> {
                 (loaded, goal)
             }
         };
-        let tiled = arguments.tiled(&loaded, goal)?;
-        let loaded = loaded.with_images(tiled.as_ref().map(|tiled| tiled.images.clone()));
+        let copies = arguments.copies(&loaded, goal)?;
+        let loaded = loaded.with_copies(copies.clone());
         Ok(Self {
             arguments,
             loaded,
@@ -79,7 +79,7 @@ impl<'a> Drawing<'a> {
             shown,
             goal,
             path,
-            tiled,
+            copies,
         })
     }
 
@@ -341,8 +341,8 @@ impl<'a> Drawing<'a> {
         options.extend(self.arguments.chaos.tones());
         let Paper { mut size, unit } = *size;
         let mut view = self.arguments.view(self.loaded.model.metadata());
-        if let Some(tiled) = &self.tiled {
-            (view.window, size) = (Some(tiled.window), tiled.size);
+        if let Some(copies) = &self.copies {
+            (view.window, size) = (Some(copies.window), copies.size);
         }
         render::Options {
             format: self.format,

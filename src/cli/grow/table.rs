@@ -22,8 +22,8 @@ impl Arguments {
         let goal = Goal::asked(self.steps(), None, &loaded)?;
         let steps = goal.steps();
         let color_by = self.picture.style(loaded.model.metadata()).color_by;
-        let tiled = self.tiled(&loaded, goal)?;
-        let loaded = &loaded.with_images(tiled.map(|tiled| tiled.images));
+        let copies = self.copies(&loaded, goal)?;
+        let loaded = &loaded.with_copies(copies);
         let graph = loaded.compile_for(steps, color_by)?;
         if let Goal::Steps(..) = goal {
             self.growth.check(steps, &graph, loaded)?;

@@ -1,14 +1,8 @@
 //! `kfrac grow --tile`: wallpapers and friezes of a picture.
 
-use crate::extent::bounding_box;
-use crate::fractal::Goal;
-use crate::geometry::{Bounds, DAffine2, DVec2};
-use crate::graph::{CompileError, Graph};
-use crate::grow::Growth;
-use crate::model::Model;
-use crate::render::{Canvas, NoRoom, Size};
-use crate::style::{Named, View};
-use crate::symmetry::{Tiling, TilingGroup};
+use crate::fractal::{Copies, Goal, Repetition};
+use crate::style::Named;
+use crate::symmetry::TilingGroup;
 
 use super::super::rule::Loaded;
 use super::super::{Failure, number, picture};
@@ -36,18 +30,9 @@ pub(super) struct TileArguments {
 /// Parses the factor of a cell.
 fn factor(text: &str) -> Result<f64, String> {
     let factor = text.parse().ok();
-    let factor = factor.filter(|factor: &f64| (0.01..=1000.0).contains(factor));
-    factor.ok_or_else(|| "expected a factor from 0.01 to 1000".into())
-}
-
-/// Copies of a set in a window.
-#[derive(Clone, Debug)]
-pub(super) struct Tiled {
-    /// Window that the picture shows, and its size, where they are not given.
-    pub(super) window: [f64; 4],
-    pub(super) size: Size,
-    /// Isometries of the copies, in the coordinates of the file.
-    pub(super) images: Vec<DAffine2>,
+    let factor = factor.filter(|factor| Repetition::CELLS.contains(factor));
+    let (least, most) = Repetition::CELLS.into_inner();
+    factor.ok_or_else(|| format!("expected a factor from {least} to {most}"))
 }
 
 impl TileArguments {
@@ -75,99 +60,20 @@ impl TileArguments {
         tile.into_iter().chain(cell).chain(repeat).collect()
     }
 
-    /// Returns the copies of a set that a picture of a view and a size shows; `None` if no tiling is requested. `graph` is
-    /// that of the set, whose box is the one after a number of steps or, without it, that of the limit set. Random sets are
-    /// drawn with `seed`.
-    pub(super) fn tiled(
-        &self,
-        graph: &Graph,
-        (steps, seed): (Option<u32>, u64),
-        view: &View,
-        size: Size,
-    ) -> Result<Option<Tiled>, Failure> {
-        let Some(group) = self.tile else {
-            return Ok(None);
-        };
-        let motif = match steps {
-            Some(steps) => extent(graph, steps, seed),
-            None => graph
-                .limit_bounds()
-                .or_else(|| extent(graph, DEEPEST, seed)),
-        };
-        let motif = motif.map(|motif| graph.place().bounds(&motif));
-        let is_right = |motif: &Bounds| !motif.is_empty() && motif.is_finite();
-        let Some(motif) = motif.filter(is_right) else {
-            return Err(explained(NoRoom::Nothing));
-        };
-        let tiling = Tiling::new(group, &motif, self.cell.unwrap_or(1.0));
-        let window = view.window;
-        let size = match (size, window) {
-            (size, None) if size == Size::default() => {
-                let [width, height] = tiling.size();
-                Size::Exactly(width, height)
-            }
-            (size, _) => size,
-        };
-        let window = window.unwrap_or_else(|| tiling.window(self.repeat.unwrap_or(1)));
-        let view = View {
-            margin: view.margin.or(Some(0.0)),
-            ..*view
-        };
-        let canvas = Canvas::of_window(window, &view, size).map_err(explained)?;
-        let [width, height] = canvas.size().map(f64::from);
-        let back = canvas.to_pixels().inverse();
-        let mut shown = Bounds::EMPTY;
-        for corner in [DVec2::ZERO, DVec2::new(width, height)] {
-            shown.add(back.transform_point2(corner));
-        }
-        let images = tiling.isometries(&shown).map_err(anyhow::Error::new)?;
-        if !graph.has_room_for_images(images.len() as u64, Model::MAX_LISTED) {
-            return Err(anyhow::Error::new(CompileError::TooManyImages {
-                group: group.name().into(),
-                most: Model::MAX_LISTED,
-            })
-            .into());
-        }
-        Ok(Some(Tiled {
-            window,
-            size,
-            images,
-        }))
+    /// Returns the repetition that is requested.
+    fn repetition(&self) -> Option<Repetition> {
+        let group = Repetition::from(self.tile?);
+        let spaced = group.cell(self.cell.unwrap_or(1.0));
+        Some(spaced.periods(self.repeat.unwrap_or(1)))
     }
-}
-
-/// Number of steps after which a set without a box of its limit is measured.
-const DEEPEST: u32 = 12;
-
-/// Limit of the number of elements from which a box is found.
-const MEASURED: u64 = 1_000_000;
-
-/// Returns the box of an approximant or, if it has too many elements to be grown for it, of an earlier one.
-fn extent(graph: &Graph, steps: u32, seed: u64) -> Option<Bounds> {
-    let walked = || {
-        (0..=steps).rev().find_map(|steps| {
-            let growth = Growth {
-                seed,
-                max_elements: MEASURED,
-                ..Growth::steps(steps)
-            };
-            graph.check_size(steps, MEASURED).ok()?;
-            bounding_box(graph, &growth).ok()
-        })
-    };
-    graph.bounds(steps).or_else(walked)
-}
-
-fn explained(error: NoRoom) -> Failure {
-    anyhow::Error::new(error).into()
 }
 
 impl Arguments {
     /// Returns the copies of a set in the picture, if they are asked for.
-    pub(super) fn tiled(&self, loaded: &Loaded, goal: Goal) -> Result<Option<Tiled>, Failure> {
-        if !self.tile.is_asked() {
+    pub(super) fn copies(&self, loaded: &Loaded, goal: Goal) -> Result<Option<Copies>, Failure> {
+        let Some(repetition) = self.tile.repetition() else {
             return Ok(None);
-        }
+        };
         let steps = match goal {
             Goal::Steps(steps, _) => Some(steps),
             Goal::Detail(_) => None,
@@ -175,6 +81,7 @@ impl Arguments {
         let graph = loaded.compile(goal.steps())?;
         let view = self.view(loaded.model.metadata());
         let growth = (steps, self.growth.seed.first());
-        self.tile.tiled(&graph, growth, &view, self.size.size)
+        let copies = repetition.copies(&graph, growth, &view, self.size.size);
+        Ok(Some(copies.map_err(anyhow::Error::new)?))
     }
 }

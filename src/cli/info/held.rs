@@ -50,14 +50,14 @@ pub(crate) fn hold(
         let last = last(&graph, proposed, most);
         let graph = loaded.in_space(Some(last))?.unwrap_or(graph);
         let bounds = graph.bounds(last);
-        let limit = loaded.other_limit_in_space()?;
+        let limit = loaded.other_limit_in_space(&graph)?;
         let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
         let info = info(&loaded, graphs, last, bounds, |_, _| None);
         return described(&info, proposed);
     }
     let proposed = steps::choose(None, &loaded)?;
     let (graph, last) = graph(&loaded, proposed, most)?;
-    let limit = loaded.other_limit(last)?;
+    let limit = loaded.other_limit(&graph, last)?;
     let info = in_plane(&loaded, &graph, limit.as_ref().unwrap_or(&graph), last);
     described(&info, proposed)
 }

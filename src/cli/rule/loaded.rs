@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::document::{Document, Setting};
-use crate::geometry::{DAffine2, Frame3, Homothety};
+use crate::fractal::Copies;
+use crate::geometry::{Frame3, Homothety};
 use crate::graph::{CompileError, Graph};
 use crate::grow::Growth;
 use crate::lsystem::RewriteError;
@@ -38,8 +39,8 @@ pub(in crate::cli) struct Loaded {
     place: Option<Homothety>,
     /// Degrees by which graphs are turned about the origin of the file.
     turn: f64,
-    /// Isometries by whose images the turned set is replaced.
-    images: Option<Vec<DAffine2>>,
+    /// Copies by which the turned set is replaced.
+    copies: Option<Copies>,
 }
 
 impl Loaded {
@@ -63,7 +64,7 @@ impl Loaded {
             most_listed: None,
             place: None,
             turn: 0.0,
-            images: None,
+            copies: None,
         }
     }
 
@@ -125,20 +126,18 @@ impl Loaded {
         }
     }
 
-    /// Sets isometries, in the coordinates of the file, by whose images the turned set is replaced in graphs.
-    pub(in crate::cli) fn with_images(self, images: Option<Vec<DAffine2>>) -> Self {
-        Self { images, ..self }
+    /// Sets the copies by which the turned set is replaced in graphs.
+    pub(in crate::cli) fn with_copies(self, copies: Option<Copies>) -> Self {
+        Self { copies, ..self }
     }
 
     /// Returns a graph in the coordinates of this rule as it is grown: turned, and with its images.
     fn placed(&self, graph: Graph) -> Graph {
         let graph = graph.turned(self.turn);
-        let Some(images) = &self.images else {
-            return graph;
-        };
-        let place = *graph.place();
-        let images: Vec<_> = images.iter().map(|image| place.within(image)).collect();
-        graph.with_images(&images)
+        match &self.copies {
+            Some(copies) => copies.of(graph),
+            None => graph,
+        }
     }
 
     /// Returns [`Model::place`]; an error is reported as an error in the file.
@@ -176,11 +175,18 @@ impl Loaded {
         self.graph_of(&self.model.of_limit(), steps)
     }
 
-    /// Compiles the graph of the model that has the limit set; `None` if it is the model itself.
-    pub(in crate::cli) fn other_limit(&self, steps: u32) -> Result<Option<Graph>, Failure> {
+    /// Compiles the graph of the model that has the limit set; `None` if it is the model itself, whose graph is given.
+    pub(in crate::cli) fn other_limit(
+        &self,
+        graph: &Graph,
+        steps: u32,
+    ) -> Result<Option<Graph>, Failure> {
         match self.model.of_limit() {
             Cow::Borrowed(_) => Ok(None),
-            Cow::Owned(model) => self.compiled(&model, steps).map(Some),
+            Cow::Owned(model) => match model.as_kind().no_limit() {
+                Some(reason) => Ok(Some(graph.without_limit(reason))),
+                None => self.compiled(&model, steps).map(Some),
+            },
         }
     }
 
@@ -198,11 +204,18 @@ impl Loaded {
         self.in_space_of(&self.model, steps)
     }
 
-    /// Returns the graph of the model in space that has the limit set; `None` if it is the model itself.
-    pub(in crate::cli) fn other_limit_in_space(&self) -> Result<Option<Graph<Frame3>>, Failure> {
+    /// Returns the graph of the model in space that has the limit set; `None` if it is the model itself, whose graph is
+    /// given.
+    pub(in crate::cli) fn other_limit_in_space(
+        &self,
+        graph: &Graph<Frame3>,
+    ) -> Result<Option<Graph<Frame3>>, Failure> {
         match self.model.of_limit() {
             Cow::Borrowed(_) => Ok(None),
-            Cow::Owned(model) => self.in_space_of(&model, None),
+            Cow::Owned(model) => match model.as_kind().no_limit() {
+                Some(reason) => Ok(Some(graph.without_limit(reason))),
+                None => self.in_space_of(&model, None),
+            },
         }
     }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::draws::{Path, pick_by_weight};
+use crate::expression::Program;
 use crate::lsystem::{Action, LSystem};
 
 use super::NotCompiled;
@@ -114,6 +115,10 @@ impl KindFinder<'_> {
         let ModuleKind { symbol, born, .. } = self.all[number];
         let arguments = self.all[number].arguments.clone();
         let all = system.symbols()[symbol].productions.iter();
+        let conditions = all
+            .clone()
+            .filter_map(|number| system.productions()[*number].condition.as_ref());
+        self.modules += conditions.map(Program::work).sum::<usize>();
         let mut fitting = all.filter(|&&number| {
             let condition = system.productions()[number].condition.as_ref();
             condition.is_none_or(|condition| condition.holds(&arguments))
@@ -144,6 +149,7 @@ impl KindFinder<'_> {
             }
             let mut word = Vec::with_capacity(written.successor.len());
             for template in &written.successor {
+                self.modules += template.arguments.iter().map(Program::work).sum::<usize>();
                 let values = template
                     .arguments
                     .iter()

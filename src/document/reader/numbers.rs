@@ -57,21 +57,27 @@ impl Reader {
         text: &str,
         place: &Place,
     ) -> Result<Expression, ExpressionError> {
-        if self.values <= MAX_VALUES {
+        if self.has_room(place) {
             let formula = Expression::parse(text)?;
             self.values += formula.operations();
-            if self.values <= MAX_VALUES {
+            if self.has_room(place) {
                 return Ok(formula);
             }
         }
-        if !std::mem::replace(&mut self.is_full, true) {
+        Ok(Expression::unknown())
+    }
+
+    /// Returns whether the values of the file and the operations of its formulas are not too many, which is reported once.
+    fn has_room(&mut self, place: &Place) -> bool {
+        let has_room = self.values <= MAX_VALUES;
+        if !has_room && !std::mem::replace(&mut self.is_full, true) {
             self.error_with_hint(
                 place,
                 "with the operations of its formulas, the file holds more than 250,000 values",
                 "write numbers in place of formulas, as in 0.25 for 1/4",
             );
         }
-        Ok(Expression::unknown())
+        has_room
     }
 
     /// Reads a list of exactly two numbers; in space, of two or three.
@@ -138,11 +144,18 @@ impl Reader {
         if is_name(text) && text != UNIT {
             return Some(WrittenPoint::named(text, &node.place));
         }
+        /// Number of parts of formulas that are copied in the time in which an operation is read.
+        const COPIES: usize = 8;
         let place = node.place.clone();
+        let mut work = 0;
         let parts = { self.formula(text, &place) }
             .map_err(|error| error.hint("a point is written [x, y], or as a formula, (1 + i)/2"))
-            .and_then(|formula| formula.complex_parts());
+            .and_then(|formula| formula.complex_parts(&mut work));
+        // Parts that are written out are as many operations as those that are read.
+        let operations = { parts.iter().flatten() }.map(Expression::operations);
+        self.values += operations.sum::<usize>().max(work / COPIES);
         let parts = match parts {
+            _ if !self.has_room(&place) => return Some(WrittenPoint::unknown(&place)),
             Ok(parts) => parts,
             Err(error) => {
                 let within = node.within(error.range.clone());

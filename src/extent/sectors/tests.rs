@@ -32,7 +32,7 @@ proptest! {
         let images: Vec<Vec<DVec2>> = points.collect();
         let hull = convex_hull(images.concat(), 0.0);
         let reach = |number: u32, along| farthest(&images[number as usize], along);
-        let whole = Whole { corners: &hull, within: 0.0, reach: &reach };
+        let whole = Whole { corners: &hull, within: 0.0, reach: &reach, at_most: &reach };
         let sectors = Sectors::of(numbers(&images), &whole);
         let anywhere = sectors.anywhere(&whole);
         let axes = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
@@ -62,6 +62,7 @@ fn sectors_are_halved_until_few_contend() {
         corners: &hull,
         within: 0.0,
         reach: &reach,
+        at_most: &reach,
     };
     let sectors = Sectors::of(numbers(&images), &whole);
     for degrees in [0.0, 17.23, 90.0, 180.0, 245.05, 270.0, 359.99] {
@@ -84,6 +85,7 @@ fn images_whose_reach_is_unknown_contend() {
         corners: &hull,
         within: 0.0,
         reach: &reach,
+        at_most: &reach,
     };
     let sectors = Sectors::of(numbers(&images), &whole);
     for degrees in [0.0, 45.0, 190.0] {

@@ -5,8 +5,7 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::Union;
-use crate::extent::policy::rightmost;
+use super::{Landmarks, Union};
 use crate::geometry::{DAffine2, DVec2, convex_hull, hausdorff_distance};
 
 fn turned(ratio: f64, degrees: f64, at: DVec2) -> DAffine2 {
@@ -26,12 +25,12 @@ fn apart(
     polygons: &[Vec<DVec2>],
     tolerance: f64,
 ) -> [f64; 2] {
-    let rightmost: Vec<usize> = polygons.iter().map(|it| rightmost(it)).collect();
+    let landmarks = Landmarks::of_all(polygons);
     let union = Union {
         points,
         images,
         polygons,
-        rightmost: &rightmost,
+        landmarks: &landmarks,
     };
     let hull = union.hull(tolerance);
     let all = images.iter().flat_map(|(map, polygon)| {
@@ -79,7 +78,7 @@ fn flat_and_single_hulls_are_exact() {
         points: &[],
         images: &images,
         polygons: &[Vec::new()],
-        rightmost: &[0],
+        landmarks: &Landmarks::of_all(&[Vec::new()]),
     };
     assert!(union.hull(0.0).corners.is_empty());
 }

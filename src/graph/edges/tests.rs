@@ -78,3 +78,19 @@ proptest! {
         prop_assert_eq!(graph.alive(true), reaching);
     }
 }
+
+/// Successors that objects share count once.
+#[test]
+fn instances_are_those_of_distinct_successors() {
+    let alike = || (Some(vec![0, 1, 3]), true);
+    let objects = [
+        alike(),
+        alike(),
+        (Some(vec![3]), true),
+        (None, true),
+        alike(),
+    ];
+    let graph = graph(&objects);
+    let reached = graph.instances().map(|(_, instance)| instance.object);
+    assert_eq!(reached.collect::<Vec<_>>(), [0, 1, 3, 3]);
+}

@@ -23,6 +23,9 @@ pub(super) struct PartDimension {
     pub(super) contact: Option<OtherDimension>,
 }
 
+/// Largest number of copies in a part for which it is decided whether they overlap.
+const MAX_COPIES: usize = 1 << 20;
+
 /// Difference up to which dimensions count as equal.
 const SAME: f64 = 1e-10;
 
@@ -50,6 +53,10 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
             Overlap::None,
             "one copy in each: the limit is a point".into(),
         );
+        return part;
+    }
+    if system.copies.len() > effort.of(MAX_COPIES) {
+        part.give_up("there are too many copies");
         return part;
     }
     let flat = Flat::of(system);

@@ -130,13 +130,19 @@ fn units(flat: &Flat, logs: &[f64]) -> Option<(Vec<f64>, f64)> {
     // Along a tree all ratios may be 1: the remaining ones are those of cycles.
     let mut units = vec![None; flat.size];
     units[0] = Some(0.0);
+    let mut left = flat.size - 1;
+    // Every round finds a unit: the system is connected.
     for _ in 0..flat.size {
+        if left == 0 {
+            break;
+        }
         for (copy, log) in flat.copies.iter().zip(logs) {
             match (units[copy.from], units[copy.to]) {
                 (Some(unit), None) => units[copy.to] = Some(unit + log),
                 (None, Some(unit)) => units[copy.from] = Some(unit - log),
-                _ => {}
+                _ => continue,
             }
+            left -= 1;
         }
     }
     let mut units: Vec<f64> = units.into_iter().map(|unit| unit.unwrap_or(0.0)).collect();
@@ -146,9 +152,16 @@ fn units(flat: &Flat, logs: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut shortest = vec![f64::INFINITY; flat.size];
     shortest[0] = 0.0;
     for _ in 0..flat.size {
+        let mut is_still = true;
         for (copy, log) in flat.copies.iter().zip(&logs) {
             let way = shortest[copy.from] + (log / depth).round();
-            shortest[copy.to] = shortest[copy.to].min(way);
+            if way < shortest[copy.to] {
+                shortest[copy.to] = way;
+                is_still = false;
+            }
+        }
+        if is_still {
+            break;
         }
     }
     for (unit, shortest) in units.iter_mut().zip(&shortest) {

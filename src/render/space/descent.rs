@@ -271,7 +271,7 @@ impl Descent {
         else {
             return false;
         };
-        self.drawn += stamp.elements;
+        self.drawn += u64::from(stamp.elements);
         self.deepest = self.deepest.max(form.level + stamp.deepest);
         true
     }

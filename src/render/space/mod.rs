@@ -53,7 +53,7 @@ use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use tiny_skia::Pixmap;
+use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use crate::geometry::Frame3;
 use crate::graph::Graph;
@@ -387,8 +387,13 @@ fn finish(
             .map_err(SpaceError::from)?;
     }
     let background = Some(options.style.background.unwrap_or(PAPER));
-    let pixels = pixmap.pixels_mut().iter_mut();
-    pixels.for_each(|pixel| *pixel = shade::over(background, *pixel));
+    let empty = shade::over(background, PremultipliedColorU8::TRANSPARENT);
+    for pixel in pixmap.pixels_mut() {
+        *pixel = match pixel.alpha() {
+            0 => empty,
+            _ => shade::over(background, *pixel),
+        };
+    }
     Ok(())
 }
 

@@ -92,6 +92,11 @@ impl Maps {
         }
     }
 
+    /// Returns whether the number of a map that occurs in keys is another one among colours.
+    fn changes_numbers(&self) -> bool {
+        self.before > 0
+    }
+
     /// Returns a key with the number of its class.
     fn numbered(&self, key: u32) -> u32 {
         let class = self.number((key & u32::from(MAX_CLASS)) as usize);
@@ -158,16 +163,18 @@ fn draw_with(
     window.within = &within;
     let played = play_in_space(system, &window, by_hits, game);
     let picture = played.map_err(SpaceError::from)?;
-    let mut keys = picture.keys().to_vec();
+    let (mut keys, hits) = picture.into_keys_and_hits();
     let inks = if by_hits {
-        by_tone(&mut keys, picture.hits(), tone);
+        by_tone(&mut keys, &hits, tone);
         // The colours of as many classes as there are tones.
         colours(style, ClassBy::LastMap, usize::from(MAX_CLASS) + 1)
     } else {
         let class_by = ClassBy::of(style.color_by)?;
         let maps = Maps::of(graph, system);
-        for key in keys.iter_mut().filter(|key| **key != EMPTY) {
-            *key = maps.numbered(*key);
+        if maps.changes_numbers() {
+            for key in keys.iter_mut().filter(|key| **key != EMPTY) {
+                *key = maps.numbered(*key);
+            }
         }
         colours(style, class_by, maps.count + maps.before)
     };
@@ -183,11 +190,14 @@ fn draw_with(
     };
     for (at, pixel) in pixmap.pixels_mut().iter_mut().enumerate() {
         let mut sum = [0.0; 4];
-        for key in samples(at) {
+        for key in samples(at).filter(|key| **key != EMPTY) {
             let own = inks.sample(*key, None);
             sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
         }
-        *pixel = shade::premultiplied(sum.map(|part| part / f64::from(fine * fine)));
+        // Pixels are transparent until they show something.
+        if sum[3] > 0.0 {
+            *pixel = shade::premultiplied(sum.map(|part| part / f64::from(fine * fine)));
+        }
     }
     let pixels = width as usize * height as usize;
     let nearest = (0..pixels).map(|at| samples(at).min().and_then(|key| depth_of(*key)));

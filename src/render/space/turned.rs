@@ -70,23 +70,25 @@ pub(super) struct Turned {
     stamps: Vec<OnceLock<Box<TurnedStamp>>>,
 }
 
-/// Picture of an object in an orientation.
+/// Picture of an object in an orientation. There may be many thousands of them: numbers take little room.
 pub(super) struct TurnedStamp {
-    /// Depths, in steps of its own range, in rows; [`NOTHING`] where nothing is shown.
-    depths: Vec<u16>,
-    /// Classes of these samples; empty if all are 0.
-    classes: Vec<u16>,
+    /// Depths, in steps of its own range, in rows, [`NOTHING`] where nothing is shown; then the classes of these samples, unless
+    /// all are 0.
+    samples: Box<[u16]>,
     /// The least depth.
     nearest: u16,
-    columns: usize,
+    has_classes: bool,
+    columns: u8,
     /// Corner of what is stored, and the end of what shows something, in samples.
-    corner: [usize; 2],
-    end: [usize; 2],
+    corner: [u8; 2],
+    end: [u8; 2],
     /// Number of solids.
-    pub(super) elements: u64,
+    pub(super) elements: u32,
     /// Number of steps of its deepest element.
     pub(super) deepest: u32,
 }
+
+const _: () = assert!(WIDTH <= u8::MAX as usize, "a side is a small number");
 
 /// Returns the sides above which sizes are those of cells, from the largest cell on.
 #[expect(clippy::cast_precision_loss, reason = "the numbers are small")]
@@ -182,18 +184,19 @@ impl Turned {
             let at = (at[axis] - view.corner[axis] - REACH).round() as isize;
             let at = at + MARGIN.cast_signed();
             let at = at.clamp(0, (STRIDE - WIDTH).cast_signed());
-            at.cast_unsigned() + stamp.corner[axis]
+            at.cast_unsigned() + usize::from(stamp.corner[axis])
         });
-        let end = [0, 1].map(|axis| corner[axis] + stamp.end[axis] - stamp.corner[axis]);
+        let end =
+            [0, 1].map(|axis| corner[axis] + usize::from(stamp.end[axis] - stamp.corner[axis]));
         let base = view.depths.exact(at.z + REACH).floor() as i32;
         let scale = 2.0 * REACH * view.depths.steps() / f64::from(FINE);
         let copy = Copy::new(base, scale, class);
         let area = [corner[0], corner[1], end[0], end[1]];
-        if !stamp.depths.is_empty() && buffer.shows_with_margin(area, copy.depth(stamp.nearest)) {
+        if !stamp.samples.is_empty() && buffer.shows_with_margin(area, copy.depth(stamp.nearest)) {
             let keys = &mut buffer.with_margin()[corner[1] * STRIDE + corner[0]..];
-            let is_seen = match stamp.classes.is_empty() {
-                true => blit::<false>(keys, stamp, &copy),
-                false => blit::<true>(keys, stamp, &copy),
+            let is_seen = match stamp.has_classes {
+                false => blit::<false>(keys, stamp, &copy),
+                true => blit::<true>(keys, stamp, &copy),
             };
             if is_seen {
                 buffer.refresh_with_margin(area);
@@ -310,13 +313,13 @@ impl Copy {
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn blit<const CLASSED: bool>(keys: &mut [u32], stamp: &TurnedStamp, copy: &Copy) -> bool {
     let mut seen = 0;
-    let columns = stamp.columns;
-    let rows = keys
-        .chunks_mut(STRIDE)
-        .zip(stamp.depths.chunks_exact(columns));
+    let columns = usize::from(stamp.columns);
+    let size = stamp.samples.len() / if CLASSED { 2 } else { 1 };
+    let (depths, classes) = stamp.samples.split_at(size);
+    let rows = keys.chunks_mut(STRIDE).zip(depths.chunks_exact(columns));
     for (y, (row, depths)) in rows.enumerate() {
         let classes = if CLASSED {
-            &stamp.classes[y * columns..(y + 1) * columns]
+            &classes[y * columns..(y + 1) * columns]
         } else {
             depths
         };
@@ -406,7 +409,10 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the stamp, without what shows nothing around what is shown.
-    #[expect(clippy::cast_possible_truncation, reason = "classes are the low bits")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "classes are the low bits, and sides are small"
+    )]
     fn stamp(self) -> TurnedStamp {
         let (mut corner, mut end) = ([WIDTH; 2], [0; 2]);
         let is_shown = |key: &u32| *key != EMPTY;
@@ -422,26 +428,29 @@ impl<'a> Builder<'a> {
         let columns = (end[0] - corner[0]).next_multiple_of(PIECE);
         let corner = [corner[0].min(WIDTH - columns), corner[1]];
         let size = columns * (end[1] - corner[1]);
-        let [mut depths, mut classes] = [(); 2].map(|()| Vec::with_capacity(size));
+        let mut samples = Vec::with_capacity(2 * size);
+        let mut classes = Vec::with_capacity(size);
         for row in self.keys.chunks_exact(WIDTH).take(end[1]).skip(corner[1]) {
             let keys = &row[corner[0]..corner[0] + columns];
-            depths.extend(keys.iter().map(|key| depth_in_stamp(*key)));
+            samples.extend(keys.iter().map(|key| depth_in_stamp(*key)));
             classes.extend(keys.iter().map(|key| match *key {
                 EMPTY => 0,
                 key => key as u16 & MAX_CLASS,
             }));
         }
+        let nearest = samples.iter().fold(NOTHING, |least, own| least.min(*own));
         let has_classes = classes.iter().any(|class| *class > 0);
+        if has_classes {
+            samples.append(&mut classes);
+        }
         TurnedStamp {
-            nearest: depths
-                .iter()
-                .fold(NOTHING, |nearest, own| nearest.min(*own)),
-            depths,
-            classes: if has_classes { classes } else { Vec::new() },
-            columns,
-            corner,
-            end,
-            elements: self.elements,
+            samples: samples.into(),
+            nearest,
+            has_classes,
+            columns: columns as u8,
+            corner: corner.map(|at| at as u8),
+            end: end.map(|at| at as u8),
+            elements: u32::try_from(self.elements).unwrap_or(u32::MAX),
             deepest: self.deepest,
         }
     }

@@ -15,7 +15,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         union: &Union<M>,
         level: Option<f64>,
     ) -> (Vec<ObjectInstance<M>>, Vec<ObjectAlternative>) {
-        let mut instances = Vec::new();
+        let mut instances = Vec::with_capacity(union.instances.len());
         if union.alternatives.is_empty() {
             self.add_instances(&union.instances, union, level, &mut instances);
         }
@@ -75,11 +75,12 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
                 self.error(&prepared.place, message);
                 continue;
             }
-            let tint = { prepared.tint.as_ref() }
+            let tint = { prepared.tint.as_deref() }
                 .and_then(|tint| self.tint_at(tint, &slots, &prepared.place));
             let masters = match &prepared.master {
                 Some(PreparedMaster::Shape(shape)) => {
-                    M::parts(shape).into_iter().map(Master::Shape).collect()
+                    let parts = M::parts(shape).into_iter();
+                    parts.map(|part| Master::Shape(Box::new(part))).collect()
                 }
                 Some(PreparedMaster::Object { name, level, place }) => {
                     let level = level.as_ref().map(|level| level.eval(&slots));
