@@ -307,9 +307,9 @@ impl Program {
         run(ops, of, slots, &mut stack)
     }
 
-    /// Returns the time that the program takes, as a number of short programs: 0 for a few operations.
+    /// Returns the work of the program beyond that of a few operations, as a number of short programs.
     pub(crate) fn work(&self) -> usize {
-        /// Number of operations that take as long as the rest of what a short program is for.
+        /// Number of operations of a short program.
         const OPERATIONS: usize = 4;
         self.ops.len() / OPERATIONS
     }

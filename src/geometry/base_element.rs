@@ -421,7 +421,7 @@ pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
 mod tests {
     use super::*;
 
-    /// Outlines of many lines have a hull; a curve that adds nothing takes it away.
+    /// Outlines of many lines have a hull, unless products of their coordinates may leave the range of doubles.
     #[test]
     fn supports_of_hulls_are_those_of_all_points() {
         let corner = |number: u32| {
