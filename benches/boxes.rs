@@ -77,7 +77,7 @@ fn ten_million_points(bencher: Bencher, levels: u32) {
     let map = DAffine2::from_scale(DVec2::splat(0.999_999_999 * boxes as f64));
     bencher
         .counter(ItemsCount::new(points.len()))
-        .bench(|| counts(&points, &map, [boxes, boxes, 1], levels));
+        .bench(|| counts(points.iter().copied(), &map, [boxes, boxes, 1], levels));
 }
 
 /// Counts cubes of nine sizes about ten million points in space.
@@ -92,7 +92,7 @@ fn ten_million_points_in_space(bencher: Bencher) {
     let map = DAffine3::from_scale(DVec3::splat(0.999_999_999 * boxes as f64));
     bencher
         .counter(ItemsCount::new(points.len()))
-        .bench(|| counts(&points, &map, [boxes; 3], LEVELS));
+        .bench(|| counts(points.iter().copied(), &map, [boxes; 3], LEVELS));
 }
 
 /// Counts the cubes of Menger's sponge to 3⁻¹².

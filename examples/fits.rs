@@ -24,7 +24,7 @@ use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::convert::{Keeps, convert};
 use kfrac::diagnostic::Diagnostics;
 use kfrac::document::Document;
-use kfrac::fit::{Candidate, FitOptions, Method, Shape};
+use kfrac::fit::{Candidate, FitOptions, Method, Silhouette};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::graph::Graph;
 use kfrac::ifs::System;
@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let Ok(picture) = candidate.attractor(frame, None) else {
             continue;
         };
-        let Ok(shape) = Shape::new(picture.pixels) else {
+        let Ok(shape) = Silhouette::new(picture.pixels) else {
             continue;
         };
         let count = candidate.maps.len();
@@ -227,7 +227,7 @@ fn same(one: &Candidate, other: &Candidate) -> bool {
 fn placed(candidate: &Candidate, size: usize) -> Option<(Candidate, [usize; 2])> {
     let fine =
         DAffine2::from_scale_angle_translation(DVec2::splat(400.0), 0.0, DVec2::splat(256.0));
-    let drawn = Shape::new(
+    let drawn = Silhouette::new(
         candidate
             .moved(&fine)
             .attractor([512, 512], None)

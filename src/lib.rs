@@ -181,6 +181,7 @@ pub mod studio;
 pub mod style;
 pub mod symmetry;
 pub mod tween;
+mod work;
 mod written;
 pub mod zoom;
 

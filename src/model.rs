@@ -111,6 +111,11 @@ pub(crate) trait OfKind {
         None
     }
 
+    /// Returns the number of steps, at most `steps`, for which a model is compiled soon.
+    fn soon_compiled(&self, steps: u32) -> u32 {
+        steps
+    }
+
     /// Compiles a model of the plane as [`Model::compile_for`] does.
     fn compile(&self, _steps: u32, _seed: u64, _max_elements: u64) -> Result<Graph, CompileError> {
         Err(CompileError::InSpace)
@@ -443,9 +448,20 @@ impl Model {
         self.as_kind().too_deep(steps, max_elements)
     }
 
+    /// Returns the number of generators that are looked at to replace an element, as [`Graph::choices`] does.
+    pub(crate) fn choices(&self) -> u64 {
+        let choices = match self {
+            Self::Rule(rule) => rule.selection().choices(),
+            Self::RuleInSpace(rule) => rule.selection().choices(),
+            _ => 1,
+        };
+        choices as u64
+    }
+
     /// Returns a mistake that shows only where elements are replaced, by compiling the model for a few steps.
     pub(crate) fn mistake(&self) -> Option<Diagnostic> {
         let steps = self.metadata().steps.unwrap_or(1).min(16);
+        let steps = self.as_kind().soon_compiled(steps);
         // Images under a symmetry have no mistakes of their own, but there may be too many of them.
         let compile = |steps| match self.graph_in_space_for(steps, 0, MOST_CHECKED) {
             Some(graph) => graph.map(drop),

@@ -24,14 +24,14 @@ mod unused;
 
 pub(crate) use family::VaryingMaps;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
 use crate::document::{Document, KindDocument, MetadataDocument, Setting};
 use crate::expression::Scope;
-use crate::geometry::{DAffine2, DAffine3, Frame2, Frame3};
+use crate::geometry::{DAffine2, DAffine3, Frame2, Frame3, Solid};
 use crate::metadata::Metadata;
 use crate::model::Model;
 use instancing::OfInstancing;
@@ -183,6 +183,12 @@ struct Resolver<K> {
     pieces: usize,
     /// Number of convex pieces of all polygons in space.
     triangles: usize,
+    /// Solids that are written as names.
+    solids: HashMap<String, Solid>,
+    /// [Work](crate::work) of growing all sets that are fractals.
+    work: u64,
+    /// Work of the set that took most of it, and its place.
+    costliest: Option<(u64, Place)>,
     kind: K,
 }
 

@@ -19,7 +19,7 @@ pub use blend::Blend;
 pub use camera::{Camera, CameraError};
 pub use color_by::ColorBy;
 pub(crate) use color_by::ColorProperty;
-pub use density::{DensityView, Method, Tone};
+pub use density::{DensityView, Iteration, Tone};
 pub use light::{Light, Shade};
 pub use palette::{Palette, UnknownPalette};
 #[cfg(feature = "cli")]

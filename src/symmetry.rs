@@ -14,7 +14,7 @@ pub use tiling::{Tiling, TooManyCopies};
 
 use std::fmt;
 
-use crate::expression::{Affine, Arithmetic, Precise, Precision, Program, degrees};
+use crate::expression::{AffineOf, Arithmetic, Precise, Precision, Program, degrees};
 use crate::geometry::{DAffine2, DMat2, DVec2, Homothety};
 
 /// Largest order of the rotations of a group.
@@ -79,7 +79,7 @@ impl Symmetry {
     }
 
     /// Returns an isometry by its number in [`isometries`](Self::isometries), in numbers of a precision.
-    pub(crate) fn precise(&self, of: &mut Precision, number: u32) -> Option<Affine<Precise>> {
+    pub(crate) fn precise(&self, of: &mut Precision, number: u32) -> Option<AffineOf<Precise>> {
         let (is_mirrored, turn) = self.elements().nth(number as usize)?;
         let [x, y, axis] = { self.written.each_ref() }.map(|number| number.evaluate(of, &[]));
         let full = of.decimal(360.0 * f64::from(turn));
@@ -90,10 +90,10 @@ impl Symmetry {
             let angle = of.add(&twice, &turn);
             let [cosine, sine] = of.turn(&angle);
             let back = of.negate(&cosine);
-            Affine::linear(of, [[cosine, sine.clone()], [sine, back]])
+            AffineOf::linear(of, [[cosine, sine.clone()], [sine, back]])
         } else {
             let turned = of.turn(&turn);
-            Affine::rotation(of, turned)
+            AffineOf::rotation(of, turned)
         };
         Some(linear.about(of, &[x, y]))
     }

@@ -4,6 +4,7 @@
 //! `tests/bad` holds a file for each mistake and, beside it, the expected diagnostics. With `KFRAC_BLESS=1`
 //! the diagnostics are written instead of compared.
 
+mod budgets;
 mod costly;
 mod estimates;
 mod hostile;

@@ -9,7 +9,7 @@ use kfrac::build::{ElementBuilder, ElementsBuilder, GeneratorBuilder, MoveBuilde
 use kfrac::diagnostic::Severity;
 use kfrac::geometry::{DVec2, Direction};
 use kfrac::rule::{BaseElement, Piece, Placement, Rule, arc};
-use kfrac::style::{Blend, Cap, Colour, DensityView, Method, Palette, Style, Tone, View, Width};
+use kfrac::style::{Blend, Cap, Colour, DensityView, Iteration, Palette, Style, Tone, View, Width};
 
 const SEGMENT: [(i32, i32); 2] = [(0, 0), (1, 0)];
 
@@ -290,7 +290,7 @@ density: {method: chaos, points: 2500k, tone: linear, gamma: 2, oversample: 3, k
         })
         .density(
             &DensityView::default()
-                .method(Some(Method::Chaos))
+                .method(Some(Iteration::Chaos))
                 .points(Some(2_500_000))
                 .tone(Some(Tone::Linear))
                 .gamma(Some(2.0))

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::common::Draws;
 use kfrac::diagnostic::Source;
 use kfrac::document::node::{Key, Node, Value};
-use kfrac::edit::{Edit, EditError, Step, edit, find, steps};
+use kfrac::edit::{Edit, EditError, PathStep, edit, find, steps};
 
 /// Returns the texts of all files of the library.
 fn library() -> Vec<(PathBuf, String)> {
@@ -36,9 +36,9 @@ fn read(text: &str) -> Node {
 }
 
 /// Adds the steps to every value of a node.
-fn all_steps(node: &Node, at: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
+fn all_steps(node: &Node, at: &mut Vec<PathStep>, found: &mut Vec<Vec<PathStep>>) {
     found.push(at.clone());
-    let mut visit = |step: Step, node: &Node| {
+    let mut visit = |step: PathStep, node: &Node| {
         at.push(step);
         all_steps(node, at, found);
         at.pop();
@@ -50,7 +50,7 @@ fn all_steps(node: &Node, at: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
         }
         Value::Mapping(entries) => {
             let entries = entries.iter();
-            entries.for_each(|(key, node)| visit(Step::Key(key.name.clone()), node));
+            entries.for_each(|(key, node)| visit(PathStep::Key(key.name.clone()), node));
         }
         _ => {}
     }
@@ -103,12 +103,12 @@ fn leaves_of(node: &Node) -> Vec<(String, String)> {
 }
 
 /// Rebuilds a node with another part.
-fn rebuilt(node: &Node, at: &[Step], change: &dyn Fn(&Node) -> Node) -> Node {
+fn rebuilt(node: &Node, at: &[PathStep], change: &dyn Fn(&Node) -> Node) -> Node {
     let Some((first, rest)) = at.split_first() else {
         return change(node);
     };
     let value = match (&node.value, first) {
-        (Value::Sequence(items), Step::Item(index)) => {
+        (Value::Sequence(items), PathStep::Item(index)) => {
             let items = items
                 .iter()
                 .enumerate()
@@ -158,7 +158,7 @@ struct Tally {
 }
 
 /// Edits a text, and checks the laws of what it becomes.
-fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Tally) {
+fn check(text: &str, node: &Node, at: &[PathStep], draws: &mut Draws, tally: &mut Tally) {
     let old = find(node, at).unwrap();
     let value = VALUES[draws.below(VALUES.len())];
     let meant = read(value);
@@ -189,7 +189,7 @@ fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Ta
         (Value::Mapping(entries), 1 | 2) if !entries.is_empty() => {
             let index = draws.below(entries.len());
             let mut entries = entries.clone();
-            let key = Step::Key(entries[index].0.name.clone());
+            let key = PathStep::Key(entries[index].0.name.clone());
             let below = at.iter().cloned().chain([key]).collect();
             if draws.below(2) == 0 {
                 entries.remove(index);
@@ -277,7 +277,11 @@ fn check(text: &str, node: &Node, at: &[Step], draws: &mut Draws, tally: &mut Ta
         }
         Edit::Add { key, .. } => {
             assert!(is_inserted(text, &new), "{asked:?}\n{text}\nbecame\n{new}");
-            let below = at.iter().cloned().chain([Step::Key(key.clone())]).collect();
+            let below = at
+                .iter()
+                .cloned()
+                .chain([PathStep::Key(key.clone())])
+                .collect();
             let back = edit(&new, &[Edit::remove(below)]).unwrap();
             assert_eq!(back, text, "{asked:?}\nvia\n{new}");
         }

@@ -16,7 +16,7 @@ use std::sync::{Arc, OnceLock};
 
 use assert_cmd::Command;
 use kfrac::fit::{
-    Candidate, Certificate, Disk, Fit, FitError, FitOptions, FitProgress, Method, Score, Shape,
+    Candidate, Certificate, Disk, Fit, FitError, FitOptions, FitProgress, Method, Score, Silhouette,
 };
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::about;
@@ -31,13 +31,13 @@ fn gasket() -> Candidate {
     Candidate::of_maps(corners.map(|(x, y)| about(half, DVec2::new(x, y))).into())
 }
 
-fn picture(candidate: &Candidate, size: [usize; 2]) -> Shape {
-    Shape::new(candidate.attractor(size, None).unwrap().pixels).unwrap()
+fn picture(candidate: &Candidate, size: [usize; 2]) -> Silhouette {
+    Silhouette::new(candidate.attractor(size, None).unwrap().pixels).unwrap()
 }
 
 /// Returns the picture of the gasket with its fit, which is made once.
-fn quick() -> &'static (Shape, Fit) {
-    static FITTED: OnceLock<(Shape, Fit)> = OnceLock::new();
+fn quick() -> &'static (Silhouette, Fit) {
+    static FITTED: OnceLock<(Silhouette, Fit)> = OnceLock::new();
     FITTED.get_or_init(|| {
         let shape = picture(&gasket(), [64, 56]);
         let fitted = fit(&shape, &options().threads(NonZero::<usize>::MIN)).unwrap();
@@ -124,20 +124,23 @@ fn scores_are_those_of_known_sets() {
 
 #[test]
 fn pictures_without_a_shape_are_refused() {
-    assert_eq!(Shape::new(Bits::new(8, 8)).unwrap_err(), FitError::Empty);
     assert_eq!(
-        Shape::new(Bits::of(8, 8, |_, _| true)).unwrap_err(),
+        Silhouette::new(Bits::new(8, 8)).unwrap_err(),
+        FitError::Empty
+    );
+    assert_eq!(
+        Silhouette::new(Bits::of(8, 8, |_, _| true)).unwrap_err(),
         FitError::Full
     );
     assert_eq!(
-        Shape::new(Bits::of(8, 8, |x, y| x == 3 && y == 3)).unwrap_err(),
+        Silhouette::new(Bits::of(8, 8, |x, y| x == 3 && y == 3)).unwrap_err(),
         FitError::OnePixel
     );
 }
 
 #[test]
 fn huge_pictures_are_refused() {
-    let huge = Shape::new(Bits::new(1 << 16, 2)).unwrap_err();
+    let huge = Silhouette::new(Bits::new(1 << 16, 2)).unwrap_err();
     assert!(matches!(huge, FitError::TooLarge { .. }), "{huge}");
 }
 
@@ -212,7 +215,7 @@ fn moved_pictures_have_moved_maps() {
             && bits.get(column - 5, row - 4)
     });
     let shift = DAffine2::from_translation(DVec2::new(5.0, 3.0));
-    let other = fit(&Shape::new(moved).unwrap(), &options()).unwrap();
+    let other = fit(&Silhouette::new(moved).unwrap(), &options()).unwrap();
     for (one, other) in found
         .candidate
         .moved(&shift)
@@ -234,7 +237,7 @@ fn moved_pictures_have_moved_maps() {
     );
     let double = DAffine2::from_scale(DVec2::splat(2.0));
     for (bits, there) in [(turned, quarter), (doubled, double)] {
-        let shape = Shape::new(bits).unwrap();
+        let shape = Silhouette::new(bits).unwrap();
         let other = fit(&shape, &options()).unwrap();
         let moved = found.candidate.moved(&there);
         let [one, other] = [&moved, &other.candidate]
@@ -260,7 +263,7 @@ fn progress_is_reported() {
 /// A line one pixel wide is a shape like any other.
 #[test]
 fn a_line_is_fitted() {
-    let shape = Shape::new(Bits::of(64, 16, |x, y| (8..56).contains(&x) && y == 8)).unwrap();
+    let shape = Silhouette::new(Bits::of(64, 16, |x, y| (8..56).contains(&x) && y == 8)).unwrap();
     let found = fit(&shape, &FitOptions::default().maps(2..=2).effort(1500)).unwrap();
     assert!(found.score.hausdorff <= 2.0, "{found:?}");
 }

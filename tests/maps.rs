@@ -5,13 +5,14 @@ use std::num::NonZero;
 
 use crate::common::{document, document_of, said};
 use kfrac::family::{
-    Axis, Family, FamilyError, MapOptions, ParameterMap, ParameterPlane, PlaneValue, Property,
+    Family, FamilyError, MapOptions, ParameterMap, ParameterPlane, ParameterRange, PlaneValue,
+    Property,
 };
 use kfrac::ifs::{Connectedness, ConnectednessSearch};
 
-fn axis(name: &str, from: f64, to: f64) -> Axis {
+fn axis(name: &str, from: f64, to: f64) -> ParameterRange {
     let name = name.to_owned();
-    Axis { name, from, to }
+    ParameterRange { name, from, to }
 }
 
 fn names(plane: &ParameterPlane) -> Vec<String> {
@@ -19,7 +20,7 @@ fn names(plane: &ParameterPlane) -> Vec<String> {
 }
 
 /// Returns a map of {s z + 1, s z − 1}.
-fn pairs(axes: [Axis; 2], size: [u32; 2], options: &MapOptions<'_>) -> ParameterMap {
+fn pairs(axes: [ParameterRange; 2], size: [u32; 2], options: &MapOptions<'_>) -> ParameterMap {
     let plane = ParameterPlane::new(axes.into(), size).unwrap();
     let family = Family::of(&document("complex-pair"), &[], &names(&plane)).unwrap();
     ParameterMap::compute(&family, &plane, options).unwrap()

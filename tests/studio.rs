@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use kfrac::catalogue::Catalogue;
-use kfrac::studio::{Options, Studio};
+use kfrac::studio::{Studio, StudioOptions};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -69,16 +69,16 @@ impl Page {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rule.yaml");
         fs::write(&path, text).unwrap();
-        Self::serve(folder, Options::default().rule(Some(path)))
+        Self::serve(folder, StudioOptions::default().rule(Some(path)))
     }
 
     /// Serves an entry of the library.
     fn named(name: &str) -> Self {
-        let options = Options::default().rule(Some(name.into()));
+        let options = StudioOptions::default().rule(Some(name.into()));
         Self::serve(tempfile::tempdir().unwrap(), options)
     }
 
-    fn serve(folder: TempDir, options: Options) -> Self {
+    fn serve(folder: TempDir, options: StudioOptions) -> Self {
         let library = folder.path().join("library");
         let options = options
             .catalogue(Catalogue::with_folders(vec![library.clone()]))

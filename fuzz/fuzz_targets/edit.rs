@@ -10,7 +10,7 @@ mod random;
 
 use kfrac::diagnostic::Source;
 use kfrac::document::node::{Node, Value};
-use kfrac::edit::{Edit, Step, edit, find};
+use kfrac::edit::{Edit, PathStep, edit, find};
 use libfuzzer_sys::{fuzz_mutator, fuzz_target, fuzzer_mutate};
 use mutate::mutated;
 use random::Random;
@@ -92,18 +92,18 @@ fn parse(text: &str) -> Node {
 }
 
 /// Returns the steps to a value of a node.
-fn place(node: &Node, random: &mut Random) -> Vec<Step> {
+fn place(node: &Node, random: &mut Random) -> Vec<PathStep> {
     let mut at = Vec::new();
     let mut node = node;
     loop {
         let (step, next) = match &node.value {
             Value::Sequence(items) if !items.is_empty() && random.below(6) > 0 => {
                 let item = random.below(items.len());
-                (Step::Item(item), &items[item])
+                (PathStep::Item(item), &items[item])
             }
             Value::Mapping(entries) if !entries.is_empty() && random.below(6) > 0 => {
                 let (key, node) = &entries[random.below(entries.len())];
-                (Step::Key(key.name.clone()), node)
+                (PathStep::Key(key.name.clone()), node)
             }
             _ => return at,
         };

@@ -4,7 +4,7 @@
 
 mod imported;
 
-use kfrac::import::{Format, ImportOptions};
+use kfrac::import::{ImportOptions, SourceFormat};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|text: &str| imported::check(text, Format::Aifs, &ImportOptions::default()));
+fuzz_target!(|text: &str| imported::check(text, SourceFormat::Aifs, &ImportOptions::default()));

@@ -4,15 +4,15 @@
 
 mod imported;
 
-use kfrac::import::{Format, ImportOptions};
+use kfrac::import::{ImportOptions, SourceFormat};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     let stated = ["acbdefp", "-abecdf", "jklabcdefghip"].map(|columns| {
         ImportOptions::default().columns(columns.parse().expect("these are columns"))
     });
-    imported::check(text, Format::Csv, &ImportOptions::default());
+    imported::check(text, SourceFormat::Csv, &ImportOptions::default());
     for options in stated {
-        imported::check(text, Format::Csv, &options);
+        imported::check(text, SourceFormat::Csv, &options);
     }
 });

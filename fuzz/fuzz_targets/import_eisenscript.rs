@@ -4,9 +4,9 @@
 
 mod imported;
 
-use kfrac::import::{Format, ImportOptions};
+use kfrac::import::{ImportOptions, SourceFormat};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
-    imported::check(text, Format::EisenScript, &ImportOptions::default());
+    imported::check(text, SourceFormat::EisenScript, &ImportOptions::default());
 });

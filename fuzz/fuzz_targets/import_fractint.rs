@@ -4,11 +4,11 @@
 
 mod imported;
 
-use kfrac::import::{Format, ImportOptions};
+use kfrac::import::{ImportOptions, SourceFormat};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
-    for format in [Format::LSystems, Format::Ifs] {
+    for format in [SourceFormat::LSystems, SourceFormat::Ifs] {
         imported::check(text, format, &ImportOptions::default());
     }
 });

@@ -4,12 +4,12 @@
 use kfrac::catalogue::Catalogue;
 use kfrac::diagnostic::{Diagnostics, Source};
 use kfrac::document::Document;
-use kfrac::import::{Format, ImportOptions, read};
+use kfrac::import::{ImportOptions, SourceFormat, read};
 
 /// Maximum length of the messages about one entry, in bytes.
 const MAX_SAID: usize = 1 << 20;
 
-pub fn check(text: &str, format: Format, options: &ImportOptions) {
+pub fn check(text: &str, format: SourceFormat, options: &ImportOptions) {
     let source = Source::new("fuzz.txt", text);
     // Without a byte order mark, as places count.
     let text = source.text();

@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::ops::RangeInclusive;
 
 use kfrac::Bits;
-use kfrac::fit::{FitOptions, Method, Shape};
+use kfrac::fit::{FitOptions, Method, Silhouette};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -93,7 +93,7 @@ pub(crate) fn fit<'py>(
         None => options,
     };
     let (fit, yaml) = long(py, move |cancel| {
-        let shape = Shape::new(bits).map_err(Failure::of)?;
+        let shape = Silhouette::new(bits).map_err(Failure::of)?;
         let fit = kfrac::fit(&shape, &options.cancel(Some(cancel))).map_err(Failure::of)?;
         let yaml = fit.yaml(&shape, "picture");
         Ok((fit, yaml))

@@ -6,7 +6,7 @@ use crate::ifs::PointOf;
 use super::alias::AliasTable;
 use super::random::{LANES, Scalar};
 use super::system::{Map, WeightedMaps};
-use super::walked::{Sample, Walked};
+use super::walked::{ChaosMap, SetSampler};
 use super::{ClassBy, Game, Start};
 
 /// Steps of a walker that starts on the attractor, before another one starts: few enough for all threads to
@@ -31,7 +31,7 @@ const UNIT: f64 = f32::EPSILON as f64 / 2.0;
 
 /// All walks of a game, in the coordinates of a window. A *wave* consists of [`LANES`] walkers side by side; it has its own random
 /// numbers, and waves can be walked in any order.
-pub(super) struct Course<'a, M: Walked> {
+pub(super) struct Course<'a, M: ChaosMap> {
     pub(super) system: &'a WeightedMaps<M>,
     pub(super) choice: AliasTable,
     /// Affine maps as maps of the window to itself.
@@ -48,7 +48,7 @@ pub(super) struct Course<'a, M: Walked> {
     pub(super) is_double: bool,
 }
 
-impl<'a, M: Walked> Course<'a, M> {
+impl<'a, M: ChaosMap> Course<'a, M> {
     /// Creates the walks of a game. `scale` is the largest number of pixels a unit of the window.
     pub(super) fn new(
         system: &'a WeightedMaps<M>,
@@ -190,7 +190,7 @@ fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the error at the end of a walk, with the error that each step has added.
-fn accumulated<M: Walked>(steps: &[(Option<M>, PointOf<M>)]) -> PointOf<M> {
+fn accumulated<M: ChaosMap>(steps: &[(Option<M>, PointOf<M>)]) -> PointOf<M> {
     /// Part of the sum that what came before may have.
     const NEGLIGIBLE: f64 = 1e-3;
     let mut sum = PointOf::<M>::ZERO;

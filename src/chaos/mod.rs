@@ -32,7 +32,7 @@ pub use depth::{DepthPicture, DepthWindow, Seen, play_in_space};
 pub use histogram::{Histogram, HistogramWindow};
 pub use points::{RandomPoint, RandomPoints};
 pub use system::{SystemError, WeightedMaps};
-pub use walked::{Sample, Walked};
+pub use walked::{ChaosMap, SetSampler};
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -225,7 +225,7 @@ pub fn play(
 }
 
 /// Walks all waves of a game; `walk` walks one. `bins` is the number of counters of a thread.
-fn count<M: Walked, C: Counter>(
+fn count<M: ChaosMap, C: Counter>(
     course: &Course<'_, M>,
     game: &Game<'_, PointOf<M>>,
     bins: usize,
@@ -257,7 +257,7 @@ fn count<M: Walked, C: Counter>(
     Ok(all.unwrap_or_else(fresh))
 }
 
-fn check<M: Walked>(
+fn check<M: ChaosMap>(
     size: [u32; 2],
     to_window: &M,
     game: &Game<'_, PointOf<M>>,

@@ -8,7 +8,7 @@ use super::alias::AliasTable;
 use super::course::WARM_UP;
 use super::random::Scalar;
 use super::system::{Map, WeightedMaps};
-use super::walked::{Sample, Walked};
+use super::walked::{ChaosMap, SetSampler};
 
 /// A point of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct RandomPoint<P = DVec2> {
 /// A walk that starts on the attractor has forgotten the start before its first point. Walks from given
 /// starts end after their number of steps, and the next one begins.
 #[derive(Clone, Debug)]
-pub struct RandomPoints<'a, M: Walked = DAffine2> {
+pub struct RandomPoints<'a, M: ChaosMap = DAffine2> {
     system: &'a WeightedMaps<M>,
     choice: AliasTable,
     random: Scalar,
@@ -37,7 +37,7 @@ pub struct RandomPoints<'a, M: Walked = DAffine2> {
     image: usize,
 }
 
-impl<'a, M: Walked> RandomPoints<'a, M> {
+impl<'a, M: ChaosMap> RandomPoints<'a, M> {
     /// Creates the walk of a system with a seed.
     #[must_use]
     pub fn new(system: &'a WeightedMaps<M>, start: &'a Start<PointOf<M>>, seed: u64) -> Self {
@@ -86,7 +86,7 @@ impl<'a, M: Walked> RandomPoints<'a, M> {
     }
 }
 
-impl<M: Walked> Iterator for RandomPoints<'_, M> {
+impl<M: ChaosMap> Iterator for RandomPoints<'_, M> {
     type Item = RandomPoint<PointOf<M>>;
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -5,7 +5,7 @@ use crate::ifs::Shape;
 use crate::rule::BaseElement;
 
 use super::random::Scalar;
-use super::walked::Sample;
+use super::walked::SetSampler;
 
 /// Samples points from a shape: from lines by length, from the region that closed outlines wind around by
 /// area.
@@ -37,7 +37,7 @@ const MAX_SIDES: usize = 1 << 13;
 /// Maximum number of pieces of a union.
 const MAX_PIECES: usize = 1 << 21;
 
-impl Sample<DAffine2> for Sampler {
+impl SetSampler<DAffine2> for Sampler {
     fn of_set(set: &Shape) -> Option<Self> {
         Self::of(set)
     }

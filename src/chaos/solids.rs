@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, Outline, Solid};
 
 use super::random::Scalar;
-use super::walked::Sample;
+use super::walked::SetSampler;
 
 /// Samples points of convex solids: uniformly from each, and from several in proportion to their surfaces, or to their
 /// lengths if none has a surface.
@@ -25,7 +25,7 @@ const MAX_DRAWS: u32 = 10_000;
 
 const ROUNDING: f64 = 1e-9;
 
-impl Sample<DAffine3> for SolidSampler {
+impl SetSampler<DAffine3> for SolidSampler {
     fn of_set(set: &Arc<[Solid]>) -> Option<Self> {
         // Where none has a surface, lengths decide, and points are equal.
         let length = |solid: &Solid| match solid.corners() {

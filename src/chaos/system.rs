@@ -6,11 +6,11 @@ use crate::ifs::{self, Choice, Ifs, PointOf};
 
 use super::alias::AliasTable;
 use super::random::Scalar;
-use super::walked::{Sample, Walked};
+use super::walked::{ChaosMap, SetSampler};
 
 /// A step of the walk.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Map<M: Walked> {
+pub(super) enum Map<M: ChaosMap> {
     /// Moves the point by an affine map.
     Affine(M),
     /// Replaces the point by one drawn from a *condensation set*: the set-valued map whose image of any point
@@ -24,7 +24,7 @@ pub(super) enum Map<M: Walked> {
 /// can follow every other one, possibly with others in between, and walks therefore draw all of the
 /// attractor. There is a point of the attractor to start from.
 #[derive(Clone, Debug)]
-pub struct WeightedMaps<M: Walked = DAffine2> {
+pub struct WeightedMaps<M: ChaosMap = DAffine2> {
     maps: Vec<Map<M>>,
     /// Probability of every map, one row per state of the walk.
     rows: Vec<Vec<f64>>,
@@ -76,7 +76,7 @@ pub enum SystemError {
 /// Maximum number of entries of the table of transition probabilities.
 const MAX_ENTRIES: usize = 1 << 24;
 
-impl<M: Walked> WeightedMaps<M> {
+impl<M: ChaosMap> WeightedMaps<M> {
     /// Prepares the walk of a system.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ fn targets_of_maps(rows: &[Vec<f64>], affine: usize) -> Vec<Vec<usize>> {
 }
 
 /// Returns a point drawn from a condensation set, or the fixed point of a contracting cycle of maps.
-fn start<M: Walked>(
+fn start<M: ChaosMap>(
     ifs: &Ifs<M>,
     maps: &[Map<M>],
     targets: &[Vec<usize>],

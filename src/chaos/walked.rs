@@ -10,9 +10,9 @@ use super::sampler::Sampler;
 use super::solids::SolidSampler;
 
 /// Affine map of a chaos game: [`DAffine2`] of the plane, [`DAffine3`] of space.
-pub trait Walked: AffineMap {
+pub trait ChaosMap: AffineMap {
     /// Sampler of points of condensation sets.
-    type Sampler: Sample<Self>;
+    type Sampler: SetSampler<Self>;
 
     /// Bound of the roundings of a coordinate of an image, in units of its terms: a coefficient, a product, and
     /// the sums.
@@ -32,7 +32,7 @@ pub trait Walked: AffineMap {
 }
 
 /// Uniform sampling of the points of a set.
-pub trait Sample<M: AffineMap>: Clone + Debug + PartialEq + Send + Sync + Sized {
+pub trait SetSampler<M: AffineMap>: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// Creates the sampler of a set; `None` if points cannot be drawn from it.
     #[must_use]
     fn of_set(set: &M::Set) -> Option<Self>;
@@ -42,7 +42,7 @@ pub trait Sample<M: AffineMap>: Clone + Debug + PartialEq + Send + Sync + Sized 
     fn sample(&self, random: &mut Scalar) -> PointOf<M>;
 }
 
-impl Walked for DAffine2 {
+impl ChaosMap for DAffine2 {
     type Sampler = Sampler;
 
     const ROUNDINGS: f64 = 4.0;
@@ -60,7 +60,7 @@ impl Walked for DAffine2 {
     }
 }
 
-impl Walked for DAffine3 {
+impl ChaosMap for DAffine3 {
     type Sampler = SolidSampler;
 
     const ROUNDINGS: f64 = 5.0;

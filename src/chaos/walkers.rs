@@ -11,13 +11,13 @@ use super::course::Course;
 use super::random::{LANES, Lanes, Scalar};
 use super::system::{Map, WeightedMaps};
 use super::tally::{Cancelled, Counter, Tally};
-use super::walked::{Sample, Walked};
+use super::walked::{ChaosMap, SetSampler};
 
 /// Steps that are walked before they are counted.
 const STEPS: usize = 64;
 
 /// Method by which the walkers of a wave take a step.
-pub(super) trait Walk<M: Walked, C: Counter> {
+pub(super) trait Walk<M: ChaosMap, C: Counter> {
     /// Places a walker.
     fn put(&mut self, lane: usize, point: PointOf<M>);
 
@@ -28,7 +28,7 @@ pub(super) trait Walk<M: Walked, C: Counter> {
 
 /// Walks a wave.
 #[inline(always)]
-pub(super) fn run<M: Walked, C: Counter>(
+pub(super) fn run<M: ChaosMap, C: Counter>(
     course: &Course<'_, M>,
     wave: u64,
     walk: &mut impl Walk<M, C>,
@@ -56,7 +56,7 @@ pub(super) fn run<M: Walked, C: Counter>(
 }
 
 /// Maps, positions and pictures in the numbers of walkers.
-pub(super) trait Screen<M: Walked> {
+pub(super) trait Screen<M: ChaosMap> {
     /// Counters of points.
     type Counter: Counter;
     /// An affine map.
@@ -87,7 +87,7 @@ pub(super) trait Screen<M: Walked> {
 
 /// Arbitrary systems, whose maps are looked up. If a walk `IS_FREE`, all maps are affine, any of them may follow any,
 /// and classes are at most those of the last map.
-pub(super) struct Any<'a, M: Walked, S: Screen<M>, const IS_FREE: bool> {
+pub(super) struct Any<'a, M: ChaosMap, S: Screen<M>, const IS_FREE: bool> {
     screen: S,
     places: S::Places,
     system: &'a WeightedMaps<M>,
@@ -103,7 +103,7 @@ pub(super) struct Any<'a, M: Walked, S: Screen<M>, const IS_FREE: bool> {
     has_classes: bool,
 }
 
-impl<'a, M: Walked, S: Screen<M>, const IS_FREE: bool> Any<'a, M, S, IS_FREE> {
+impl<'a, M: ChaosMap, S: Screen<M>, const IS_FREE: bool> Any<'a, M, S, IS_FREE> {
     pub(super) fn new(course: &'a Course<'_, M>, wave: u64, screen: S) -> Self {
         let maps = course.maps.iter();
         let shapes = course.system.maps().iter().map(|map| match map {
@@ -170,7 +170,9 @@ impl<'a, M: Walked, S: Screen<M>, const IS_FREE: bool> Any<'a, M, S, IS_FREE> {
     }
 }
 
-impl<M: Walked, S: Screen<M>, const IS_FREE: bool> Walk<M, S::Counter> for Any<'_, M, S, IS_FREE> {
+impl<M: ChaosMap, S: Screen<M>, const IS_FREE: bool> Walk<M, S::Counter>
+    for Any<'_, M, S, IS_FREE>
+{
     fn put(&mut self, lane: usize, point: PointOf<M>) {
         S::put(&mut self.places, lane, point);
     }

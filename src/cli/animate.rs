@@ -36,7 +36,7 @@ use super::length::Paper;
 use super::rule::{Loaded, RuleArguments};
 use super::steps::Several;
 use super::{Failure, help, length, number, picture, rule, steps, text, tween};
-use crate::figure::sheet::Fit;
+use crate::figure::sheet::CellView;
 pub(super) use file::mistakes;
 use passed::{FrameOptions, Given};
 use plan::Zooms;
@@ -128,8 +128,8 @@ pub(super) struct Arguments {
     #[arg(long)]
     smooth: bool,
     /// Part of the plane that is shown: what all frames need, or each frame its own
-    #[arg(long, value_parser = picture::named::<Fit>(), default_value = "all")]
-    fit: Fit,
+    #[arg(long, value_parser = picture::named::<CellView>(), default_value = "all")]
+    fit: CellView,
     /// Shows the film once, not without end
     #[arg(long)]
     once: bool,

@@ -14,7 +14,7 @@ use std::path::Path;
 use anyhow::anyhow;
 
 use crate::chaos::{
-    ClassBy, Game, RandomPoint, RandomPoints, Start, Walked, WeightedMaps, points_of_text,
+    ChaosMap, ClassBy, Game, RandomPoint, RandomPoints, Start, WeightedMaps, points_of_text,
 };
 use crate::export;
 use crate::geometry::{DVec3, Homothety};
@@ -22,7 +22,7 @@ use crate::grow::Progress;
 use crate::ifs::{PointOf, System, Verdict};
 use crate::metadata::Metadata;
 use crate::render::RenderError;
-use crate::style::{ColorBy, DensityView, Method, Named, Tone};
+use crate::style::{ColorBy, DensityView, Iteration, Named, Tone};
 
 use super::growth::GrowthArguments;
 use super::picture::{self, PictureArguments};
@@ -38,8 +38,8 @@ pub(super) struct ChaosArguments {
     ///
     /// Random iteration (the chaos game) moves a point by one map after the other, chosen at random by their
     /// weights, and draws every point that it reaches. It produces PNGs, and tables of points.
-    #[arg(long, value_parser = picture::named::<Method>())]
-    method: Option<Method>,
+    #[arg(long, value_parser = picture::named::<Iteration>())]
+    method: Option<Iteration>,
     /// Number of points to draw: 500k, 10M, 2G [default: 10M; 100k for tables]
     #[arg(long, value_name = "N", value_parser = points_of_text, allow_negative_numbers = true)]
     points: Option<u64>,
@@ -131,7 +131,7 @@ impl ChaosArguments {
     pub(super) fn or(&self, file: DensityView) -> Self {
         let method = self.method.or(file.method);
         let file = match method {
-            Some(Method::Chaos) => file,
+            Some(Iteration::Chaos) => file,
             _ => DensityView {
                 points: None,
                 oversample: None,
@@ -152,13 +152,13 @@ impl ChaosArguments {
     }
 
     /// Returns the method that is given.
-    pub(super) fn method(&self) -> Option<Method> {
+    pub(super) fn method(&self) -> Option<Iteration> {
         self.method
     }
 
     /// Returns whether random iteration is requested.
     pub(super) fn is_asked(&self) -> bool {
-        self.method == Some(Method::Chaos)
+        self.method == Some(Iteration::Chaos)
     }
 
     /// Returns whether a number of points is given.
@@ -180,7 +180,7 @@ impl ChaosArguments {
     /// Returns the options of a game that are given, with their values. `steps` is the number of steps for which
     /// first maps are distinguished.
     fn options(&self, points: u64, color_by: ColorBy, steps: u32) -> Vec<(&'static str, String)> {
-        let mut options = vec![("method", Method::Chaos.name().into())];
+        let mut options = vec![("method", Iteration::Chaos.name().into())];
         options.push(("points", points.to_string()));
         options.extend(self.tones());
         let bins = self
@@ -316,7 +316,7 @@ const DRAWN: u64 = 10_000_000;
 const LISTED: u64 = 100_000;
 
 /// Random iteration of a system, as the options request it.
-pub(super) struct Iteration<'a, M: Walked> {
+pub(super) struct RandomIteration<'a, M: ChaosMap> {
     arguments: GameArguments<'a>,
     loaded: &'a Loaded,
     /// System in the coordinates that `place` maps to those of its file.
@@ -328,7 +328,7 @@ pub(super) struct Iteration<'a, M: Walked> {
     steps: u32,
 }
 
-impl<'a, M: Walked> Iteration<'a, M> {
+impl<'a, M: ChaosMap> RandomIteration<'a, M> {
     fn new(
         arguments: GameArguments<'a>,
         loaded: &'a Loaded,

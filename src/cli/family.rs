@@ -4,7 +4,7 @@ mod written;
 
 use crate::document::Setting;
 use crate::expression::{Expression, PARTS};
-use crate::family::Axis;
+use crate::family::ParameterRange;
 
 pub(crate) use written::value;
 pub(super) use written::{assignment, ranges};
@@ -91,7 +91,7 @@ pub(super) struct Ranges {
     pub(super) written: String,
     /// Name of the parameter.
     pub(super) name: String,
-    pub(super) axes: Vec<Axis>,
+    pub(super) axes: Vec<ParameterRange>,
 }
 
 /// Parameter that changes in the course of a film, or one that does not.

@@ -12,7 +12,7 @@ use anyhow::{Context, anyhow};
 use clap::ValueHint;
 use clap::builder::PossibleValue;
 
-use crate::fit::{BranchPoints, FitError, FitOptions, FitProgress, Method, Shape};
+use crate::fit::{BranchPoints, FitError, FitOptions, FitProgress, Method, Silhouette};
 use crate::geometry::DVec2;
 
 use self::report::Report;
@@ -136,7 +136,7 @@ fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let set = arguments.pixels.read(&arguments.picture)?;
     let explain = |error: FitError| anyhow!("{}: {error} ({})", set.name, set.description);
-    let mut shape = Shape::new(set.bits.clone()).map_err(explain)?;
+    let mut shape = Silhouette::new(set.bits.clone()).map_err(explain)?;
     if arguments.density {
         shape = shape.with_values(&set.values).map_err(explain)?;
     }

@@ -407,13 +407,16 @@ impl<'g> Boxes<'g> {
         const PIECES: u64 = 32;
         let graph = self.graph;
         let pieces = { graph.base_elements().iter() }.map(|outline| outline.pieces().len() as u64);
-        let slow = (graph.choices() / CHOICES).max(1) * (pieces.max().unwrap_or(0) / PIECES).max(1);
-        let max_elements = MAX_ELEMENTS / slow;
+        let choosing = (graph.choices() / CHOICES).max(1);
+        let max_elements = MAX_ELEMENTS / choosing / (pieces.max().unwrap_or(0) / PIECES).max(1);
         let growth = Growth {
             max_elements,
             ..Growth::steps(steps)
         };
-        let small = !graph.draws() && graph.check_fits(steps, max_elements).is_ok();
+        // An element may come after as many replacements as there are steps.
+        let small = u64::from(steps).saturating_mul(choosing - 1) <= MAX_ELEMENTS
+            && !graph.draws()
+            && graph.check_fits(steps, max_elements).is_ok();
         let bounds = small.then(|| bounding_box(graph, &growth).ok()).flatten();
         bounds.filter(Bounds::is_finite)
     }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::catalogue::{cannot_be_read, open_file};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source, listed};
-use crate::import::{Columns, Format, ImportOptions, Imported, read};
+use crate::import::{ImportOptions, Imported, MapColumns, SourceFormat, read};
 use crate::style::Named as _;
 
 use super::check::{DiagnosticRow, row};
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     sources: Vec<PathBuf>,
     /// Format of the files, by default that of the extension of each
     #[arg(long, value_name = "FORMAT", value_parser = format())]
-    from: Option<Format>,
+    from: Option<SourceFormat>,
     /// Columns of tables of maps, by letters, such as abcdefp
     ///
     /// Each letter stands for a number of a map: x' = a x + b y + e, y' = c x + d y + f, in space x' = a x + b y + c z + j,
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     /// is the order of SVG and flam3, abecdf that of x' before y'. By default the header of a table names its columns, in any
     /// order.
     #[arg(long, value_name = "LETTERS", allow_hyphen_values = true)]
-    columns: Option<Columns>,
+    columns: Option<MapColumns>,
     /// Output folder, which is created if necessary
     #[arg(long, short, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
@@ -66,10 +66,11 @@ Examples:
       Reads a row of a table as the coefficients of x', those of y', and a probability
 ";
 
-fn format() -> impl TypedValueParser<Value = Format> {
-    let formats = Format::NAMES.iter();
+fn format() -> impl TypedValueParser<Value = SourceFormat> {
+    let formats = SourceFormat::NAMES.iter();
     let formats = formats.map(|(name, format)| PossibleValue::new(*name).help(format.described()));
-    PossibleValuesParser::new(formats).try_map(|name| Format::from_name(&name).ok_or("unknown"))
+    PossibleValuesParser::new(formats)
+        .try_map(|name| SourceFormat::from_name(&name).ok_or("unknown"))
 }
 
 /// Result for an entry, or for the text between entries.
@@ -173,19 +174,19 @@ fn report(name: &str, reports: &[Entry], folder: &Path) {
 }
 
 /// Returns the format of a file: that of the arguments, or that of its extension.
-fn format_of(path: &Path, arguments: &Arguments) -> Result<Format, Failure> {
-    let format = arguments.from.or_else(|| Format::of_path(path));
+fn format_of(path: &Path, arguments: &Arguments) -> Result<SourceFormat, Failure> {
+    let format = arguments.from.or_else(|| SourceFormat::of_path(path));
     let format = format.ok_or_else(|| {
         let name = match path == Path::new("-") {
             true => "standard input".into(),
             false => format!("'{}'", path.display()),
         };
-        let names = listed(Format::NAMES.iter().map(|(name, _)| *name));
+        let names = listed(SourceFormat::NAMES.iter().map(|(name, _)| *name));
         Failure::Usage(format!(
             "the format of {name} is not known: --from is one of {names}"
         ))
     })?;
-    if arguments.columns.is_some() && format != Format::Csv {
+    if arguments.columns.is_some() && format != SourceFormat::Csv {
         let message = format!(
             "--columns is for tables of maps, not for {}",
             format.described()

@@ -15,8 +15,8 @@ use crate::catalogue::Catalogue;
 #[cfg(feature = "studio")]
 use crate::diagnostic::Source;
 use crate::family::{
-    Axis, Family, FamilyError, MapOptions, ParameterMap, ParameterPlane, PlaneError, PlaneValue,
-    Property,
+    Family, FamilyError, MapOptions, ParameterMap, ParameterPlane, ParameterRange, PlaneError,
+    PlaneValue, Property,
 };
 use crate::ifs::ConnectednessSearch;
 use crate::parallel::all_cores;
@@ -232,7 +232,7 @@ impl Arguments {
             return Err(Failure::Usage(message));
         }
         let axes = self.over.iter().flat_map(|it| it.axes.clone());
-        let axes: Vec<Axis> = axes.collect();
+        let axes: Vec<ParameterRange> = axes.collect();
         let size = match (self.size(), &axes[..]) {
             (Size::Exactly(width, height), _) => [width, height],
             (Size::Long(side), [_]) => [side, (side / STRIP).max(1)],
@@ -340,7 +340,7 @@ fn scaled(side: u32, share: f64) -> u32 {
 }
 
 /// Returns an error if an axis exceeds the limits of its parameter.
-fn check_limits(axis: &Axis, loaded: &Loaded) -> Result<(), Failure> {
+fn check_limits(axis: &ParameterRange, loaded: &Loaded) -> Result<(), Failure> {
     let parameters = &loaded.model.metadata().parameters;
     let Some(parameter) = parameters.iter().find(|it| it.name == axis.name) else {
         return Ok(());

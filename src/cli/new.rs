@@ -47,19 +47,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { file, kind, space } = arguments;
     let template = match (kind, space == "3") {
         (Kind::Rule, false) => include_str!("new/rule.yaml"),
+        (Kind::Rule, true) => include_str!("new/rule-in-space.yaml"),
         (Kind::Ifs, false) => include_str!("new/ifs.yaml"),
         (Kind::Ifs, true) => include_str!("new/ifs-in-space.yaml"),
         (Kind::Instancing, false) => include_str!("new/instancing.yaml"),
         (Kind::Instancing, true) => include_str!("new/instancing-in-space.yaml"),
         (Kind::LSystem, false) => include_str!("new/lsystem.yaml"),
         (Kind::LSystem, true) => include_str!("new/lsystem-in-space.yaml"),
-        (kind, true) => {
-            let message = format!(
-                "{} lies in the plane: --kind ifs, --kind instancing and --kind lsystem know space",
-                kind.full_name()
-            );
-            return Err(Failure::Usage(message));
-        }
     };
     let is_file = file != Path::new("-");
     if is_file && file.exists() {

@@ -13,7 +13,7 @@ use clap::ValueHint;
 
 use super::readable;
 use crate::catalogue::Catalogue;
-use crate::figure::sheet::{self, Arrangement, Fit};
+use crate::figure::sheet::{self, Arrangement, CellView};
 use crate::fractal::Goal;
 use crate::graph::Graph;
 use crate::grow::{Growth, Progress};
@@ -79,8 +79,8 @@ pub(super) struct Arguments {
     grid: bool,
     /// Part of the plane that is shown: what all pictures need, or each picture its own [default: all; each for several
     /// rules]
-    #[arg(long, value_parser = picture::named::<Fit>())]
-    fit: Option<Fit>,
+    #[arg(long, value_parser = picture::named::<CellView>())]
+    fit: Option<CellView>,
     #[command(flatten)]
     growth: GrowthArguments,
     /// Long side of every single picture in pixels, or WIDTHxHEIGHT
@@ -330,7 +330,7 @@ impl Arguments {
                         individual,
                         &style,
                         match contents.fit {
-                            Fit::All => common,
+                            CellView::All => common,
                             _ => view,
                         },
                     )?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::ValueHint;
 
 use crate::catalogue::Catalogue;
-use crate::studio::{Options, Studio, StudioError};
+use crate::studio::{Studio, StudioError, StudioOptions};
 
 use super::{Failure, family, help, number, output, text};
 
@@ -53,7 +53,7 @@ fn setting(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(arguments: &Arguments, catalogue: Catalogue) -> Result<(), Failure> {
-    let options = Options::default()
+    let options = StudioOptions::default()
         .rule(arguments.rule.clone())
         .library(catalogue.first_folder().map(PathBuf::from))
         .catalogue(catalogue)

@@ -271,6 +271,11 @@ impl LSystem {
         Some(work::large(self, steps, work, word))
     }
 
+    /// Returns a number of steps, at most `steps`, for which a graph takes little work if there is one.
+    pub(crate) fn soon_compiled(&self, steps: u32) -> u32 {
+        work::soon(self, steps)
+    }
+
     /// Converts the error to a diagnostic of the file from which the system was read.
     pub(crate) fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         let diagnostic = Diagnostic::error(error.to_string());

@@ -3,8 +3,8 @@
 use std::num::NonZero;
 use std::sync::OnceLock;
 
-use crate::chaos::{Game, Walked};
-use crate::document::{Fit, Law, Mode};
+use crate::chaos::{ChaosMap, Game};
+use crate::document::{Framing, Law, Mode};
 use crate::draws::{Path, Variable};
 use crate::fractal::Fractal;
 use crate::geometry::{Affine, DAffine2, DAffine3, DVec3};
@@ -349,7 +349,7 @@ impl Subject {
 }
 
 /// Returns the maps of a system any of which may follow any, with their weights; `None` for others.
-fn plain_maps<M: Walked>(ifs: &Ifs<M>) -> Option<Vec<WeightedMap<M>>> {
+fn plain_maps<M: ChaosMap>(ifs: &Ifs<M>) -> Option<Vec<WeightedMap<M>>> {
     let is_plain = !ifs.is_recurrent() && ifs.condensation().is_empty();
     is_plain.then(|| {
         let maps = ifs.maps().iter().zip(ifs.weights());
@@ -383,7 +383,7 @@ fn drawn<M: Drawable>(
             continue;
         };
         let is_full = spec.fill == 0.0 || {
-            let hits = attractor.hits(size, Fit::Box, &game(points, path));
+            let hits = attractor.hits(size, Framing::Box, &game(points, path));
             hits.is_some_and(|it| share(&it) >= spec.fill)
         };
         if is_full {

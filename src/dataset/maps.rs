@@ -1,10 +1,10 @@
 //! Systems of affine maps with weights, as data sets draw, vary and label them.
 
 use crate::chaos::{
-    DepthWindow, Game, HistogramWindow, RandomPoints, Seen, Start, Walked, WeightedMaps, play,
+    ChaosMap, DepthWindow, Game, HistogramWindow, RandomPoints, Seen, Start, WeightedMaps, play,
     play_in_space,
 };
-use crate::document::Fit;
+use crate::document::Framing;
 use crate::geometry::{
     Affine, Bounds, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Linear, Point,
 };
@@ -74,7 +74,7 @@ fn row<M: Drawable>(map: &WeightedMap<M>) -> Vec<f64> {
 }
 
 /// Maps whose attractors are drawn.
-pub(super) trait Drawable: Walked {
+pub(super) trait Drawable: ChaosMap {
     /// Number of coefficients.
     const COEFFICIENTS: usize;
 
@@ -260,7 +260,7 @@ impl<M: Drawable> Attractor<M> {
     pub(super) fn hits(
         &self,
         size: u32,
-        fit: Fit,
+        fit: Framing,
         game: &Game<'_, PointOf<M>>,
     ) -> Option<Vec<u32>> {
         let room = f64::from(size) - 2.0 * EDGE;
@@ -268,8 +268,8 @@ impl<M: Drawable> Attractor<M> {
         // A set without extent lies in the middle.
         let scale = |extent: f64| if extent > 0.0 { room / extent } else { 1.0 };
         let scale = match fit {
-            Fit::Box => DVec2::new(scale(x), scale(y)),
-            Fit::Shape => DVec2::splat(scale(x.max(y))),
+            Framing::Box => DVec2::new(scale(x), scale(y)),
+            Framing::Shape => DVec2::splat(scale(x.max(y))),
         };
         M::hits(self, scale, size, game)
     }

@@ -15,9 +15,10 @@
 //! of the file, the category and the instance: it is the same on every machine, in any order and in any part of the work.
 //! Draws that are rejected are drawn again by their path, so that no number depends on them.
 //!
-//! Systems of maps are drawn by random iteration, fitted to their box ([`Fit`]); the box is exact where every map contracts
-//! clearly, and otherwise that of 20,000 points. Other fractals are drawn as their files state, in proportion, with the opacity
-//! as the level. Sets in space are seen in parallel projection, from directions that the file chooses by `views`.
+//! Systems of maps are drawn by random iteration, fitted to their box ([`Framing`]); the box is exact where every map
+//! contracts clearly, and otherwise that of 20,000 points. Other fractals are drawn as their files state, in
+//! proportion, with the opacity as the level. Sets in space are seen in parallel projection, from directions that the
+//! file chooses by `views`.
 //!
 //! ```
 //! # fn main() -> Result<(), kfrac::dataset::DatasetError> {
@@ -48,7 +49,7 @@ mod spec;
 mod tests;
 mod vary;
 
-pub use crate::document::{Fit, Law, Mode};
+pub use crate::document::{Framing, Law, Mode};
 pub use batch::Batch;
 pub use category::{Category, Example, Label};
 pub use maps::{Maps, WeightedMap};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::catalogue::Catalogue;
 use crate::chaos::points_of_text;
 use crate::diagnostic::{Diagnostic, Diagnostics, Place, Source, did_you_mean};
-use crate::document::{DatasetDocument, Fit, Law, Mode, PictureDocument, WrittenNumber};
+use crate::document::{DatasetDocument, Framing, Law, Mode, PictureDocument, WrittenNumber};
 use crate::draws::{Path, Variable};
 use crate::expression::{Expression, Program, Scope};
 use crate::fractal::Fractal;
@@ -39,7 +39,7 @@ pub(super) struct Spec {
     pub(super) points: u64,
     pub(super) mode: Mode,
     pub(super) colouring: Colouring,
-    pub(super) fit: Fit,
+    pub(super) fit: Framing,
     pub(super) fill: f64,
 }
 
@@ -223,7 +223,7 @@ impl Checker<'_> {
             points: 100_000,
             mode: Mode::default(),
             colouring: Colouring::default(),
-            fit: Fit::default(),
+            fit: Framing::default(),
             fill: fill?,
         };
         match &document.picture {

@@ -11,7 +11,7 @@ use crate::style::Camera;
 use super::extent::attractor_box;
 use super::maps::{Attractor, weighted};
 use super::random::anderson;
-use super::{Dataset, DatasetError, Fit, WeightedMap, Weights};
+use super::{Dataset, DatasetError, Framing, WeightedMap, Weights};
 
 const RANDOM: &str = "{kind: dataset, seed: 3, categories: {systems: {random: {maps: [2, 5]}, count: 12}}, \
                       instances: {count: 30, weights: fractaldb, flips: true}, picture: {size: 48, points: 5k, MORE}}";
@@ -224,7 +224,7 @@ fn directions_of_view_are_uniform() {
 #[test]
 fn views_in_space_are_those_of_the_plane() {
     let mut random = Pcg::new(7, 8);
-    let (size, fit) = (64, Fit::Box);
+    let (size, fit) = (64, Framing::Box);
     let mut compared = 0;
     for count in 2..8 {
         let flat = weighted(anderson(&mut random, count));

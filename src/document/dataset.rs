@@ -87,8 +87,8 @@ mapping! {
     points: Option<Written<String>> = Form::Text, "Number of points: 100k, 1M; 100k if left out.";
     mode: Mode = Form::variant::<Mode>(), "How hits become levels.";
     colour: Option<Written<String>> = Form::Text, "`gray`, `hsv`, or the name of a palette; `gray` if left out.";
-    fit: Fit = Form::variant::<Fit>(), "How the box of the attractor fills the picture.";
-    format: Format = Form::variant::<Format>(), "Format of files.";
+    fit: Framing = Form::variant::<Framing>(), "How the box of the attractor fills the picture.";
+    format: PictureFormat = Form::variant::<PictureFormat>(), "Format of files.";
 }
 
 mapping! {
@@ -138,7 +138,7 @@ impl Named for Mode {
 /// Placement of the box of an attractor in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Fit {
+pub enum Framing {
     /// The box fills the picture; x and y are scaled apart.
     #[default]
     Box,
@@ -146,28 +146,28 @@ pub enum Fit {
     Shape,
 }
 
-impl Named for Fit {
+impl Named for Framing {
     const NAMES: &'static [(&'static str, Self)] = &[("box", Self::Box), ("shape", Self::Shape)];
 }
 
 /// Format of pictures in files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Format {
+pub enum PictureFormat {
     /// PNG.
     #[default]
     Png,
 }
 
-impl Named for Format {
+impl Named for PictureFormat {
     const NAMES: &'static [(&'static str, Self)] = &[("png", Self::Png)];
 }
 
 variants! {
     Law: "law of random systems";
     Mode: "mode of pictures";
-    Fit: "way to fit";
-    Format: "format of pictures";
+    Framing: "way to fit";
+    PictureFormat: "format of pictures";
 }
 
 /// A parameter and its value, or the distribution of its values.

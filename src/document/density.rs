@@ -1,7 +1,7 @@
 //! Reading of `density`: pictures of hits.
 
 use crate::chaos::points_of_text;
-use crate::style::{DensityView, Method, Tone};
+use crate::style::{DensityView, Iteration, Tone};
 
 use super::node::Node;
 use super::reader::{Fields, Reader};
@@ -22,7 +22,7 @@ pub(super) const DENSITY: Shape = Shape {
     what: "a density",
     keys: &[
         &keys![
-            method: Form::variant::<Method>(),
+            method: Form::variant::<Iteration>(),
                 "With `chaos`, a PNG of a system of maps shows random iteration, unless `--steps` or another option of elements is given.";
             points: Form::Text,
                 "With `method: chaos`: the number of points, such as 10M; 10M if left out.";
@@ -84,7 +84,7 @@ pub(super) fn read_density(
         ("oversample", density.oversample.is_some()),
         ("kernel", density.kernel.is_some()),
     ] {
-        if is_given && density.method == Some(Method::Deterministic) {
+        if is_given && density.method == Some(Iteration::Deterministic) {
             let message =
                 format!("`{name}` is for random iteration, and the method is deterministic");
             reader.error_with_hint(fields.place_of(name), message, "method: chaos");

@@ -228,6 +228,8 @@ pub enum SolidDocument {
     Cuboid(CuboidDocument),
     /// The convex hull of points.
     Hull(Vec<WrittenPoint>),
+    /// A solid of a known name, about the origin.
+    Named(Written<String>),
     /// A mesh.
     Mesh(MeshDocument),
 }

@@ -1,6 +1,6 @@
 //! Mappings whose document, checks, reader and schema come from one table of keys.
 
-use crate::style::{Blend, Cap, ColorBy, Colour, Join, Method, Tone};
+use crate::style::{Blend, Cap, ColorBy, Colour, Iteration, Join, Tone};
 
 use super::node::Node;
 use super::reader::{Fields, Reader};
@@ -118,7 +118,7 @@ variants! {
     Join: "join";
     Blend: "blend mode";
     ColorBy: "way to colour";
-    Method: "method";
+    Iteration: "method";
     Tone: "tone";
 }
 

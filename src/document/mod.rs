@@ -34,8 +34,8 @@ mod yaml;
 
 pub use animation::FilmOption;
 pub use dataset::{
-    AcceptDocument, CategoriesDocument, DatasetDocument, Fit, Format, InstancesDocument, Law,
-    LawDocument, Mode, PictureDocument, RandomDocument, SourceDocument,
+    AcceptDocument, CategoriesDocument, DatasetDocument, Framing, InstancesDocument, Law,
+    LawDocument, Mode, PictureDocument, PictureFormat, RandomDocument, SourceDocument,
 };
 pub use ifs::{
     AlternativeMapsDocument, CondensationDocument, EdgeDocument, FormDocument, FractalDocument,
@@ -51,6 +51,7 @@ pub use lsystem::{
     SymbolDocument, TropismDocument, WordDocument,
 };
 pub use metadata::{MetadataDocument, ParameterDocument};
+pub(crate) use read::corners_of_solid;
 pub use read::{
     BaseElementDocument, CaseDocument, CuboidDocument, DiskDocument, EllipseDocument,
     EllipsoidDocument, InSpace, InitiatorDocument, Listed, MoveDocument, RotateDocument,

@@ -34,6 +34,7 @@ pub use set::{DiskDocument, EllipseDocument};
 pub use solid::{CuboidDocument, EllipsoidDocument, ShaftDocument, SphereDocument};
 pub use space::InSpace;
 pub(super) use space::SPACE_OF_COMPONENT;
+pub(crate) use space::corners_of_solid;
 pub use tint::TintDocument;
 pub(super) use transform::TRANSFORMS;
 

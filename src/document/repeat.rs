@@ -346,17 +346,18 @@ impl Expansion<'_> {
 
     /// Returns the value of an expression of parameters, which is a whole number.
     fn whole(&mut self, text: &str, place: &Place, hint: &str) -> Option<i64> {
-        let value = self.number(text, 0);
-        let is_whole = |value: &f64| (value.round() - value).abs() < 1e-9 && value.abs() < 1e9;
-        match value {
-            #[expect(clippy::cast_possible_truncation, reason = "a whole number below 1e9")]
-            Ok(value) if is_whole(&value) => return Some(value.round() as i64),
-            Ok(_) => {
-                let message = format!("'{}' is no whole number", text.trim());
-                self.error(place, message, hint);
+        /// Bound of the absolute values.
+        const MOST: f64 = 1e9;
+        let message = match self.number(text, 0) {
+            Ok(value) if value.abs() >= MOST => {
+                format!("'{}' is beyond a thousand million", text.trim())
             }
-            Err(message) => self.error(place, message, hint),
-        }
+            #[expect(clippy::cast_possible_truncation, reason = "it is below 1e9")]
+            Ok(value) if (value.round() - value).abs() < 1e-9 => return Some(value.round() as i64),
+            Ok(_) => format!("'{}' is no whole number", text.trim()),
+            Err(message) => message,
+        };
+        self.error(place, message, hint);
         None
     }
 

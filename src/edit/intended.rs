@@ -2,7 +2,7 @@
 
 use crate::document::node::{Key, Node, Value};
 
-use super::{Edit, EditError, Step, missing};
+use super::{Edit, EditError, PathStep, missing};
 
 /// Returns the values after an edit.
 pub(super) fn intended(node: &Node, edit: &Edit) -> Result<Node, EditError> {
@@ -53,7 +53,7 @@ pub(super) fn intended(node: &Node, edit: &Edit) -> Result<Node, EditError> {
             let (last, parent) = at.split_last().ok_or_else(failed)?;
             let parent = find_mut(&mut new, parent).ok_or_else(failed)?;
             match (&mut parent.value, last) {
-                (Value::Sequence(items), Step::Item(item)) if *item < items.len() => {
+                (Value::Sequence(items), PathStep::Item(item)) if *item < items.len() => {
                     items.remove(*item);
                 }
                 (Value::Mapping(entries), step) => {
@@ -81,10 +81,10 @@ fn position(entries: &[(Key, Node)], key: &str) -> Option<usize> {
     entries.iter().position(|(known, _)| known.name == key)
 }
 
-fn find_mut<'n>(node: &'n mut Node, at: &[Step]) -> Option<&'n mut Node> {
+fn find_mut<'n>(node: &'n mut Node, at: &[PathStep]) -> Option<&'n mut Node> {
     at.iter()
         .try_fold(node, |node, step| match (&mut node.value, step) {
-            (Value::Sequence(items), Step::Item(item)) => items.get_mut(*item),
+            (Value::Sequence(items), PathStep::Item(item)) => items.get_mut(*item),
             (Value::Mapping(entries), step) => {
                 let index = position(entries, &step.to_string())?;
                 entries.get_mut(index).map(|(_, node)| node)
@@ -110,8 +110,8 @@ pub(super) fn is_equal(a: &Node, b: &Node) -> bool {
 
 /// Returns the edits of the parts in which a collection differs from another one of its type; `None` if they have
 /// different types, or one of them is empty.
-pub(super) fn differences(old: &Node, new: &Node, at: &[Step]) -> Option<Vec<Edit>> {
-    let below = |step: Step| -> Vec<Step> { at.iter().cloned().chain([step]).collect() };
+pub(super) fn differences(old: &Node, new: &Node, at: &[PathStep]) -> Option<Vec<Edit>> {
+    let below = |step: PathStep| -> Vec<PathStep> { at.iter().cloned().chain([step]).collect() };
     let mut edits = Vec::new();
     match (&old.value, &new.value) {
         (Value::Sequence(a), Value::Sequence(b)) if !a.is_empty() && !b.is_empty() => {
@@ -130,12 +130,12 @@ pub(super) fn differences(old: &Node, new: &Node, at: &[Step]) -> Option<Vec<Edi
                 match old.get(&key.name) {
                     None => edits.push(Edit::add(at.to_vec(), key.name.clone(), value)),
                     Some(own) if own.same_value(node) => {}
-                    Some(_) => edits.push(Edit::set(below(Step::Key(key.name.clone())), value)),
+                    Some(_) => edits.push(Edit::set(below(PathStep::Key(key.name.clone())), value)),
                 }
             }
             let is_gone = |key: &Key| new.get(&key.name).is_none();
             let removed = a.iter().map(|(key, _)| key).filter(|key| is_gone(key));
-            edits.extend(removed.map(|key| Edit::remove(below(Step::Key(key.name.clone())))));
+            edits.extend(removed.map(|key| Edit::remove(below(PathStep::Key(key.name.clone())))));
         }
         _ => return None,
     }

@@ -1,8 +1,8 @@
 //! Edits of texts: a change of a file that leaves every other byte as it is.
 //!
-//! An [`Edit`] names a value by its [`Step`]s from the top of the file, and [`edit`] returns the new text. Comments, layout,
-//! line ends, quotes and the order of keys stay as they are outside of what is edited. A comment that stands behind an
-//! entry of its own lines is removed with that entry, and with nothing else.
+//! An [`Edit`] names a value by its [`PathStep`]s from the top of the file, and [`edit`] returns the new text.
+//! Comments, layout, line ends, quotes and the order of keys stay as they are outside of what is edited. A comment that
+//! stands behind an entry of its own lines is removed with that entry, and with nothing else.
 //!
 //! The new text is read again, and must have exactly the values that the edit states: else the edit is refused, and
 //! there is no new text. An alias and a merge key (`<<`) have their values elsewhere: they are not edited.
@@ -27,26 +27,26 @@ use crate::document::node::{Node, Value};
 
 /// A step from a value to a part of it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Step {
+pub enum PathStep {
     /// Value of a key of a mapping.
     Key(String),
     /// Item of a list, from 0.
     Item(usize),
 }
 
-impl From<&str> for Step {
+impl From<&str> for PathStep {
     fn from(key: &str) -> Self {
         Self::Key(key.to_owned())
     }
 }
 
-impl From<usize> for Step {
+impl From<usize> for PathStep {
     fn from(item: usize) -> Self {
         Self::Item(item)
     }
 }
 
-impl fmt::Display for Step {
+impl fmt::Display for PathStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Key(key) => write!(f, "{key}"),
@@ -57,10 +57,13 @@ impl fmt::Display for Step {
 
 /// Returns the steps that a text such as `generator/1/to` names: parts that are whole numbers are items of lists.
 #[must_use]
-pub fn steps(path: &str) -> Vec<Step> {
+pub fn steps(path: &str) -> Vec<PathStep> {
     let parts = path.split('/').filter(|part| !part.is_empty());
     parts
-        .map(|part| part.parse().map_or_else(|_| Step::from(part), Step::Item))
+        .map(|part| {
+            part.parse()
+                .map_or_else(|_| PathStep::from(part), PathStep::Item)
+        })
         .collect()
 }
 
@@ -71,14 +74,14 @@ pub enum Edit {
     /// Replaces a value. Of a mapping or a list that stays one, only what differs is changed.
     Set {
         /// The value.
-        at: Vec<Step>,
+        at: Vec<PathStep>,
         /// New value.
         value: String,
     },
     /// Adds an item to a list.
     Insert {
         /// The list.
-        into: Vec<Step>,
+        into: Vec<PathStep>,
         /// Index of the new item, at most the number of items.
         index: usize,
         /// New item.
@@ -87,7 +90,7 @@ pub enum Edit {
     /// Adds an entry to a mapping.
     Add {
         /// The mapping.
-        to: Vec<Step>,
+        to: Vec<PathStep>,
         /// Key, which the mapping does not have.
         key: String,
         /// Its value.
@@ -98,19 +101,19 @@ pub enum Edit {
     /// Removes an item of a list or an entry of a mapping.
     Remove {
         /// Its value.
-        at: Vec<Step>,
+        at: Vec<PathStep>,
     },
     /// Puts a value into a mapping of one key, in its place: `a: 1` becomes `a: {key: 1}`, over lines as it was.
     Nest {
         /// The value of an entry.
-        at: Vec<Step>,
+        at: Vec<PathStep>,
         /// Its key in the new mapping.
         key: String,
     },
     /// Gives an entry of a mapping another key.
     Rename {
         /// Its value.
-        at: Vec<Step>,
+        at: Vec<PathStep>,
         /// New key, which the mapping does not have.
         key: String,
     },
@@ -119,21 +122,21 @@ pub enum Edit {
 impl Edit {
     /// Replaces a value.
     #[must_use]
-    pub fn set(at: Vec<Step>, value: impl Into<String>) -> Self {
+    pub fn set(at: Vec<PathStep>, value: impl Into<String>) -> Self {
         let value = value.into();
         Self::Set { at, value }
     }
 
     /// Adds an item to a list.
     #[must_use]
-    pub fn insert(into: Vec<Step>, index: usize, value: impl Into<String>) -> Self {
+    pub fn insert(into: Vec<PathStep>, index: usize, value: impl Into<String>) -> Self {
         let value = value.into();
         Self::Insert { into, index, value }
     }
 
     /// Adds an entry at the end of a mapping.
     #[must_use]
-    pub fn add(to: Vec<Step>, key: impl Into<String>, value: impl Into<String>) -> Self {
+    pub fn add(to: Vec<PathStep>, key: impl Into<String>, value: impl Into<String>) -> Self {
         Self::Add {
             to,
             key: key.into(),
@@ -144,13 +147,13 @@ impl Edit {
 
     /// Removes a value, with its key if it has one.
     #[must_use]
-    pub fn remove(at: Vec<Step>) -> Self {
+    pub fn remove(at: Vec<PathStep>) -> Self {
         Self::Remove { at }
     }
 
     /// Gives an entry another key.
     #[must_use]
-    pub fn rename(at: Vec<Step>, key: impl Into<String>) -> Self {
+    pub fn rename(at: Vec<PathStep>, key: impl Into<String>) -> Self {
         let key = key.into();
         Self::Rename { at, key }
     }
@@ -239,7 +242,7 @@ fn one(text: &str, edit: &Edit) -> Result<String, EditError> {
 impl Edit {
     /// Returns the steps to the value that is edited.
     #[must_use]
-    pub fn at(&self) -> &[Step] {
+    pub fn at(&self) -> &[PathStep] {
         match self {
             Self::Set { at, .. } | Self::Remove { at } => at,
             Self::Rename { at, .. } | Self::Nest { at, .. } => at,
@@ -250,10 +253,10 @@ impl Edit {
 
 /// Returns the value to which steps lead.
 #[must_use]
-pub fn find<'n>(node: &'n Node, at: &[Step]) -> Option<&'n Node> {
+pub fn find<'n>(node: &'n Node, at: &[PathStep]) -> Option<&'n Node> {
     at.iter().try_fold(node, |node, step| match step {
-        Step::Key(key) => node.get(key),
-        Step::Item(item) => match &node.value {
+        PathStep::Key(key) => node.get(key),
+        PathStep::Item(item) => match &node.value {
             Value::Sequence(nodes) => nodes.get(*item),
             // A key may be a number.
             Value::Mapping(_) => node.get(&item.to_string()),
@@ -268,11 +271,11 @@ pub(crate) fn flow(node: &Node) -> String {
     intended::flow(node, false)
 }
 
-fn joined(at: &[Step]) -> String {
-    let all: Vec<_> = at.iter().map(Step::to_string).collect();
+fn joined(at: &[PathStep]) -> String {
+    let all: Vec<_> = at.iter().map(PathStep::to_string).collect();
     all.join("/")
 }
 
-fn missing(at: &[Step]) -> EditError {
+fn missing(at: &[PathStep]) -> EditError {
     EditError::Missing(joined(at))
 }

@@ -4,15 +4,15 @@ use std::ops::Range;
 
 use crate::document::node::{Node, Value};
 
-use super::Step;
+use super::PathStep;
 use super::splice::{Splice, Text};
 
 /// Returns ways to remove a part of a collection.
-pub(super) fn removed(text: &Text<'_>, parent: &Node, step: &Step) -> Option<Vec<Splice>> {
+pub(super) fn removed(text: &Text<'_>, parent: &Node, step: &PathStep) -> Option<Vec<Splice>> {
     let (ranges, index) = match &parent.value {
         Value::Sequence(items) => {
             let ranges: Vec<_> = items.iter().map(|item| text.range(item)).collect();
-            let Step::Item(index) = step else {
+            let PathStep::Item(index) = step else {
                 return None;
             };
             (ranges, *index)

@@ -7,7 +7,7 @@ use crate::diagnostic::Source;
 use crate::document::node::{Key, Node, Value};
 
 use super::intended::flow;
-use super::{Edit, EditError, Step, find, joined, missing, remove};
+use super::{Edit, EditError, PathStep, find, joined, missing, remove};
 
 /// Changes of a text, from its end to its start.
 pub(super) type Splice = Vec<(Range<usize>, String)>;
@@ -91,7 +91,7 @@ impl Text<'_> {
 
     /// Returns a value that is written where its steps lead; an error if it is written elsewhere, as the value of an
     /// alias is.
-    fn own(&self, at: &[Step]) -> Result<&Node, EditError> {
+    fn own(&self, at: &[PathStep]) -> Result<&Node, EditError> {
         let node = find(self.root, at).ok_or_else(|| missing(at))?;
         for depth in 0..=at.len() {
             let outer = find(self.root, &at[..depth]).ok_or_else(|| missing(at))?;

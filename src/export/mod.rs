@@ -11,6 +11,6 @@ mod table;
 pub use bits::write_bits;
 pub use columns::{Column, ColumnError, Columns};
 pub use listed::Listed;
-pub use ply::{Surface, write_ply};
+pub use ply::{Relief, write_ply};
 pub use points::write_points;
 pub use table::{TableFormat, write};

@@ -25,14 +25,14 @@ const REACH: usize = 2;
 /// a normal of the relief of the cloud, which points outwards and depends on no view. It is wrong for what is finer
 /// than the cells. Where the density is the same all around, the normal points away from the middle of the box.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct Relief {
     corner: DVec3,
     /// Cells a unit.
     scale: f64,
     density: Vec<f32>,
 }
 
-impl Surface {
+impl Relief {
     /// Creates the normals of points in a box. Points outside count as if they were on its edge.
     #[must_use]
     pub fn of(bounds: &Bounds<DVec3>, points: impl Iterator<Item = DVec3>) -> Self {
@@ -147,7 +147,7 @@ fn number([x, y, z]: [usize; 3]) -> usize {
 pub fn write_ply(
     mut points: impl Iterator<Item = RandomPoint<DVec3>>,
     count: u64,
-    surface: &Surface,
+    surface: &Relief,
     mut colour: impl FnMut(&RandomPoint<DVec3>) -> Colour,
     cancel: Option<&AtomicBool>,
     progress: Option<&Progress>,

@@ -5,14 +5,14 @@ use crate::geometry::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 
 /// Affine map over numbers of an arithmetic, of the plane or of a space of `D` dimensions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Affine<N, const D: usize = 2> {
+pub struct AffineOf<N, const D: usize = 2> {
     /// Images of the unit vectors along the axes under the linear part.
     pub(crate) axes: [[N; D]; D],
     /// Image of the origin.
     pub(crate) origin: [N; D],
 }
 
-impl<N: Clone, const D: usize> Affine<N, D> {
+impl<N: Clone, const D: usize> AffineOf<N, D> {
     /// Creates a linear map from its columns.
     pub(crate) fn linear<A: Arithmetic<Number = N>>(of: &mut A, axes: [[N; D]; D]) -> Self {
         let zero = of.decimal(0.0);
@@ -80,16 +80,16 @@ impl<N: Clone, const D: usize> Affine<N, D> {
     }
 
     /// Returns the map with numbers that are a function of its numbers.
-    pub(crate) fn map<M>(&self, mut number: impl FnMut(&N) -> M) -> Affine<M, D> {
+    pub(crate) fn map<M>(&self, mut number: impl FnMut(&N) -> M) -> AffineOf<M, D> {
         let mut vector = |vector: &[N; D]| vector.each_ref().map(&mut number);
-        Affine {
+        AffineOf {
             axes: self.axes.each_ref().map(&mut vector),
             origin: vector(&self.origin),
         }
     }
 }
 
-impl<N: Clone> Affine<N> {
+impl<N: Clone> AffineOf<N> {
     /// Creates a rotation from the cosine and the sine of its angle.
     pub(crate) fn rotation<A: Arithmetic<Number = N>>(of: &mut A, [cosine, sine]: [N; 2]) -> Self {
         let across = [of.negate(&sine), cosine.clone()];
@@ -123,7 +123,7 @@ impl<N: Clone> Affine<N> {
     }
 }
 
-impl<N: Clone> Affine<N, 3> {
+impl<N: Clone> AffineOf<N, 3> {
     /// Creates the rotation about a unit vector, from the cosine and the sine of its angle, by the right-hand rule
     /// (Rodrigues 1840).
     pub(crate) fn rotation_about<A: Arithmetic<Number = N>>(
@@ -153,7 +153,7 @@ impl<N: Clone> Affine<N, 3> {
     }
 }
 
-impl Affine<Program, 3> {
+impl AffineOf<Program, 3> {
     /// Returns the map if its numbers are constants.
     pub(crate) fn as_constant(&self) -> Option<DAffine3> {
         let constant = self.map(Program::as_constant);
@@ -163,13 +163,13 @@ impl Affine<Program, 3> {
     }
 }
 
-impl Affine<Program> {
+impl AffineOf<Program> {
     /// Returns the map of space that acts on x and y like this one and takes all z to 0.
-    pub(crate) fn in_space(&self) -> Affine<Program, 3> {
+    pub(crate) fn in_space(&self) -> AffineOf<Program, 3> {
         let zero = || Program::constant(0.0);
         let vector = |[x, y]: &[Program; 2]| [x.clone(), y.clone(), zero()];
         let [right, up] = self.axes.each_ref().map(vector);
-        Affine {
+        AffineOf {
             axes: [right, up, [zero(), zero(), zero()]],
             origin: vector(&self.origin),
         }
@@ -184,7 +184,7 @@ impl Affine<Program> {
     }
 }
 
-impl<const D: usize> Affine<Program, D> {
+impl<const D: usize> AffineOf<Program, D> {
     /// Iterates over the expressions.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = &Program> {
         self.axes.iter().flatten().chain(&self.origin)
@@ -195,15 +195,15 @@ impl<const D: usize> Affine<Program, D> {
         of: &mut A,
         maps: &[Self],
         slots: &[A::Number],
-    ) -> Affine<A::Number, D> {
-        maps.iter().fold(Affine::identity(of), |before, map| {
+    ) -> AffineOf<A::Number, D> {
+        maps.iter().fold(AffineOf::identity(of), |before, map| {
             let map = map.map(|program| program.evaluate(of, slots));
             map.after(of, &before)
         })
     }
 }
 
-impl From<DAffine3> for Affine<Program, 3> {
+impl From<DAffine3> for AffineOf<Program, 3> {
     fn from(map: DAffine3) -> Self {
         let vector = |it: DVec3| it.to_array().map(Program::constant);
         let axes = [0, 1, 2].map(|axis| map.matrix3.col(axis));
@@ -214,7 +214,7 @@ impl From<DAffine3> for Affine<Program, 3> {
     }
 }
 
-impl From<DAffine2> for Affine<Program> {
+impl From<DAffine2> for AffineOf<Program> {
     fn from(map: DAffine2) -> Self {
         let vector = |it: DVec2| it.to_array().map(Program::constant);
         Self {
@@ -224,15 +224,15 @@ impl From<DAffine2> for Affine<Program> {
     }
 }
 
-impl From<Affine<f64, 3>> for DAffine3 {
-    fn from(Affine { axes, origin }: Affine<f64, 3>) -> Self {
+impl From<AffineOf<f64, 3>> for DAffine3 {
+    fn from(AffineOf { axes, origin }: AffineOf<f64, 3>) -> Self {
         let [x, y, z] = axes.map(DVec3::from);
         Self::from_cols(x, y, z, origin.into())
     }
 }
 
-impl From<Affine<f64>> for DAffine2 {
-    fn from(Affine { axes, origin }: Affine<f64>) -> Self {
+impl From<AffineOf<f64>> for DAffine2 {
+    fn from(AffineOf { axes, origin }: AffineOf<f64>) -> Self {
         let [right, up] = axes.map(DVec2::from);
         Self::from_mat2_translation(DMat2::from_cols(right, up), origin.into())
     }

@@ -36,7 +36,7 @@ mod tests;
 
 use std::ops::Range;
 
-pub use affine::Affine;
+pub use affine::AffineOf;
 pub(crate) use complex::UNIT;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};

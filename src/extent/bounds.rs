@@ -14,6 +14,7 @@ use crate::rule::Placement;
 use super::bounded::{Bounded, Fineness, Hulls, Own};
 use super::terms::{Merged, SupportTerm, child, falls_short};
 use crate::graph::{Graph, Instance, Object, Successor};
+use crate::work;
 
 /// Limit of the number of states at one level.
 const MAX_STATES: usize = 20_000;
@@ -358,18 +359,22 @@ impl<F: Bounded> Graph<F> {
                     #[expect(clippy::cast_possible_truncation, reason = "states are limited")]
                     let parent = number as u32;
                     let mut look = |instance| {
-                        looked += 1;
+                        let mut spend = |amount| {
+                            looked += amount;
+                            work::count(amount);
+                        };
+                        spend(1);
                         reach.looked.set(reach.looked.get() + 1);
                         let mut child = child(instance, state.vector, state.offset, state.lost);
                         child.parent = parent;
                         if falls_short(reach.at_most(&child), certain) {
                             return;
                         }
-                        looked += COMPARED;
+                        spend(COMPARED);
                         let Some(slot) = next.slot(&child) else {
                             return;
                         };
-                        looked += BOUNDED;
+                        spend(BOUNDED);
                         let [most, surely] = reach.span(&child, left);
                         if falls_short(most, certain) {
                             return;

@@ -9,6 +9,7 @@ use std::collections::BinaryHeap;
 use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Frame, Outline, Point};
 use crate::graph::{Graph, Instance, Object, Replacement};
+use crate::work;
 
 use self::crowd::{Crowds, Part};
 use super::Bounded;
@@ -19,6 +20,9 @@ const MAX_WORK: usize = 1 << 17;
 
 /// Limit of the number of instances that are looked at, for a direction.
 const MAX_LOOKED: usize = 1 << 22;
+
+/// [Work](work) of an instance that is looked at.
+const LOOK: usize = 4;
 
 /// Limit of the number of instances that are kept, for a direction.
 const MAX_KEPT: usize = 1 << 19;
@@ -218,13 +222,14 @@ impl<F: Bounded> Graph<F> {
             if work > MAX_WORK || looked > MAX_LOOKED || heap.len() > MAX_KEPT {
                 return None;
             }
-            let mut look = |count: usize| {
+            let mut look = |count: usize, work: usize| {
                 looked += count;
                 balls.looked.set(balls.looked.get() + count);
+                work::count(work);
             };
             let Some(parts) = balls.crowds.in_place_of(node.object) else {
                 for (_, instance) in successor.placed_instances() {
-                    look(1);
+                    look(1, LOOK);
                     add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
                 }
                 continue;
@@ -232,12 +237,12 @@ impl<F: Bounded> Graph<F> {
             for part in parts {
                 match part {
                     Part::Replaced(number) => {
-                        look(1);
+                        look(1, LOOK);
                         let instance = &successor.body.instances[*number];
                         add(&mut heap, &mut surely, instance, node.vector, node.offset)?;
                     }
                     Part::Crowd(crowd) => {
-                        look(crowd.len());
+                        look(crowd.len(), crowd.len());
                         let outlines = self.base_elements();
                         surely = crowd.farthest(outlines, node.vector, node.offset, surely);
                     }

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use crate::geometry::{DAffine2, DVec2, convex_hull, farthest, rightmost, thinned};
+use crate::work;
 
 use super::sectors::{AXES, MANY, Sectors, Support, Whole};
 
@@ -140,10 +141,12 @@ impl Union<'_> {
                 }
             }
         }
+        let work = farthest.work.get();
+        work::count(work);
         Hull {
             corners: convex_hull(corners, 0.0),
             lost,
-            work: farthest.work.get() / BOUNDS_A_POINT,
+            work: work / BOUNDS_A_POINT,
         }
     }
 

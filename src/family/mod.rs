@@ -9,11 +9,11 @@
 //! ```
 //! use kfrac::catalogue::Catalogue;
 //! use kfrac::document::Document;
-//! use kfrac::family::{Axis, Family, MapOptions, ParameterMap, ParameterPlane, PlaneValue, Property};
+//! use kfrac::family::{Family, MapOptions, ParameterMap, ParameterPlane, ParameterRange, PlaneValue, Property};
 //!
 //! let catalogue = Catalogue::embedded();
 //! let document = Document::read(&catalogue.rule("complex-pair").unwrap(), &catalogue).unwrap();
-//! let axes = ["s.re", "s.im"].map(|name| Axis { name: name.into(), from: -1.0, to: 1.0 });
+//! let axes = ["s.re", "s.im"].map(|name| ParameterRange { name: name.into(), from: -1.0, to: 1.0 });
 //! let family = Family::of(&document, &[], &["s.re".into(), "s.im".into()]).unwrap();
 //! let plane = ParameterPlane::new(axes.into(), [65, 65]).unwrap();
 //! let map = ParameterMap::compute(&family, &plane, &MapOptions::new(Property::Connected)).unwrap();
@@ -27,6 +27,6 @@ mod property;
 mod system;
 
 pub use paint::{Legend, LegendEntry};
-pub use plane::{Axis, MapOptions, ParameterMap, ParameterPlane, PlaneError};
+pub use plane::{MapOptions, ParameterMap, ParameterPlane, ParameterRange, PlaneError};
 pub use property::{PlaneValue, Property};
 pub use system::{Family, FamilyError, FamilyMember};

@@ -14,7 +14,7 @@ const MAX_PIXELS: u64 = 1 << 26;
 
 /// Range of a parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct ParameterRange {
     /// Name of the parameter.
     pub name: String,
     /// Value at the left or lower edge.
@@ -26,7 +26,7 @@ pub struct Axis {
 /// Rectangle of values of two parameters, or strip of values of one, divided into pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterPlane {
-    axes: Vec<Axis>,
+    axes: Vec<ParameterRange>,
     size: [u32; 2],
 }
 
@@ -59,7 +59,7 @@ impl ParameterPlane {
     ///
     /// Returns an error for another number of axes, an empty or infinite range, an axis that is repeated, and more than 67
     /// million pixels or none.
-    pub fn new(axes: Vec<Axis>, size: [u32; 2]) -> Result<Self, PlaneError> {
+    pub fn new(axes: Vec<ParameterRange>, size: [u32; 2]) -> Result<Self, PlaneError> {
         if !(1..=2).contains(&axes.len()) {
             return Err(PlaneError::Axes(axes.len()));
         }
@@ -83,7 +83,7 @@ impl ParameterPlane {
 
     /// Returns the axes.
     #[must_use]
-    pub fn axes(&self) -> &[Axis] {
+    pub fn axes(&self) -> &[ParameterRange] {
         &self.axes
     }
 

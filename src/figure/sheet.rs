@@ -35,7 +35,7 @@ const GAP: u32 = 16;
 /// Part of the plane that each of several pictures shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Fit {
+pub enum CellView {
     /// All pictures show one part, at one scale.
     #[default]
     All,
@@ -43,7 +43,7 @@ pub enum Fit {
     Each,
 }
 
-impl Named for Fit {
+impl Named for CellView {
     const NAMES: &'static [(&'static str, Self)] = &[("all", Self::All), ("each", Self::Each)];
 }
 
@@ -53,7 +53,7 @@ pub struct Arrangement {
     /// Number of pictures in a row. With `None`, the sides of the sheet are about 4 to 3.
     pub columns: Option<u32>,
     /// Part of the plane that each picture shows.
-    pub fit: Fit,
+    pub fit: CellView,
 }
 
 /// One picture of a sheet.
@@ -66,7 +66,7 @@ pub struct Cell<'a> {
     pub growth: Growth<'a>,
     /// Style of the picture. A background that is not the one of the sheet fills the picture.
     pub style: &'a Style,
-    /// Window and margin of the picture. They have no effect with [`Fit::All`].
+    /// Window and margin of the picture. They have no effect with [`CellView::All`].
     pub view: View,
     /// Size in pixels below which elements are not replaced; none if `None`.
     pub detail: Option<Detail>,
@@ -167,7 +167,7 @@ impl<E: Into<RenderError>> From<E> for SheetError {
 
 /// Grows approximants and writes them side by side, in rows.
 ///
-/// [`Options::size`] is the size of every picture, not of the sheet. With [`Fit::All`], all pictures show the
+/// [`Options::size`] is the size of every picture, not of the sheet. With [`CellView::All`], all pictures show the
 /// part of the plane that all approximants fill together, or the window of [`Options::view`]. Colours by step mean
 /// the same in all pictures of a graph. [`Options::style`] has the background of the sheet. The limit of the number of
 /// elements of a picture counts those of the pictures before it as well.
@@ -182,8 +182,8 @@ pub fn write(
     out: &mut impl Write,
 ) -> Result<SheetSummary, SheetError> {
     let own_view = |cell: &Cell<'_>| match arrangement.fit {
-        Fit::All => options.view,
-        Fit::Each => cell.view,
+        CellView::All => options.view,
+        CellView::Each => cell.view,
     };
     let owns: Vec<_> = { cells.iter() }
         .map(|cell| cell.options(own_view(cell), options))
@@ -191,11 +191,11 @@ pub fn write(
     let shown;
     let (mut surveys, mut elements) = surveys_of(cells, &owns)?;
     let common = match arrangement.fit {
-        Fit::All => {
+        CellView::All => {
             let prepasses = surveys.iter().map(|it| &it.prepass);
             Some(Canvas::of(prepasses, &options.view, options.size)?)
         }
-        Fit::Each => None,
+        CellView::Each => None,
     };
     if let Some(common) = &common
         && options.view.window.is_none()

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::collage::Form;
 use super::refine::Numbers;
-use super::{Candidate, FitError, Shape, score};
+use super::{Candidate, FitError, Silhouette, score};
 
 /// Fall of the intersection over union that rounding may cause.
 const FALL: f64 = 0.005;
@@ -18,7 +18,7 @@ const MOST: u32 = 24;
 /// and centres and radii of disks. Attractors are drawn [roughly](Candidate::roughly).
 #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
 pub(super) fn of(
-    shape: &Shape,
+    shape: &Silhouette,
     candidate: &Candidate,
     cancel: Option<&AtomicBool>,
 ) -> Result<u64, FitError> {

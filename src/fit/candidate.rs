@@ -12,8 +12,8 @@ pub struct Disk {
     pub radius: f64,
 }
 
-/// A system of maps with condensation disks, in the coordinates of a [`Shape`](super::Shape): its attractor A is the
-/// union of the disks and of the images of A under the maps.
+/// A system of maps with condensation disks, in the coordinates of a [`Silhouette`](super::Silhouette): its attractor
+/// A is the union of the disks and of the images of A under the maps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Candidate {
     /// The maps.

@@ -5,7 +5,7 @@ use crate::geometry::{DVec2, stretch};
 use crate::morphology::DistanceMap;
 
 use super::shape::{centre, distances, place};
-use super::{Candidate, Shape};
+use super::{Candidate, Silhouette};
 
 /// The guarantee of the collage theorem for a candidate (Barnsley, Ervin, Hardin & Lancaster 1986): if the collage of a
 /// shape S, the union of its images and of the condensation set, has the Hausdorff distance ε from S, and all maps
@@ -28,7 +28,7 @@ const HALF_DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 impl Certificate {
     /// Computes the certificate of a candidate.
     #[must_use]
-    pub fn new(shape: &Shape, candidate: &Candidate) -> Self {
+    pub fn new(shape: &Silhouette, candidate: &Candidate) -> Self {
         let collage = collage(shape, candidate);
         let linear: Vec<_> = candidate.maps.iter().map(|map| map.matrix2).collect();
         let euclidean = linear.iter().map(stretch).fold(0.0, f64::max);
@@ -48,7 +48,7 @@ impl Certificate {
 }
 
 /// Returns the Hausdorff distance of a shape's collage from the shape, of images of centres from centres.
-fn collage(shape: &Shape, candidate: &Candidate) -> f64 {
+fn collage(shape: &Silhouette, candidate: &Candidate) -> f64 {
     let [width, height] = shape.size();
     let Some(own) = distances(shape.bits()) else {
         return f64::INFINITY;
@@ -90,7 +90,7 @@ fn collage(shape: &Shape, candidate: &Candidate) -> f64 {
     clippy::cast_precision_loss,
     reason = "clamped to the picture"
 )]
-fn away(distances: &DistanceMap, shape: &Shape, point: DVec2) -> f64 {
+fn away(distances: &DistanceMap, shape: &Silhouette, point: DVec2) -> f64 {
     let [width, height] = shape.size();
     let clamped = |value: f64, length: usize| value.clamp(0.0, length as f64 - 0.5) as usize;
     let [column, row] = [

@@ -5,7 +5,7 @@ use crate::saturating::{real, whole};
 
 use super::candidate::fixed_point;
 use super::moments::Target;
-use super::{Candidate, Shape};
+use super::{Candidate, Silhouette};
 
 /// Squares along the longer side of a picture in which masses are compared.
 const SQUARES: usize = 16;
@@ -15,7 +15,7 @@ const LEAST: f64 = 1e-5;
 /// Weights of the maps with which the invariant measure is closest to the values of a picture, by its moments of orders
 /// up to 6.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Density {
+pub struct FittedWeights {
     /// Probabilities of the maps, in their order.
     pub weights: Vec<f64>,
     /// Total variation: the share of the mass that lies in other squares than the picture's, of squares whose side is 1/16
@@ -23,9 +23,9 @@ pub struct Density {
     pub distance: f64,
 }
 
-impl Density {
+impl FittedWeights {
     /// Fits the weights of a candidate; `None` if the shape has no values, or the candidate has disks.
-    pub(super) fn of(shape: &Shape, candidate: &Candidate) -> Option<Self> {
+    pub(super) fn of(shape: &Silhouette, candidate: &Candidate) -> Option<Self> {
         if !shape.has_values() || !candidate.disks.is_empty() {
             return None;
         }
@@ -36,7 +36,7 @@ impl Density {
 }
 
 /// Returns the total variation of the invariant measure from the values of a picture, in squares.
-fn distance(shape: &Shape, maps: &[DAffine2], weights: &[f64]) -> f64 {
+fn distance(shape: &Silhouette, maps: &[DAffine2], weights: &[f64]) -> f64 {
     let [width, height] = shape.size();
     let side = real(width.max(height)) / real(SQUARES);
     // The last square is for everything outside.

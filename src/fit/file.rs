@@ -7,7 +7,7 @@ use crate::measure::exact::Hausdorff;
 
 use super::candidate::is_similar;
 use super::snap::nearest_ratio;
-use super::{Fit, Shape};
+use super::{Fit, Silhouette};
 
 /// Digits after the decimal point of numbers in pixels.
 const DIGITS: usize = 6;
@@ -19,7 +19,7 @@ impl Fit {
     /// the frame of the picture. The unit is a pixel, and the origin the middle of the shape. The parameter `bend`, in
     /// degrees, is added to the angle of every map. `name` is the picture's, for title and source.
     #[must_use]
-    pub fn yaml(&self, shape: &Shape, name: &str) -> String {
+    pub fn yaml(&self, shape: &Silhouette, name: &str) -> String {
         let mut text = String::new();
         let name: String = name
             .chars()
@@ -30,7 +30,7 @@ impl Fit {
         text
     }
 
-    fn write(&self, text: &mut String, shape: &Shape, name: &str) -> std::fmt::Result {
+    fn write(&self, text: &mut String, shape: &Silhouette, name: &str) -> std::fmt::Result {
         let score = &self.score;
         let middle = shape.middle();
         let [width, height] = shape.size();

@@ -8,7 +8,7 @@ use super::attractor::Attractor;
 use super::collage::{Collage, Form};
 use super::orbit::Orbit;
 use super::refine::Refined;
-use super::{Candidate, FitError, FitOptions, Method, Rival, Score, Shape};
+use super::{Candidate, FitError, FitOptions, Method, Rival, Score, Silhouette};
 use super::{moments, score, skeleton, snap, symmetry};
 
 /// Bits of a number, and of a cell that is off, in description lengths.
@@ -26,7 +26,7 @@ impl Found {
     /// Measures the result at another place.
     pub(super) fn measured(
         self,
-        shape: &Shape,
+        shape: &Silhouette,
         there: &DAffine2,
         cancel: Option<&AtomicBool>,
     ) -> Result<Rival, FitError> {
@@ -43,7 +43,10 @@ impl Found {
 
 /// Returns the results of the methods that are asked for, the one with the least description length first, and the number
 /// of evaluations.
-pub(super) fn found(shape: &Shape, options: &FitOptions) -> Result<(Vec<Found>, usize), FitError> {
+pub(super) fn found(
+    shape: &Silhouette,
+    options: &FitOptions,
+) -> Result<(Vec<Found>, usize), FitError> {
     let is_pointed = options.branch_points != skeleton::BranchPoints::default();
     let method = match options.method {
         Method::Auto if is_pointed => Method::Skeleton,
@@ -117,7 +120,7 @@ pub(super) fn description(
 
 /// Returns the best candidate, or an exact system near the best of similarities where its picture is no worse.
 fn simplest(
-    shape: &Shape,
+    shape: &Silhouette,
     collage: &Collage<'_>,
     found: Vec<Refined>,
 ) -> Result<(Candidate, Attractor), FitError> {

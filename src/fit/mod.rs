@@ -1,7 +1,7 @@
 //! The inverse problem: a system of maps whose attractor is a picture.
 //!
-//! A [`Shape`] is the set of the pixels of a picture; a [`Candidate`] has affine maps and condensation disks. [`fit`]
-//! searches the candidate whose [attractor](Candidate::attractor) is closest to the shape.
+//! A [`Silhouette`] is the set of the pixels of a picture; a [`Candidate`] has affine maps and condensation disks.
+//! [`fit`] searches the candidate whose [attractor](Candidate::attractor) is closest to the shape.
 //!
 //! [`Method::Collage`] searches *collages* (Barnsley, Ervin, Hardin & Lancaster, "Solution of an inverse problem for
 //! fractals and other sets", 1986): similar copies of the shape that lie inside it are enumerated, those that cover it
@@ -38,13 +38,13 @@ mod symmetry;
 pub use attractor::Attractor;
 pub use candidate::{Candidate, Disk};
 pub use certificate::Certificate;
-pub use density::Density;
+pub use density::FittedWeights;
 pub use error::FitError;
 pub use options::{FitOptions, Method};
 pub use progress::{BestSoFar, FitProgress};
 pub use report::ReportError;
 pub use score::Score;
-pub use shape::Shape;
+pub use shape::Silhouette;
 pub use skeleton::BranchPoints;
 
 use crate::geometry::DAffine2;
@@ -72,8 +72,8 @@ pub struct Fit {
     /// Dimension of the attractor as far as it is known exactly; `None` if a map does not contract.
     pub dimension: Option<Hausdorff>,
     /// Weights of the maps and the distance of their measure from the picture's, if the shape [has
-    /// values](Shape::with_values).
-    pub density: Option<Density>,
+    /// values](Silhouette::with_values).
+    pub density: Option<FittedWeights>,
     /// Description length in bits: 10 for each number, and 6 for each cell in which attractor and shape differ by more
     /// than a cell, of at most 160 along a side.
     pub description: f64,
@@ -102,7 +102,7 @@ pub struct Rival {
 /// The result depends on the shape, the options and the seed alone, and not on the number of threads.
 ///
 /// ```
-/// use kfrac::fit::{Candidate, FitOptions, Shape};
+/// use kfrac::fit::{Candidate, FitOptions, Silhouette};
 /// use kfrac::geometry::{DMat2, DVec2};
 /// use kfrac::ifs::about;
 ///
@@ -112,7 +112,7 @@ pub struct Rival {
 /// let gasket = Candidate::of_maps(corners.map(|(x, y)| about(half, DVec2::new(x, y))).into());
 /// let picture = gasket.attractor([64, 56], None)?.pixels;
 ///
-/// let shape = Shape::new(picture)?;
+/// let shape = Silhouette::new(picture)?;
 /// let options = FitOptions::default().maps(3..=3).effort(2000);
 /// let fit = kfrac::fit(&shape, &options)?;
 /// assert!(fit.score.iou > 0.9);
@@ -124,7 +124,7 @@ pub struct Rival {
 ///
 /// Returns an error if the number of maps is not from 2 to 32, if [`Method::Skeleton`] finds no copies, or if the work is
 /// cancelled.
-pub fn fit(shape: &Shape, options: &FitOptions) -> Result<Fit, FitError> {
+pub fn fit(shape: &Silhouette, options: &FitOptions) -> Result<Fit, FitError> {
     let (least, most) = (*options.maps.start(), *options.maps.end());
     if least < 2 || most > 32 || least > most {
         return Err(FitError::Maps(if least < 2 { least } else { most }));
@@ -157,7 +157,7 @@ pub fn fit(shape: &Shape, options: &FitOptions) -> Result<Fit, FitError> {
         bits: bits::of(shape, &candidate, cancel)?,
         certificate: Certificate::new(shape, &candidate),
         dimension: dimension(&candidate),
-        density: Density::of(shape, &candidate),
+        density: FittedWeights::of(shape, &candidate),
         candidate,
         method,
         description,
@@ -187,7 +187,7 @@ impl Fit {
     /// Returns the number of bits divided by the number of pixels of the picture.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
-    pub fn bits_per_pixel(&self, shape: &Shape) -> f64 {
+    pub fn bits_per_pixel(&self, shape: &Silhouette) -> f64 {
         let [width, height] = shape.size();
         self.bits as f64 / (width * height) as f64
     }

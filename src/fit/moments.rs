@@ -15,7 +15,7 @@ use super::cma::{Budget, Cma};
 use super::collage::{Collage, Form};
 use super::orbit::Orbit;
 use super::refine::{Numbers, Refined};
-use super::{Candidate, FitError, Method, Shape};
+use super::{Candidate, FitError, Method, Silhouette};
 
 /// Order up to which moments are compared.
 const ORDER: usize = 6;
@@ -35,7 +35,7 @@ pub(super) struct Target {
 
 impl Target {
     /// Returns the moments of a shape: of its values, or of its area.
-    pub(super) fn of(shape: &Shape) -> Option<Self> {
+    pub(super) fn of(shape: &Silhouette) -> Option<Self> {
         let plain = RawMoments::of_points(shape.masses(), 2)?;
         let at = |i, j| plain.get(i, j).unwrap_or(0.0);
         let mean = DVec2::new(at(1, 0), at(0, 1));
@@ -86,7 +86,7 @@ fn probabilities(roots: &[f64]) -> Vec<f64> {
 
 /// Searches systems by their moments, and refines the best on their attractors.
 pub(super) fn search(
-    shape: &Shape,
+    shape: &Silhouette,
     collage: &Collage<'_>,
     counts: RangeInclusive<usize>,
 ) -> Result<Vec<Refined>, FitError> {
@@ -97,7 +97,12 @@ pub(super) fn search(
 }
 
 /// Returns the candidates with a number of maps whose moments are closest.
-fn starts(shape: &Shape, collage: &Collage<'_>, target: &Target, count: usize) -> Vec<Refined> {
+fn starts(
+    shape: &Silhouette,
+    collage: &Collage<'_>,
+    target: &Target,
+    count: usize,
+) -> Vec<Refined> {
     let options = collage.options();
     let form = match options.similar {
         true => Form::Similar,
@@ -140,7 +145,7 @@ struct Settled {
 
 /// Minimises the distance of moments from a start.
 fn settled(
-    shape: &Shape,
+    shape: &Silhouette,
     target: &Target,
     form: Form,
     (start, roots): (&Candidate, &[f64]),

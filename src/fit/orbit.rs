@@ -3,7 +3,7 @@
 use crate::Bits;
 use crate::geometry::{DAffine2, DMat2, DVec2};
 
-use super::{Candidate, Shape};
+use super::{Candidate, Silhouette};
 
 /// Radii, in cells, at which a candidate is compared with a shape, and their weights.
 pub(super) const REACHES: [(usize, f64); 5] = [(0, 1.0), (1, 0.8), (2, 0.5), (4, 0.4), (8, 0.3)];
@@ -24,7 +24,7 @@ pub(super) struct Level {
 impl Level {
     /// Creates the level at which a picture's long side has at most `side` cells; larger pictures are folded.
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
-    pub(super) fn new(shape: &Shape, side: usize) -> Self {
+    pub(super) fn new(shape: &Silhouette, side: usize) -> Self {
         let [width, height] = shape.size();
         let factor = width.max(height).div_ceil(side).max(1);
         let scale = 1.0 / factor as f64;

@@ -7,7 +7,7 @@ use super::candidate::Disk;
 use super::cma::{Budget, Cma};
 use super::collage::{Form, clamped};
 use super::orbit::{Level, Orbit};
-use super::{Candidate, Shape};
+use super::{Candidate, Silhouette};
 
 /// Numbers that describe a candidate, all of them of the size of pixels: images of two or three points of the shape
 /// under each map, and centres and radii of disks.
@@ -22,7 +22,7 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// Describes the candidates for a shape that have the form of a candidate.
-    pub(super) fn new(shape: &Shape, candidate: &Candidate, form: Form) -> Self {
+    pub(super) fn new(shape: &Silhouette, candidate: &Candidate, form: Form) -> Self {
         let flips = candidate
             .maps
             .iter()
@@ -97,7 +97,7 @@ pub(super) struct Refined {
 
 /// Minimises the loss of a candidate, with steps of `step` pixels at first.
 pub(super) fn refine(
-    shape: &Shape,
+    shape: &Silhouette,
     level: &Level,
     start: &Candidate,
     form: Form,

@@ -9,7 +9,7 @@ use crate::saturating::{real, whole};
 use crate::style::Palette;
 
 use super::shape::centre;
-use super::{Disk, Fit, FitError, Shape};
+use super::{Disk, Fit, FitError, Silhouette};
 
 /// Pixels between the panels, and around them.
 const GAP: usize = 12;
@@ -46,7 +46,7 @@ impl Fit {
     /// # Errors
     ///
     /// Returns an error if the attractor cannot be drawn or the output fails.
-    pub fn report(&self, shape: &Shape, out: impl Write) -> Result<(), ReportError> {
+    pub fn report(&self, shape: &Silhouette, out: impl Write) -> Result<(), ReportError> {
         let drawn = self.candidate.attractor(shape.size(), None)?.pixels;
         let skeleton = skeleton(shape);
         let copies = self.copies(&drawn, &drawn);
@@ -133,13 +133,13 @@ impl Fit {
 }
 
 /// Returns all pixels of a picture.
-fn everywhere(shape: &Shape) -> Bits {
+fn everywhere(shape: &Silhouette) -> Bits {
     let [width, height] = shape.size();
     Bits::new(width, height).complement()
 }
 
 /// Returns the colour of every pixel in a picture of a shape's skeleton, with its branch points and their disks.
-fn skeleton(shape: &Shape) -> Vec<[u8; 3]> {
+fn skeleton(shape: &Silhouette) -> Vec<[u8; 3]> {
     let [width, height] = shape.size();
     let mut colours = vec![WHITE; width * height];
     for [column, row] in shape.bits().set_boxes() {

@@ -16,7 +16,7 @@ use super::FitError;
 ///
 /// Guarantee: at least two pixels belong to the shape, and at least one does not.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct Silhouette {
     bits: Bits,
     points: Vec<DVec2>,
     bounds: Bounds,
@@ -29,7 +29,7 @@ const MAX_PIXELS: usize = 1 << 26;
 /// Limit of the number of pixels of a side.
 const MAX_SIDE: usize = 1 << 15;
 
-impl Shape {
+impl Silhouette {
     /// Creates the shape of the pixels that are set.
     ///
     /// # Errors

@@ -25,11 +25,11 @@ use super::collage::{FINE, Form};
 use super::orbit::{Level, Orbit};
 use super::refine::refine;
 use super::snap::shared_ratios;
-use super::{Candidate, Disk, FitError, FitOptions, Shape, methods, score, shape};
+use super::{Candidate, Disk, FitError, FitOptions, Silhouette, methods, score, shape};
 use copy::ShapeCopy;
 use ground::{Ground, centre};
 
-/// Branch points that a person knows; positions are those of a [`Shape`](super::Shape).
+/// Branch points that a person knows; positions are those of a [`Silhouette`](super::Silhouette).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BranchPoints {
     /// The central branch point; by default the one with the largest radius.
@@ -94,7 +94,7 @@ impl From<NoDistances> for FitError {
 }
 
 /// Finds copies and disks, and counts the copies that were evaluated.
-pub(super) fn find(shape: &Shape, task: &Task<'_>) -> Result<(Candidate, usize), FitError> {
+pub(super) fn find(shape: &Silhouette, task: &Task<'_>) -> Result<(Candidate, usize), FitError> {
     let bits = shape.bits();
     let options = SkeletonOptions {
         threads: task.threads,

@@ -13,7 +13,7 @@ use super::attractor::Attractor;
 use super::candidate::fixed_point;
 use super::cma::Cma;
 use super::orbit::{Level, Orbit};
-use super::{Candidate, FitError, Shape};
+use super::{Candidate, FitError, Silhouette};
 use lattice::Lattice;
 pub(super) use ratio::nearest as nearest_ratio;
 
@@ -67,7 +67,7 @@ struct Placed {
 ///
 /// The attractor's picture decides: simple numbers are kept only if the intersection over union does not fall.
 pub(super) fn snap(
-    shape: &Shape,
+    shape: &Silhouette,
     level: &Level,
     found: &Candidate,
     before: f64,
@@ -213,7 +213,7 @@ impl Snapped {
     }
 
     /// Returns the frame in which the system is closest to the shape.
-    fn settled(&self, shape: &Shape, level: &Level, orbit: &mut Orbit) -> [DVec2; 2] {
+    fn settled(&self, shape: &Silhouette, level: &Level, orbit: &mut Orbit) -> [DVec2; 2] {
         let size = shape.radius() / self.frame[1].length();
         let numbers = |frame: [DVec2; 2]| {
             let [origin, unit] = frame;
@@ -237,7 +237,7 @@ impl Snapped {
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
     fn polished(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         mut frame: [DVec2; 2],
         turns: bool,
         cancel: Option<&AtomicBool>,
@@ -320,7 +320,7 @@ impl Snapped {
     /// Returns the system with its exact picture in a frame.
     fn drawn(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         frame: [DVec2; 2],
         cancel: Option<&AtomicBool>,
     ) -> Result<Placed, FitError> {

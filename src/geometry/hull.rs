@@ -2,12 +2,18 @@
 
 use glam::DVec2;
 
+use crate::work;
+
+/// [Work](work) of a point.
+const POINT: usize = 8;
+
 /// Computes the corners of the convex hull of points, counter-clockwise from the leftmost (Andrew's monotone
 /// chain, 1979).
 ///
 /// A point within `tolerance` of its predecessor in the order of x is dropped, and so is a corner within
 /// `tolerance` of the line through its neighbours.
 pub(crate) fn convex_hull(mut points: Vec<DVec2>, tolerance: f64) -> Vec<DVec2> {
+    work::count(POINT * points.len());
     if points.len() >= MANY {
         drop_inner(&mut points, tolerance);
     }

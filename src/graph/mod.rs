@@ -46,6 +46,10 @@ use crate::extent::NoLimit;
 use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame, Frame2, Homothety, Point};
 use crate::instancing::Appearance;
 use crate::rule::Part;
+use crate::work;
+
+/// [Work](work) of compiling an object.
+const OBJECT: usize = 128;
 
 /// Instancing graph of a model.
 ///
@@ -111,6 +115,7 @@ impl<F: Frame> Graph<F> {
         base_elements: impl Into<Arc<[F::Outline]>>,
         initiators: Vec<Chain<F>>,
     ) -> Self {
+        work::count(OBJECT * objects.len());
         Self {
             source: None,
             base_elements: base_elements.into(),

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::geometry::Frame;
 use crate::graph::{CompileError, Graph};
+use crate::work;
 
 use super::block::{Blocks, Run};
 use super::census::Census;
@@ -15,6 +16,9 @@ use super::fractals::Fractals;
 use super::start::Start;
 use super::tally::Tally;
 use super::{Element, Enter, FractalInfo, Progress, Subtree, Visitor, WalkError};
+
+/// [Work](work) of an element.
+const ELEMENT: usize = 8;
 
 /// Number of steps, seed and limits of growth.
 #[derive(Clone, Copy, Debug)]
@@ -127,7 +131,9 @@ pub fn walk<F: Frame, V: Visitor<F>>(
     };
     let firsts = Start::all(graph, growth.steps, growth.seed);
     send(graph, growth.steps, (firsts, true), stop, None, &mut sink)?;
-    Ok(sink.tally.finish())
+    let walked = sink.tally.finish();
+    work::count(ELEMENT.saturating_mul(usize::try_from(walked.elements).unwrap_or(usize::MAX)));
+    Ok(walked)
 }
 
 /// Walks over fractals, each followed by all that it seeds in turn if `is_whole`, and sends elements to a sink. With a

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::norm::in_best_coordinates;
 use super::{Shape, Shrinking};
-use crate::expression::{self, Doubles, Program};
+use crate::expression::{AffineOf, Doubles, Program};
 use crate::geometry::{
     Affine, BaseElement, Bounds, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Frame, Frame2,
     Frame3, Piece, Solid, convex_hull,
@@ -26,7 +26,7 @@ pub trait AffineMap: Affine {
 
     /// Returns a map as written as one of space, which takes all z to 0 if it is one of the plane.
     #[must_use]
-    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3>;
+    fn written_in_space(written: &Self::Written) -> AffineOf<Program, 3>;
 
     /// Returns the fixed point; `None` if there is none, or more than one.
     #[must_use]
@@ -84,13 +84,13 @@ pub type OutlineOf<M> = <<M as AffineMap>::Frame as Frame>::Outline;
 impl AffineMap for DAffine2 {
     type Frame = Frame2;
     type Set = Shape;
-    type Written = expression::Affine<Program>;
+    type Written = AffineOf<Program>;
 
     fn product(written: &[Self::Written], slots: &[f64]) -> Self {
-        expression::Affine::product(&mut Doubles, written, slots).into()
+        AffineOf::product(&mut Doubles, written, slots).into()
     }
 
-    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3> {
+    fn written_in_space(written: &Self::Written) -> AffineOf<Program, 3> {
         written.in_space()
     }
 
@@ -201,13 +201,13 @@ fn outline(shape: &Shape) -> BaseElement {
 impl AffineMap for DAffine3 {
     type Frame = Frame3;
     type Set = Arc<[Solid]>;
-    type Written = expression::Affine<Program, 3>;
+    type Written = AffineOf<Program, 3>;
 
     fn product(written: &[Self::Written], slots: &[f64]) -> Self {
-        expression::Affine::product(&mut Doubles, written, slots).into()
+        AffineOf::product(&mut Doubles, written, slots).into()
     }
 
-    fn written_in_space(written: &Self::Written) -> expression::Affine<Program, 3> {
+    fn written_in_space(written: &Self::Written) -> AffineOf<Program, 3> {
         written.clone()
     }
 

@@ -5,9 +5,13 @@ use std::cmp::Ordering;
 use super::{AffineMap, Ifs};
 use crate::digraph::loop_of_largest_mean;
 use crate::geometry::Linear;
+use crate::work;
 
 /// Default limit of the number of products that are formed.
 const MAX_PRODUCTS: usize = 100_000;
+
+/// [Work](work) of a product that is formed.
+const PRODUCT: usize = 16;
 
 /// Tolerance of comparisons with 1, and of two factors that count as equal.
 const ROUNDING: f64 = 1e-12;
@@ -250,6 +254,7 @@ impl<L: Linear> Search<L> {
             level = followed.len()..followed.len() + kept.len();
             followed.extend(kept);
         }
+        work::count(PRODUCT * formed);
         let upper = upper.max(best.factor);
         let verdict = if best.diverges() {
             Verdict::Diverges

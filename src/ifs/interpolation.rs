@@ -2,7 +2,7 @@
 //! and interpolation", 1986; Demko, Hodges & Naylor 1985, section 3.5).
 
 use super::Map;
-use crate::expression::{Affine, Arithmetic, Doubles};
+use crate::expression::{AffineOf, Arithmetic, Doubles};
 use crate::geometry::DVec2;
 
 /// An error that leaves no curve through the points. Indices count from 0 in fields, from 1 in messages.
@@ -92,7 +92,7 @@ pub(crate) fn pieces<A: Arithmetic>(
     of: &mut A,
     points: &[[A::Number; 2]],
     scales: &[A::Number],
-) -> Vec<Affine<A::Number>> {
+) -> Vec<AffineOf<A::Number>> {
     let span = |of: &mut A, from: &[A::Number; 2], to: &[A::Number; 2]| {
         [0, 1].map(|row| of.subtract(&to[row], &from[row]))
     };
@@ -105,7 +105,7 @@ pub(crate) fn pieces<A: Arithmetic>(
         let rise = of.subtract(&height, &rise);
         let along = [width, rise].map(|part| of.divide(&part, &whole[0]));
         let zero = of.decimal(0.0);
-        let linear = Affine::linear(of, [along, [zero, scale.clone()]]);
+        let linear = AffineOf::linear(of, [along, [zero, scale.clone()]]);
         let image = linear.turned(of, first);
         let origin = span(of, &image, &ends[0]);
         linear.moved_to(origin)

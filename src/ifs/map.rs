@@ -1,7 +1,7 @@
 //! Affine maps of an iterated function system, and constructors for common notations of them.
 
 use super::{AffineMap, PointOf};
-use crate::expression::{Affine, Arithmetic, Doubles};
+use crate::expression::{AffineOf, Arithmetic, Doubles};
 use crate::geometry::{DAffine2, DMat2, DVec2, Linear};
 use crate::instancing::Tint;
 
@@ -62,7 +62,7 @@ impl<M: AffineMap> Map<M> {
 #[must_use]
 pub fn axes(scale: DVec2, angles: DVec2) -> DMat2 {
     let turns = angles.to_array().map(|angle| Doubles.turn(&angle));
-    let map = Affine::turned_axes(&mut Doubles, &scale.to_array(), turns.each_ref());
+    let map = AffineOf::turned_axes(&mut Doubles, &scale.to_array(), turns.each_ref());
     DAffine2::from(map).matrix2
 }
 

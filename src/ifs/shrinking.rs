@@ -1,9 +1,11 @@
 //! Bounds of the stretch of products of linear maps, for all products of a length at once.
 
 use crate::geometry::{DMat2, DVec2, Linear, convex_hull, thinned};
+use crate::work;
 
 /// Limit of the number of corners that are mapped.
 const MAX_WORK: usize = 1 << 20;
+
 /// Limit of the length of products.
 const MAX_LENGTH: u32 = 20_000;
 
@@ -73,6 +75,9 @@ impl Shrinking {
 /// Limit of the number of products that are formed for a factor.
 const MAX_PRODUCTS: usize = 1 << 15;
 
+/// [Work](work) of a product that is formed.
+const PRODUCT: usize = 2;
+
 /// Returns an upper bound of the sum over all n ≥ 0 of the largest stretch of a product of n linear maps; `None` if
 /// none is found. `images` lists for every kind of object the linear maps of its instances and the kinds that they
 /// instance.
@@ -99,6 +104,7 @@ fn largest_beginning<L: Linear>(images: &[Vec<(L, usize)>], factor: f64) -> Opti
         let power = power * factor;
         for (linear, inner) in &images[kind] {
             formed += 1;
+            work::count(PRODUCT);
             if formed > MAX_PRODUCTS {
                 return None;
             }

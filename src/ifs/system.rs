@@ -111,9 +111,18 @@ impl<M: AffineMap> Ifs<M> {
         )
     }
 
-    /// Returns the name of a product for messages: `map 2, then map 1`.
+    /// Returns the name of a product for messages: `map 2, then map 1`. Of a long one, only the first maps are named.
     pub(crate) fn product_name(&self, word: &[usize]) -> String {
-        let names: Vec<_> = word.iter().map(|&map| self.map_name(map)).collect();
+        const MOST: usize = 12;
+        let named = if word.len() <= MOST {
+            word
+        } else {
+            &word[..MOST - 1]
+        };
+        let mut names: Vec<_> = named.iter().map(|&map| self.map_name(map)).collect();
+        if named.len() < word.len() {
+            names.push(format!("{} others", word.len() - named.len()));
+        }
         names.join(", then ")
     }
 }

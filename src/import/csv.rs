@@ -2,7 +2,7 @@
 //!
 //! A column holds one of the numbers of a map by its letter: in the plane x' = a x + b y + e and y' = c x + d y + f, in
 //! space x' = a x + b y + c z + j, y' = d x + e y + f z + k and z' = g x + h y + i z + l, with the probability p.
-//! [`Columns`] or the header of the table state the order.
+//! [`MapColumns`] or the header of the table state the order.
 
 use std::ffi::OsStr;
 use std::ops::Range;
@@ -28,7 +28,7 @@ const PROBABILITIES: [&str; 4] = ["prob", "probability", "weight", "w"];
 /// Read from a text such as `abcdefp`, `acbdef` (the order of SVG's `matrix()`, and of flam3) or `abecdf` (x' and y' one
 /// after the other). A `-` stands for a column that is left out; commas and blanks have no meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Columns {
+pub struct MapColumns {
     layout: Layout,
     /// Index of each letter of the layout among the columns, the probability last.
     places: Vec<Option<usize>>,
@@ -51,7 +51,7 @@ pub enum ColumnsError {
     Missing(String),
 }
 
-impl FromStr for Columns {
+impl FromStr for MapColumns {
     type Err = ColumnsError;
 
     fn from_str(text: &str) -> Result<Self, ColumnsError> {
@@ -67,7 +67,7 @@ impl FromStr for Columns {
     }
 }
 
-impl Columns {
+impl MapColumns {
     fn new(columns: &[Option<char>]) -> Result<Self, ColumnsError> {
         let is_in_space = |letter: &char| ('g'..='l').contains(letter);
         let layout = match columns.iter().flatten().any(is_in_space) {
@@ -155,7 +155,7 @@ struct Row {
 /// Reads a table as one entry with the name of its file; a text without rows has no entries.
 pub(super) fn read(
     source: &Arc<Source>,
-    columns: Option<&Columns>,
+    columns: Option<&MapColumns>,
 ) -> (Vec<Imported>, Diagnostics) {
     let mut rows = rows(source).peekable();
     let Some(first) = rows.peek() else {
@@ -168,7 +168,7 @@ pub(super) fn read(
     let header = rows.next_if(|row| row.fields.iter().all(|field| number(field).is_none()));
     let columns = match (columns, header, rows.peek()) {
         (Some(columns), ..) => Some(columns.clone()),
-        (None, Some(header), _) => Columns::of_header(&header, &mut found),
+        (None, Some(header), _) => MapColumns::of_header(&header, &mut found),
         (None, None, Some(row)) => unstated(row, &mut found),
         (None, None, None) => None,
     };
@@ -189,9 +189,9 @@ pub(super) fn read(
 }
 
 /// Returns the columns of a table without a header, which are reported.
-fn unstated(row: &Row, found: &mut Diagnostics) -> Option<Columns> {
+fn unstated(row: &Row, found: &mut Diagnostics) -> Option<MapColumns> {
     let count = row.fields.len();
-    let columns = Columns::usual(count);
+    let columns = MapColumns::usual(count);
     let order = match &columns {
         Some(columns) if count > columns.layout.numbers() => {
             format!("{}{PROBABILITY}", columns.layout.letters)
@@ -214,7 +214,7 @@ fn unstated(row: &Row, found: &mut Diagnostics) -> Option<Columns> {
 }
 
 /// Adds the map of a row to a system.
-fn add(system: &mut System, row: &Row, columns: &Columns, found: &mut Diagnostics) {
+fn add(system: &mut System, row: &Row, columns: &MapColumns, found: &mut Diagnostics) {
     let count = row.fields.len();
     if count != columns.count {
         let message = format!("this row has {count} columns, not {}", columns.count);

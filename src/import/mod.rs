@@ -28,7 +28,7 @@ use crate::diagnostic::{Diagnostics, Source};
 use crate::document::Document;
 use crate::style::Named;
 
-pub use csv::{Columns, ColumnsError};
+pub use csv::{ColumnsError, MapColumns};
 #[cfg(feature = "cli")]
 pub(crate) use palette::of_picture;
 pub use palette::{PaletteError, PaletteFormat, read_palette};
@@ -41,7 +41,7 @@ pub use table::{Table, TableError, read_points};
 /// Format of a text with fractals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Format {
+pub enum SourceFormat {
     /// L-systems of Fractint: `Name { Angle 6 Axiom F F=F+F--F+F }`.
     LSystems,
     /// Systems of affine maps of Fractint, in the plane or in space: `Name { .5 0 0 .5 0 0 .33 … }`.
@@ -60,7 +60,7 @@ pub enum Format {
     EisenScript,
 }
 
-impl Named for Format {
+impl Named for SourceFormat {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("l", Self::LSystems),
         ("ifs", Self::Ifs),
@@ -72,7 +72,7 @@ impl Named for Format {
     ];
 }
 
-impl Format {
+impl SourceFormat {
     /// Returns the format of a file by its extension, in any case; `None` if the extension is not known.
     #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
@@ -118,13 +118,13 @@ impl Format {
 pub struct ImportOptions {
     /// Columns of a table of maps; by default those of its header or, without a header, `abcdef` or `abcdefp`, in space
     /// `abcdefghijkl` or `abcdefghijklp`.
-    pub columns: Option<Columns>,
+    pub columns: Option<MapColumns>,
 }
 
 impl ImportOptions {
     /// Sets the columns of tables of maps.
     #[must_use]
-    pub fn columns(mut self, columns: Columns) -> Self {
+    pub fn columns(mut self, columns: MapColumns) -> Self {
         self.columns = Some(columns);
         self
     }
@@ -145,16 +145,16 @@ pub struct Imported {
 #[must_use]
 pub fn read(
     source: &Arc<Source>,
-    format: Format,
+    format: SourceFormat,
     options: &ImportOptions,
 ) -> (Vec<Imported>, Diagnostics) {
     match format {
-        Format::LSystems => fractint::read(source, fractint::lsystem::write),
-        Format::Ifs => fractint::read(source, fractint::maps::write),
-        Format::Csv => csv::read(source, options.columns.as_ref()),
-        Format::Aifs => aifs::read(source),
-        Format::Genes => genes::read(source),
-        Format::FractaSketch => fractasketch::read(source),
-        Format::EisenScript => eisenscript::read(source),
+        SourceFormat::LSystems => fractint::read(source, fractint::lsystem::write),
+        SourceFormat::Ifs => fractint::read(source, fractint::maps::write),
+        SourceFormat::Csv => csv::read(source, options.columns.as_ref()),
+        SourceFormat::Aifs => aifs::read(source),
+        SourceFormat::Genes => genes::read(source),
+        SourceFormat::FractaSketch => fractasketch::read(source),
+        SourceFormat::EisenScript => eisenscript::read(source),
     }
 }

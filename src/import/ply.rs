@@ -101,27 +101,27 @@ impl Scalar {
     }
 
     /// Returns the value of bytes.
-    #[expect(
-        clippy::cast_possible_wrap,
-        reason = "signed numbers have the bits of unsigned ones"
-    )]
+    #[inline]
     fn value(self, bytes: &[u8], is_big: bool) -> f64 {
-        let mut low_first = [0; 8];
-        let own = &mut low_first[..self.size()];
-        own.copy_from_slice(&bytes[..self.size()]);
-        if is_big {
-            own.reverse();
+        /// Returns the first bytes, the lowest one first.
+        #[inline]
+        fn low_first<const N: usize>(bytes: &[u8], is_big: bool) -> [u8; N] {
+            let mut own = [0; N];
+            own.copy_from_slice(&bytes[..N]);
+            if is_big {
+                own.reverse();
+            }
+            own
         }
-        let [a, b, c, d, ..] = low_first;
         match self {
-            Self::I8 => f64::from(a as i8),
-            Self::U8 => f64::from(a),
-            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
-            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
-            Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-            Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-            Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
-            Self::F64 => f64::from_le_bytes(low_first),
+            Self::I8 => f64::from(i8::from_le_bytes(low_first(bytes, is_big))),
+            Self::U8 => f64::from(bytes[0]),
+            Self::I16 => f64::from(i16::from_le_bytes(low_first(bytes, is_big))),
+            Self::U16 => f64::from(u16::from_le_bytes(low_first(bytes, is_big))),
+            Self::I32 => f64::from(i32::from_le_bytes(low_first(bytes, is_big))),
+            Self::U32 => f64::from(u32::from_le_bytes(low_first(bytes, is_big))),
+            Self::F32 => f64::from(f32::from_le_bytes(low_first(bytes, is_big))),
+            Self::F64 => f64::from_le_bytes(low_first(bytes, is_big)),
         }
     }
 }

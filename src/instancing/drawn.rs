@@ -1,7 +1,7 @@
 //! Instances whose maps are drawn at random.
 
 use crate::draws::{Cells, MAX_CELLS, Path, Variable, needed, pick_by_weight};
-use crate::expression::{Affine, Interval, Program};
+use crate::expression::{AffineOf, Interval, Program};
 use crate::geometry::{DMat3, DVec3, Linear as _, Point as _};
 use crate::ifs::{AffineMap, PointOf};
 use crate::rule::{Extent, PowerMeans};
@@ -35,11 +35,11 @@ impl<M: AffineMap> ObjectInstance<M> {
             return Vec::new();
         }
         let maps = self.in_space();
-        needed(variables, FIRST, maps.iter().flat_map(Affine::numbers))
+        needed(variables, FIRST, maps.iter().flat_map(AffineOf::numbers))
     }
 
     /// Returns its maps as written, of the plane as maps of space.
-    fn in_space(&self) -> Vec<Affine<Program, 3>> {
+    fn in_space(&self) -> Vec<AffineOf<Program, 3>> {
         self.transforms.iter().map(M::written_in_space).collect()
     }
 
@@ -58,7 +58,7 @@ impl<M: AffineMap> ObjectInstance<M> {
             variables,
             FIRST,
             most,
-            maps.iter().flat_map(Affine::numbers),
+            maps.iter().flat_map(AffineOf::numbers),
         );
         let start = inner.apply(point).coordinates();
         let mut means = PowerMeans::new(power);

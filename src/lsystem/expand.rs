@@ -38,7 +38,7 @@ impl LSystem {
         let mut expander = Expander::new(self, max_elements);
         expander.expand(&axiom, steps, read).or_else(|error| {
             // The first step whose word cannot be read.
-            expander.rewriter.work = 0;
+            expander.rewriter = Rewriter::new(self);
             (0..steps).try_for_each(|step| expander.expand(&axiom, step, |_, _| {}))?;
             Err(error)
         })

@@ -10,7 +10,7 @@ use crate::geometry::{
 use crate::rule::{BaseElement, Body, Piece, RuleFrame};
 use crate::style::Tube;
 
-use super::{Compass, LSystem, LSystemInSpace, Stretch, TubePart, Walked};
+use super::{Compass, LSystem, LSystemInSpace, NoGraph, Stretch, TubePart};
 
 /// Axis about which a turtle turns, by the right-hand rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -321,7 +321,7 @@ impl TurtleFrame for Frame3 {
     }
 
     fn depends_on_the_way(system: &LSystemInSpace) -> bool {
-        system.walked().is_some_and(|why| why != Walked::Contexts)
+        system.walked().is_some_and(|why| why != NoGraph::Contexts)
     }
 
     fn tube(system: &LSystemInSpace) -> Option<Tube> {

@@ -48,7 +48,7 @@ pub use frame::{Axis, Heading3, TurtleFrame};
 pub(crate) use growing::GrowingTurtle;
 pub use no_growth::NoGrowth;
 pub use rewrite::RewriteError;
-pub use space::{LSystemInSpace, Tropism, Walked};
+pub use space::{LSystemInSpace, NoGraph, Tropism};
 pub use tube::{Stretch, TubeLine, TubePart};
 pub(crate) use turtle::Turtle;
 pub use turtle::{Drawing, Drawn, Placed};

@@ -1,6 +1,6 @@
 //! Reasons why approximants of an L-system approach no limit set.
 
-use super::Walked;
+use super::NoGraph;
 
 /// Reason why the words of an L-system, drawn smaller from step to step, approach no one set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -23,7 +23,7 @@ pub enum NoGrowth {
     Actions,
     /// The turtle moves in space as its words determine only one after the other.
     #[error("{0}, so that no map determines the pictures of its modules")]
-    Walked(Walked),
+    Walked(NoGraph),
     /// Directions of modules do not recur.
     #[error("the turns of its turtle do not recur, so that every step draws other directions")]
     Turns,

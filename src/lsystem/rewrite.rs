@@ -4,6 +4,7 @@ use crate::draws::{Path, pick_by_weight};
 use crate::expression::Program;
 
 use crate::readable::grouped;
+use crate::work;
 
 use super::surroundings::Surroundings;
 use super::word::number;
@@ -37,8 +38,14 @@ fn most_stored(max_elements: u64) -> u64 {
 /// where many are.
 const WORK: [u64; 2] = [20_000_000, 1_000_000_000];
 
+/// [Work](work) of a module or production that is examined.
+const LOOK: usize = 2;
+
 /// Limit of the work for each element that a word may draw.
 const WORK_PER_ELEMENT: u64 = 50;
+
+/// Work of a draw, in modules that are examined.
+const DRAW: u64 = 4;
 
 /// Returns the limit of the modules, productions and contexts examined in all steps together.
 pub(super) fn most_work(max_elements: u64) -> u64 {
@@ -309,6 +316,12 @@ pub(super) struct Rewriter<'s> {
     pub(super) work: u64,
 }
 
+impl Drop for Rewriter<'_> {
+    fn drop(&mut self) {
+        work::count(LOOK * usize::try_from(self.work).unwrap_or(usize::MAX / LOOK));
+    }
+}
+
 impl<'s> Rewriter<'s> {
     pub(super) fn new(system: &'s LSystem) -> Self {
         Self {
@@ -359,7 +372,7 @@ impl<'s> Rewriter<'s> {
             for variable in &system.productions[chosen].variables {
                 let drawn = variable.draw(path, slots);
                 slots.push(drawn);
-                *work += 1;
+                *work += DRAW;
             }
         }
         Some(chosen)
@@ -375,7 +388,7 @@ impl<'s> Rewriter<'s> {
     ) -> Result<(), RewriteError> {
         let system = self.system;
         let surroundings = (!system.is_context_free()).then(|| Surroundings::new(system, word));
-        let mut elements = 0;
+        let (mut elements, mut looked) = (0, 0);
         let most = most_stored(max_elements);
         for (at, module) in (0u32..).zip(word.modules(system)) {
             let path = word.paths.get(at as usize).copied();
@@ -397,7 +410,10 @@ impl<'s> Rewriter<'s> {
                 next.arguments.extend(arguments);
                 next.paths.extend(path);
             }
-            if self.work + surroundings.as_ref().map_or(0, Surroundings::looks) > max_work {
+            let looks = surroundings.as_ref().map_or(0, Surroundings::looks);
+            self.work += looks - looked;
+            looked = looks;
+            if self.work > max_work {
                 return Err(RewriteError::TooMuchWork { step });
             }
             let new = &next.symbols[from..];
@@ -411,7 +427,6 @@ impl<'s> Rewriter<'s> {
             check_length(step, &[modules, arguments, elements])?;
             replaced(next.symbols.len());
         }
-        self.work += surroundings.map_or(0, |around| around.looks());
         Ok(())
     }
 }

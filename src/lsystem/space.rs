@@ -48,7 +48,7 @@ impl Tropism {
 /// Reason why an L-system in space is read word by word, and not compiled to a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Walked {
+pub enum NoGraph {
     /// The turtle is levelled.
     #[error("'$' depends on the heading in space")]
     Level,
@@ -95,16 +95,16 @@ impl LSystemInSpace {
 
     /// Returns why the system cannot be compiled to a graph, as far as its symbols and productions show it.
     #[must_use]
-    pub fn walked(&self) -> Option<Walked> {
+    pub fn walked(&self) -> Option<NoGraph> {
         let mut actions = self.words.symbols.iter().flat_map(|it| &it.meaning);
         if actions.any(|action| matches!(action, Action::Level)) {
-            Some(Walked::Level)
+            Some(NoGraph::Level)
         } else if self.tropism.is_some() {
-            Some(Walked::Tropism)
+            Some(NoGraph::Tropism)
         } else if !self.words.is_context_free() {
-            Some(Walked::Contexts)
+            Some(NoGraph::Contexts)
         } else if self.words.depends_on_the_way() {
-            Some(Walked::Way)
+            Some(NoGraph::Way)
         } else {
             None
         }

@@ -9,7 +9,7 @@ use crate::saturating::{real, whole};
 use super::averaging::averaged;
 use super::cover::{Grid, Scale};
 use super::extrapolation::extrapolated;
-use super::limit::{LimitSet, Slice};
+use super::limit::{LimitSet, SlicedSet};
 use super::raster::{means, own_base, raster_scales, regular, thickness};
 use super::regression::{Estimate, Reading, estimate, line};
 use super::sample::Sample;
@@ -138,12 +138,12 @@ impl BoxCounting {
     /// that are turned and shifted in its plane. The base is a whole number.
     #[must_use]
     pub fn of_slice(
-        slice: &Slice,
+        slice: &SlicedSet,
         base: Option<f64>,
         grids: NonZero<usize>,
         threads: NonZero<usize>,
     ) -> Self {
-        Self::of_limit(slice.set(), base, &Slice::grids(grids), threads)
+        Self::of_limit(slice.set(), base, &SlicedSet::grids(grids), threads)
     }
 
     /// Measures the set pixels of a picture, with boxes of `base`, base² … pixels.

@@ -24,7 +24,7 @@ use groups::{Shared, grouped, products, unzipped};
 
 pub use cascade::Cascade;
 pub(super) use moments::Moments;
-pub use slice::Slice;
+pub use slice::SlicedSet;
 
 /// The limit set of a graph's fertile elements: the attractor.
 ///
@@ -35,7 +35,7 @@ pub struct LimitSet<M: Affine = DAffine2> {
     objects: Vec<ObjectLimit<M>>,
     start: Vec<LimitCopy<M>>,
     bounds: Bounds<M::Point>,
-    /// Whether the set is a [`Slice`] by the plane z = 0, which is covered by one layer of boxes.
+    /// Whether the set is a [`SlicedSet`] by the plane z = 0, which is covered by one layer of boxes.
     is_layer: bool,
 }
 

@@ -51,7 +51,7 @@ pub use distance::{
     Covered, Covering, Distance, NoCover, Precision, Region, Subject, Subset, TooMany, hausdorff,
 };
 pub use grown::{GrownPoints, grown};
-pub use limit::{Cascade, LimitSet, Slice};
+pub use limit::{Cascade, LimitSet, SlicedSet};
 pub use mass::{Lacunarity, Masses};
 pub use points::{NoExtent, Points, counts};
 pub use raster::raster_scales;

@@ -65,12 +65,12 @@ impl<M: Space> Points<M> {
             _ => {}
         }
         let extent = bounds.size().max_element();
+        let count = points.len() as u64;
         let mut parts = points;
         for point in &mut parts {
             *point = (*point - bounds.min()) / extent;
         }
         let box_of_parts = Bounds::new(M::Point::ZERO, bounds.size() / extent);
-        let levels = levels::<M>(&parts, &box_of_parts);
         let lattice = M::new(M::Linear::IDENTITY * lattice::<M>(), M::Point::ZERO);
         let mut keys: Vec<u64> = parts.iter().map(|&part| key(&lattice, part)).collect();
         drop(parts);
@@ -83,10 +83,13 @@ impl<M: Space> Points<M> {
             places: keys.chunk_by(|a, b| a == b).map(place).collect(),
             bounds,
             turn: M::ALONG,
-            levels,
+            levels: 0,
         };
         let places = points.places();
-        points.turn = M::principal(places.map(|(at, points)| (at, points.into())));
+        let all = places.clone().map(|(at, _)| at);
+        let levels = levels::<M>(all, count, &box_of_parts);
+        let turn = M::principal(places.map(|(at, points)| (at, points.into())));
+        (points.levels, points.turn) = (levels, turn);
         Ok(points)
     }
 
@@ -143,13 +146,17 @@ fn key<M: Space>(map: &M, point: M::Point) -> u64 {
 }
 
 /// Returns the number of halvings that lead to fewer points per box than [`POINTS_A_BOX`].
-fn levels<M: Space>(points: &[M::Point], bounds: &Bounds<M::Point>) -> u32 {
-    let most = points.len() as u64 / POINTS_A_BOX;
+fn levels<M: Space>(
+    places: impl Iterator<Item = M::Point> + Clone,
+    points: u64,
+    bounds: &Bounds<M::Point>,
+) -> u32 {
+    let most = points / POINTS_A_BOX;
     let extent = bounds.size().max_element() * (1.0 + 4e-9);
     let first = |levels: u32| {
         let size = extent / libm::exp2(f64::from(levels));
         let (map, boxes) = Grid::<M>::ALONG.map(bounds, size, extent / 2.0);
-        let counts = counts(points, &map, boxes, levels);
+        let counts = counts(places.clone(), &map, boxes, levels);
         let enough = counts.iter().rev().position(|&count| count > most);
         enough.and_then(|level| u32::try_from(level + 1).ok())
     };
@@ -164,14 +171,19 @@ fn levels<M: Space>(points: &[M::Point], bounds: &Bounds<M::Point>) -> u32 {
 /// `map` leads from the plane or from space to the grid, whose boxes have side 1 and corners at whole numbers from
 /// the origin to `boxes`; beyond the dimension there is one box.
 #[must_use]
-pub fn counts<M: Space>(points: &[M::Point], map: &M, boxes: [usize; 3], levels: u32) -> Vec<u64> {
+pub fn counts<M: Space>(
+    points: impl Iterator<Item = M::Point>,
+    map: &M,
+    boxes: [usize; 3],
+    levels: u32,
+) -> Vec<u64> {
     // A grid begins before the set, and may be somewhat wider than it.
     let widest = boxes.into_iter().fold(1, usize::max);
     if widest > 3 << M::FILLED_LEVELS {
         return sorted_counts(points, map, levels);
     }
     let mut voxels = Voxels::new(boxes);
-    for &point in points {
+    for point in points {
         voxels.set(boxed(map, point));
     }
     let mut counts = Vec::new();
@@ -185,8 +197,12 @@ pub fn counts<M: Space>(points: &[M::Point], map: &M, boxes: [usize; 3], levels:
 }
 
 /// Counts boxes by sorting their keys (Morton 1966): keys of larger boxes are prefixes.
-fn sorted_counts<M: Space>(points: &[M::Point], map: &M, levels: u32) -> Vec<u64> {
-    let mut keys: Vec<u64> = points.iter().map(|&point| key(map, point)).collect();
+fn sorted_counts<M: Space>(
+    points: impl Iterator<Item = M::Point>,
+    map: &M,
+    levels: u32,
+) -> Vec<u64> {
+    let mut keys: Vec<u64> = points.map(|point| key(map, point)).collect();
     keys.sort_unstable();
     let mut counts = Vec::new();
     for level in 0..levels {

@@ -24,6 +24,10 @@ impl OfKind for Arc<LSystem> {
         (!Graph::rewrites_edges(self)).then_some(error)
     }
 
+    fn soon_compiled(&self, steps: u32) -> u32 {
+        LSystem::soon_compiled(self, steps)
+    }
+
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {
         LSystem::diagnostic(self, error)
     }
@@ -64,6 +68,10 @@ impl OfKind for Arc<LSystemInSpace> {
 
     fn too_deep(&self, steps: u32, max_elements: u64) -> Option<CompileError> {
         self.words.too_deep(steps, max_elements)
+    }
+
+    fn soon_compiled(&self, steps: u32) -> u32 {
+        self.words.soon_compiled(steps)
     }
 
     fn diagnostic(&self, error: &CompileError) -> Diagnostic {

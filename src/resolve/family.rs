@@ -3,7 +3,7 @@
 use crate::document::{
     Document, KindDocument, MapsDocument, Setting, VerticesDocument, WrittenNumber,
 };
-use crate::expression::{Affine, Program};
+use crate::expression::{AffineOf, Program};
 use crate::geometry::{DAffine2, DVec2};
 
 use super::Resolver;
@@ -16,7 +16,7 @@ pub(crate) struct VaryingMaps {
     /// Parameters that depend on the varying ones; their values follow these in the slots of programs.
     derived: Vec<Program>,
     limits: Vec<Limits>,
-    maps: Vec<Affine<Program>>,
+    maps: Vec<AffineOf<Program>>,
 }
 
 /// Limits of a parameter.

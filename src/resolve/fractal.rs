@@ -7,18 +7,34 @@ use crate::grow::{Elements, Growth, OutlineError, WalkError, outlines};
 use crate::ifs::Shape;
 use crate::model::{DrawnError, DrawnInSpace, Model};
 use crate::style::ColorBy;
+use crate::work;
 
 use super::{Resolver, resolve};
 
 /// Maximum number of lines, curves, sides and solids in all sets of a file that are fractals.
 const MAX_PIECES: usize = 100_000;
 
+/// [Work](work) of growing sets after which no other is grown.
+const MAX_WORK: u64 = 1 << 25;
+
+/// Message about a rule with many generators to choose from, or long conditions.
+pub(super) const TOO_SLOW: &str = "choosing the generators of so many elements takes too long";
+
+/// Hint beside [`TOO_SLOW`].
+pub(super) const INSTEAD: &str = "fewer steps, cases, or operations in their conditions";
+
+/// Maximum number of generators that are looked at to choose those of a set.
+const MAX_CHOICES: u64 = 1 << 23;
+
 /// Number of chords of a curve in space.
 const CHORDS: u32 = 16;
 
 /// Error: a fractal cannot be a set.
 enum Failure {
+    /// There are too many lines.
     TooMany,
+    /// There are too many elements.
+    TooManyElements,
     /// There are too many elements, some of which are not drawn.
     TooManyHidden,
     Other(String),
@@ -27,9 +43,8 @@ enum Failure {
 impl From<WalkError<OutlineError>> for Failure {
     fn from(error: WalkError<OutlineError>) -> Self {
         match error {
-            WalkError::Visitor(OutlineError::TooMany) | WalkError::TooManyElements { .. } => {
-                Self::TooMany
-            }
+            WalkError::Visitor(OutlineError::TooMany) => Self::TooMany,
+            WalkError::TooManyElements { .. } => Self::TooManyElements,
             error => Self::Other(error.to_string()),
         }
     }
@@ -38,7 +53,7 @@ impl From<WalkError<OutlineError>> for Failure {
 impl From<DrawnError> for Failure {
     fn from(error: DrawnError) -> Self {
         match error {
-            DrawnError::Walk(WalkError::TooManyElements { .. }) => Self::TooMany,
+            DrawnError::Walk(WalkError::TooManyElements { .. }) => Self::TooManyElements,
             error => Self::Other(error.to_string()),
         }
     }
@@ -47,6 +62,45 @@ impl From<DrawnError> for Failure {
 impl<K> Resolver<K> {
     /// Grows a fractal and returns the outlines that it draws. Reports a mistake and returns `None`.
     pub(super) fn fractal(&mut self, document: &FractalDocument) -> Option<Shape> {
+        self.within_budget(document, |resolver| resolver.fractal_in_plane(document))
+    }
+
+    /// Grows a fractal, of the plane or of space, and returns the solids that it draws in space. Reports a mistake and
+    /// returns `None`.
+    pub(super) fn fractal_in_space(&mut self, document: &FractalDocument) -> Option<Vec<Solid>> {
+        self.within_budget(document, |resolver| resolver.solids_of_fractal(document))
+    }
+
+    /// Grows a fractal, unless those before it took too much work, which is reported once.
+    pub(super) fn within_budget<T>(
+        &mut self,
+        document: &FractalDocument,
+        grow: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
+        const REPORTED: u64 = u64::MAX;
+        if self.work > MAX_WORK {
+            if self.work < REPORTED {
+                self.work = REPORTED;
+                let message = "growing the sets of the file that are fractals takes too long";
+                let mut hint = "let fewer sets be fractals, or grow simpler ones".to_owned();
+                if let Some((_, costliest)) = &self.costliest {
+                    hint = format!("{hint}; that of line {} takes longest", costliest.line());
+                }
+                self.error_with_hint(&document.place, message, hint);
+            }
+            return None;
+        }
+        let before = work::counted();
+        let grown = grow(self);
+        let work = work::since(before);
+        self.work += work;
+        if { self.costliest.as_ref() }.is_none_or(|(most, _)| work > *most) {
+            self.costliest = Some((work, document.place.clone()));
+        }
+        grown
+    }
+
+    fn fractal_in_plane(&mut self, document: &FractalDocument) -> Option<Shape> {
         let map = document
             .map
             .as_ref()
@@ -54,15 +108,13 @@ impl<K> Resolver<K> {
         let (model, growth) = self.grown(document)?;
         let graph = self.graph(document, &model, growth.steps)?;
         let frame = map.map_or(Some(Frame2::UNIT), |map| map.map(Frame2::from))?;
-        let drawn = outlines_of(&model, &graph, &growth, frame);
-        let drawn = self.checked(document, growth.steps, drawn)?;
+        let drawn = outlines_of(&model, &graph, (&growth, self.left()), frame);
+        let drawn = self.checked(document, &growth, drawn)?;
         self.pieces += drawn.iter().map(|one| one.pieces().len()).sum::<usize>();
         Some(Shape::Union(drawn.into()))
     }
 
-    /// Grows a fractal, of the plane or of space, and returns the solids that it draws in space. Reports a mistake and
-    /// returns `None`.
-    pub(super) fn fractal_in_space(&mut self, document: &FractalDocument) -> Option<Vec<Solid>> {
+    fn solids_of_fractal(&mut self, document: &FractalDocument) -> Option<Vec<Solid>> {
         let map = document
             .map
             .as_ref()
@@ -73,13 +125,13 @@ impl<K> Resolver<K> {
             Some(drawn) => solids_of(drawn, &growth, &map),
             None => {
                 let graph = self.graph(document, &model, growth.steps)?;
-                let drawn = outlines_of(&model, &graph, &growth, Frame2::UNIT);
-                let left = MAX_PIECES.saturating_sub(self.pieces);
+                let left = self.left();
+                let drawn = outlines_of(&model, &graph, (&growth, left), Frame2::UNIT);
                 drawn.and_then(|drawn| {
                     let mut solids = Vec::new();
                     for one in &drawn {
                         solids.extend(flat(one, &map));
-                        if solids.len() > left {
+                        if solids.len() as u64 > left {
                             return Err(Failure::TooMany);
                         }
                     }
@@ -87,9 +139,19 @@ impl<K> Resolver<K> {
                 })
             }
         };
-        let solids = self.checked(document, growth.steps, solids)?;
+        let solids = self.checked(document, &growth, solids)?;
         self.pieces += solids.len();
         Some(solids)
+    }
+
+    /// Returns the number of lines, curves, sides and solids that other sets may have.
+    fn left(&self) -> u64 {
+        MAX_PIECES.saturating_sub(self.pieces) as u64
+    }
+
+    /// Returns whether the number of elements is limited by the generators to choose from.
+    pub(super) fn is_slow(&self, growth: &Growth<'_>) -> bool {
+        growth.max_elements < self.left()
     }
 
     /// Resolves a fractal, and returns how it grows. Reports mistakes and returns `None`.
@@ -117,9 +179,15 @@ impl<K> Resolver<K> {
             }
             return None;
         };
+        let most = MAX_CHOICES / model.choices();
+        // An element may come after as many replacements as there are steps.
+        if u64::from(steps) > most {
+            self.error_with_hint(&document.place, TOO_SLOW, INSTEAD);
+            return None;
+        }
         let growth = Growth {
             seed: seed?.into(),
-            max_elements: MAX_PIECES.saturating_sub(self.pieces) as u64,
+            max_elements: most.min(self.left()),
             ..Growth::steps(steps)
         };
         Some((model, growth))
@@ -146,7 +214,7 @@ impl<K> Resolver<K> {
     fn checked<T>(
         &mut self,
         document: &FractalDocument,
-        steps: u32,
+        growth: &Growth<'_>,
         pieces: Result<Vec<T>, Failure>,
     ) -> Option<Vec<T>> {
         let message = match pieces {
@@ -154,7 +222,11 @@ impl<K> Resolver<K> {
                 "this fractal draws nothing after so many steps".into()
             }
             Ok(pieces) => return Some(pieces),
-            Err(Failure::TooMany) => {
+            Err(Failure::TooManyElements | Failure::TooManyHidden) if self.is_slow(growth) => {
+                self.error_with_hint(&document.place, TOO_SLOW, INSTEAD);
+                return None;
+            }
+            Err(Failure::TooMany | Failure::TooManyElements) => {
                 format!("sets that are fractals draw more than {MAX_PIECES} lines in all")
             }
             Err(Failure::TooManyHidden) => format!(
@@ -162,6 +234,7 @@ impl<K> Resolver<K> {
             ),
             Err(Failure::Other(message)) => message,
         };
+        let steps = growth.steps;
         let s = if steps == 1 { "" } else { "s" };
         self.error_with_hint(
             &document.place,
@@ -198,11 +271,11 @@ impl<K> Resolver<K> {
     }
 }
 
-/// Returns the outlines of an approximant in the plane.
+/// Returns the outlines of an approximant in the plane, of at most `most` lines.
 fn outlines_of(
     model: &Model,
     graph: &Graph,
-    growth: &Growth<'_>,
+    (growth, most): (&Growth<'_>, u64),
     frame: Frame2,
 ) -> Result<Vec<BaseElement>, Failure> {
     let mut visible = graph.objects().iter().map(|object| object.visible);
@@ -210,7 +283,7 @@ fn outlines_of(
         return Ok(Vec::new());
     }
     let fills = model.metadata().style.fill.is_some();
-    let most = usize::try_from(growth.max_elements).unwrap_or(usize::MAX);
+    let most = usize::try_from(most).unwrap_or(usize::MAX);
     outlines(graph, growth, frame, fills, most).map_err(|error| match error {
         WalkError::TooManyElements { .. } if visible.any(|is_visible| !is_visible) => {
             Failure::TooManyHidden

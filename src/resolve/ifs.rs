@@ -6,7 +6,7 @@ mod scatter;
 use crate::document::{
     EdgeDocument, IfsDocument, MapDocument, MapsDocument, VerticesDocument, Written, WrittenNumber,
 };
-use crate::expression::{Affine, Program, Symbols};
+use crate::expression::{AffineOf, Program, Symbols};
 use crate::geometry::{DAffine2, Point};
 use crate::ifs::{
     AffineMap, Condensation, Contraction, Definition, Edge, Exponent, Ifs, IfsError, Map, PointOf,
@@ -44,7 +44,7 @@ pub(super) struct Maps<M: AffineMap = DAffine2> {
 }
 
 /// Vertices, and the contractions towards them.
-type Toward<const N: usize> = (Vec<[Program; N]>, Vec<Affine<Program, N>>);
+type Toward<const N: usize> = (Vec<[Program; N]>, Vec<AffineOf<Program, N>>);
 
 /// Parts of a system; `None` for what has mistakes.
 struct Parts<M: AffineMap> {
@@ -218,7 +218,7 @@ impl Resolver<OfIfs> {
         let points = self.vertices::<M, N>(points)?;
         let toward = |point: &[Program; N]| {
             let factors = std::array::from_fn(|_| factor.clone());
-            Affine::scaling(&mut Symbols, factors).about(&mut Symbols, point)
+            AffineOf::scaling(&mut Symbols, factors).about(&mut Symbols, point)
         };
         let maps = points.iter().map(toward).collect();
         Some((points, maps))
@@ -227,7 +227,7 @@ impl Resolver<OfIfs> {
     fn map<M: WrittenMap<N>, const N: usize>(
         &mut self,
         document: &MapDocument,
-    ) -> Option<(Map<M>, Affine<Program, N>)> {
+    ) -> Option<(Map<M>, AffineOf<Program, N>)> {
         let written = self.affine::<M, N>(document);
         let weight = self.optional(document.weight.as_ref());
         let written = written?;

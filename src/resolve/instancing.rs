@@ -26,8 +26,11 @@ pub(super) use maps::StructureMap;
 /// Maximum number of objects after the expansion of levels.
 const MAX_OBJECTS: usize = 20_000;
 
-/// Maximum number of instances in all objects, where sides of shapes count as well.
+/// Maximum number of instances in all objects, where sides of shapes and long formulas count as well.
 const MAX_INSTANCES: usize = 250_000;
+
+/// [Work](Program::work) of formulas that takes as long as an instance.
+const SHORT: usize = 16;
 
 /// State that is specific to structures.
 pub(super) struct OfInstancing<M: StructureMap> {
@@ -41,7 +44,7 @@ pub(super) struct OfInstancing<M: StructureMap> {
     reached: Vec<(usize, Option<f64>)>,
     numbers: BTreeMap<(usize, u64), usize>,
     is_too_many: bool,
-    /// Number of instances and of the sides of shapes among them.
+    /// Number of instances and of the sides of shapes among them, with the work of long formulas.
     size: usize,
     /// Parameters of the file.
     constants: Arc<Scope>,
@@ -107,6 +110,8 @@ struct UnionScope {
 struct Prepared<M: StructureMap> {
     master: Option<PreparedMaster<M>>,
     transforms: Arc<[M::Written]>,
+    /// Number of instances with short formulas that take as long to evaluate as the formulas of the transforms do.
+    work: usize,
     forms: Arc<[LinearForm]>,
     tint: Option<Box<PreparedTint>>,
     place: Place,
@@ -197,7 +202,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             if self.kind.size > MAX_INSTANCES {
                 let message = format!(
                     "with all their levels the objects hold more than {MAX_INSTANCES} instances and \
-                     sides of shapes"
+                     sides of shapes; a long formula counts as several"
                 );
                 let last = objects.last().map_or("", |object| &object.name);
                 let hint = format!(
@@ -354,9 +359,11 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
             }
         });
         let tint = { document.tint.as_deref() }.map(|tint| Box::new(self.tint(tint, &scope.fixed)));
+        let transforms = self.transforms(&document.transforms, &scope.drawn);
         Prepared {
             master,
-            transforms: self.transforms(&document.transforms, &scope.drawn),
+            work: M::work(&transforms) / SHORT,
+            transforms,
             forms: document.transforms.iter().map(form).collect(),
             tint,
             place: document.place.clone(),

@@ -1,7 +1,7 @@
 //! Resolution of affine maps of the plane and of space.
 
 use crate::document::{InterpolationDocument, LinearDocument, MapDocument, WrittenPoint};
-use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, Symbols};
+use crate::expression::{AffineOf, Arithmetic, Folding, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3};
 use crate::ifs::PointOf;
 
@@ -11,7 +11,7 @@ use super::{Resolver, numbers, space};
 
 /// Affine map with `N` coordinates as files write it, with constants.
 pub(super) trait WrittenMap<const N: usize>:
-    StructureMap<Written = Affine<Program, N>>
+    StructureMap<Written = AffineOf<Program, N>>
 {
     /// Compiles a point. Reports mistakes and returns `None`.
     fn point<K>(resolver: &mut Resolver<K>, document: &WrittenPoint) -> Option<[Program; N]>;
@@ -23,10 +23,10 @@ pub(super) trait WrittenMap<const N: usize>:
     fn linear_map<K>(
         resolver: &mut Resolver<K>,
         document: &LinearDocument,
-    ) -> Option<Affine<Program, N>>;
+    ) -> Option<AffineOf<Program, N>>;
 
     /// Returns the map if its numbers are constants.
-    fn as_constant(written: &Affine<Program, N>) -> Option<Self>;
+    fn as_constant(written: &AffineOf<Program, N>) -> Option<Self>;
 
     /// Computes the maps of fractal interpolation; `None` in space, where it was reported when the file was read.
     fn interpolation(
@@ -42,7 +42,7 @@ impl<K> Resolver<K> {
     pub(super) fn affine<M: WrittenMap<N>, const N: usize>(
         &mut self,
         document: &MapDocument,
-    ) -> Option<Affine<Program, N>> {
+    ) -> Option<AffineOf<Program, N>> {
         let linear = document.linear.as_ref();
         let linear = linear.and_then(|linear| M::linear_map(self, linear));
         let shift = document.shift.as_ref().map(|it| M::point(self, it));
@@ -62,7 +62,7 @@ impl<K> Resolver<K> {
         &mut self,
         document: &LinearDocument,
         scope: &Scope,
-    ) -> Option<Affine<Program, N>> {
+    ) -> Option<AffineOf<Program, N>> {
         let constants = std::mem::replace(&mut self.constants, scope.clone());
         let varies = std::mem::replace(&mut self.varies, true);
         let map = M::linear_map(self, document);
@@ -83,13 +83,13 @@ impl WrittenMap<2> for DAffine2 {
     fn linear_map<K>(
         resolver: &mut Resolver<K>,
         document: &LinearDocument,
-    ) -> Option<Affine<Program>> {
+    ) -> Option<AffineOf<Program>> {
         match document {
             LinearDocument::Matrix([first, second]) => {
                 let (first, second) = (resolver.point(first), resolver.point(second));
                 // The document has rows, the map has columns.
                 let ([a, c], [b, d]) = (first?, second?);
-                Some(Affine::linear(&mut Symbols, [[a, b], [c, d]]))
+                Some(AffineOf::linear(&mut Symbols, [[a, b], [c, d]]))
             }
             LinearDocument::Axes { scale, rotate } => {
                 let scale = resolver.numbers(scale.each_ref());
@@ -99,18 +99,22 @@ impl WrittenMap<2> for DAffine2 {
                 };
                 let (scale, rotate) = (scale?, rotate?);
                 let turns = rotate.map(|angle| Symbols.turn(&angle));
-                Some(Affine::turned_axes(&mut Symbols, &scale, turns.each_ref()))
+                Some(AffineOf::turned_axes(
+                    &mut Symbols,
+                    &scale,
+                    turns.each_ref(),
+                ))
             }
             LinearDocument::Complex { times, conjugate } => {
                 let times = resolver.point(times)?;
-                Some(Affine::complex(&mut Symbols, times, *conjugate))
+                Some(AffineOf::complex(&mut Symbols, times, *conjugate))
             }
             // The notations of space were reported when the file was read.
             LinearDocument::MatrixInSpace(_) | LinearDocument::AxesInSpace { .. } => None,
         }
     }
 
-    fn as_constant(written: &Affine<Program>) -> Option<Self> {
+    fn as_constant(written: &AffineOf<Program>) -> Option<Self> {
         written.as_constant()
     }
 
@@ -134,7 +138,7 @@ impl WrittenMap<3> for DAffine3 {
     fn linear_map<K>(
         resolver: &mut Resolver<K>,
         document: &LinearDocument,
-    ) -> Option<Affine<Program, 3>> {
+    ) -> Option<AffineOf<Program, 3>> {
         match document {
             LinearDocument::MatrixInSpace(rows) => {
                 let [first, second, third] =
@@ -143,7 +147,7 @@ impl WrittenMap<3> for DAffine3 {
                 // The document has rows, the map has columns.
                 let columns =
                     [0, 1, 2].map(|column: usize| rows.each_ref().map(|row| row[column].clone()));
-                Some(Affine::linear(&mut Folding, columns))
+                Some(AffineOf::linear(&mut Folding, columns))
             }
             LinearDocument::AxesInSpace { scale, turns } => {
                 let scale = scale.each_ref();
@@ -154,8 +158,8 @@ impl WrittenMap<3> for DAffine3 {
                     .collect();
                 let known = scale.iter().all(|it| it.as_constant().is_some());
                 let turns = turns.into_iter().collect::<Option<Vec<_>>>()?;
-                let scaling = known.then(|| Affine::scaling(&mut Folding, scale))?;
-                let turned = |map: Affine<Program, 3>, turn: &Affine<Program, 3>| {
+                let scaling = known.then(|| AffineOf::scaling(&mut Folding, scale))?;
+                let turned = |map: AffineOf<Program, 3>, turn: &AffineOf<Program, 3>| {
                     turn.after(&mut Folding, &map)
                 };
                 Some(turns.iter().fold(scaling, turned))
@@ -167,7 +171,7 @@ impl WrittenMap<3> for DAffine3 {
         }
     }
 
-    fn as_constant(written: &Affine<Program, 3>) -> Option<Self> {
+    fn as_constant(written: &AffineOf<Program, 3>) -> Option<Self> {
         written.as_constant()
     }
 }

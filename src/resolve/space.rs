@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::diagnostic::Place;
 use crate::document::{
     EllipseDocument, FormDocument, MeshDocument, ShaftDocument, ShapeDocument, SolidDocument,
-    TurnDocument, WrittenNumber, WrittenPoint,
+    TurnDocument, Written, WrittenNumber, WrittenPoint, corners_of_solid,
 };
-use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, degrees};
+use crate::expression::{AffineOf, Arithmetic, Folding, Program, Scope, degrees};
 use crate::geometry::{
     Bounds, DAffine3, DMat3, DVec3, MAX_POINTS, PolygonError, Round, Solid, polygon,
 };
@@ -60,7 +60,10 @@ impl<K> Resolver<K> {
     }
 
     /// Resolves a turn about an axis of any length above 0, whose angle is a constant.
-    pub(super) fn constant_turn(&mut self, document: &TurnDocument) -> Option<Affine<Program, 3>> {
+    pub(super) fn constant_turn(
+        &mut self,
+        document: &TurnDocument,
+    ) -> Option<AffineOf<Program, 3>> {
         let angle = self.constant_program(&document.angle);
         let turn = self.turn(document, &angle);
         angle.as_constant()?;
@@ -72,7 +75,7 @@ impl<K> Resolver<K> {
         &mut self,
         document: &TurnDocument,
         angle: &Program,
-    ) -> Option<Affine<Program, 3>> {
+    ) -> Option<AffineOf<Program, 3>> {
         let along = self.constant_in_space(Some(&document.axis), DVec3::ZERO)?;
         let Some(unit) = { along.try_normalize() }.filter(|unit| unit.is_finite()) else {
             self.report_no_axis(&document.axis);
@@ -80,7 +83,7 @@ impl<K> Resolver<K> {
         };
         let axis = unit.to_array().map(Program::constant);
         let turn = Folding.turn(angle);
-        Some(Affine::rotation_about(&mut Folding, &axis, &turn))
+        Some(AffineOf::rotation_about(&mut Folding, &axis, &turn))
     }
 
     /// Resolves a set in space. Reports mistakes and returns `None`.
@@ -175,6 +178,7 @@ impl<K> Resolver<K> {
             SolidDocument::Hull(points) => {
                 return Some(Solid::hull(&self.constants_in_space(points)?));
             }
+            SolidDocument::Named(name) => return self.solid_of(name),
             // The caller resolves meshes, which are not one solid.
             SolidDocument::Mesh(_) => return None,
         };
@@ -184,6 +188,16 @@ impl<K> Resolver<K> {
             _ => Round::Ball,
         };
         Some(Solid::round(round, place))
+    }
+
+    /// Returns a solid of a known name, which is made once.
+    fn solid_of(&mut self, name: &Written<String>) -> Option<Solid> {
+        if let Some(solid) = self.solids.get(&name.value) {
+            return Some(solid.clone());
+        }
+        let solid = Solid::hull(&self.constants_in_space(&corners_of_solid(name)?)?);
+        self.solids.insert(name.value.clone(), solid.clone());
+        Some(solid)
     }
 
     /// Evaluates a length, which must be above 0; 1 if it is left out.

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use crate::expression::{Affine, Arithmetic as _, Doubles, Interval, Program};
+use crate::expression::{AffineOf, Arithmetic as _, Doubles, Interval, Program};
 use crate::geometry::{
     Affine as _, Attitude, BaseElement, DAffine2, DAffine3, DVec3, Frame, Frame2, Frame3, Point,
 };
@@ -153,12 +153,12 @@ pub struct Turn {
 
 impl Turn {
     /// Evaluates the turn; an axis without length makes it NaN.
-    fn evaluated(&self, slots: &[f64]) -> Affine<f64, 3> {
+    fn evaluated(&self, slots: &[f64]) -> AffineOf<f64, 3> {
         let [x, y, z] = self.axis.each_ref().map(|program| program.eval(slots));
         let length = DVec3::new(x, y, z).length();
         let axis = [x, y, z].map(|along| along / length);
         let turn = Doubles.turn(&self.angle.eval(slots));
-        Affine::rotation_about(&mut Doubles, &axis, &turn)
+        AffineOf::rotation_about(&mut Doubles, &axis, &turn)
     }
 
     /// Returns the axis as a unit vector if it is a constant.
@@ -241,7 +241,7 @@ impl RuleFrame for Frame3 {
     fn move_points(moving: &Move<Self>, slots: &[f64], points: &mut [DVec3]) {
         let of = &mut Doubles;
         let value = |coordinates: &[Program; 3]| coordinates.each_ref().map(|it| it.eval(slots));
-        let mut map = Affine::scaling(of, value(&moving.scale));
+        let mut map = AffineOf::scaling(of, value(&moving.scale));
         for turn in &moving.rotate {
             map = turn.evaluated(slots).after(of, &map);
         }

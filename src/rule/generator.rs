@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Place;
-use crate::expression::{Affine, Dependence, Evaluation, Program};
+use crate::expression::{AffineOf, Dependence, Evaluation, Program};
 use crate::geometry::{Direction, Frame2};
 use crate::instancing::Tint;
 use crate::written::WrittenPoint;
@@ -79,13 +79,13 @@ impl Move {
         &self,
         of: &mut A,
         mut value: impl FnMut(&mut A, &Program) -> A::Number,
-    ) -> Affine<A::Number> {
+    ) -> AffineOf<A::Number> {
         let mut pair = |of: &mut A, [x, y]: &[Program; 2]| [value(of, x), value(of, y)];
         let scale = pair(of, &self.scale);
         let (about, shift) = (pair(of, &self.about), pair(of, &self.shift));
         let angle = value(of, &self.rotate);
         let turn = of.turn(&angle);
-        let map = Affine::turned_axes(of, &scale, [&turn; 2]).about(of, &about);
+        let map = AffineOf::turned_axes(of, &scale, [&turn; 2]).about(of, &about);
         let origin = [0, 1].map(|row| of.add(&map.origin[row], &shift[row]));
         map.moved_to(origin)
     }

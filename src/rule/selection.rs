@@ -69,12 +69,10 @@ impl Selection {
         all
     }
 
-    /// Returns the number of generators among which it selects, repetitions included; one with a long condition counts as
-    /// several.
+    /// Returns the number of generators that are looked at to select one, at most; one with a long condition counts as several.
     pub(crate) fn choices(&self) -> usize {
         match self {
-            Self::Always(_) => 1,
-            Self::ByIndex(entries) => entries.len(),
+            Self::Always(_) | Self::ByIndex(_) => 1,
             Self::ByCondition { cases, .. } => {
                 let conditions = cases.iter().map(|(condition, _)| 1 + condition.work());
                 1 + conditions.sum::<usize>()

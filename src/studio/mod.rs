@@ -67,7 +67,7 @@ use session::Session;
 /// Rule that a studio opens, and the place where it is served.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
-pub struct Options {
+pub struct StudioOptions {
     /// File, or name in the library; the Pythagoras tree of the library if `None`.
     pub rule: Option<PathBuf>,
     /// Catalogue in which names are looked up.
@@ -82,7 +82,7 @@ pub struct Options {
     pub port: u16,
 }
 
-setters!(Options {
+setters!(StudioOptions {
     rule: Option<PathBuf>,
     catalogue: Catalogue,
     library: Option<PathBuf>,
@@ -118,9 +118,9 @@ pub enum StudioError {
 ///
 /// ```no_run
 /// # fn main() -> Result<(), kfrac::studio::StudioError> {
-/// use kfrac::studio::{Options, Studio};
+/// use kfrac::studio::{Studio, StudioOptions};
 ///
-/// let studio = Studio::bind(Options::default().rule(Some("koch".into())))?;
+/// let studio = Studio::bind(StudioOptions::default().rule(Some("koch".into())))?;
 /// println!("{}", studio.url());
 /// studio.serve()
 /// # }
@@ -137,8 +137,8 @@ impl Studio {
     /// # Errors
     ///
     /// If there is no such rule, or the port is taken.
-    pub fn bind(options: Options) -> Result<Self, StudioError> {
-        let Options { port, .. } = options;
+    pub fn bind(options: StudioOptions) -> Result<Self, StudioError> {
+        let StudioOptions { port, .. } = options;
         let session = Session::open(options).map_err(StudioError::File)?;
         let bound = TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
         let listener = bound.map_err(|error| StudioError::Port { port, error })?;

@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::kind::Kind;
 use crate::output_file::OutputFile;
 
-use super::Options;
+use super::StudioOptions;
 use super::answer::Refusal;
 use super::design::{self, Act, Hand, Scene};
 use super::drawing::Wholes;
@@ -66,8 +66,8 @@ pub(super) type Key = (u64, Vec<String>);
 
 impl Session {
     /// Opens a rule.
-    pub(super) fn open(options: Options) -> Result<Self, Diagnostics> {
-        let Options {
+    pub(super) fn open(options: StudioOptions) -> Result<Self, Diagnostics> {
+        let StudioOptions {
             rule,
             catalogue,
             library,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::cli::family;
 use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
-use crate::edit::{Edit, Step, edit, find};
+use crate::edit::{Edit, PathStep, edit, find};
 use crate::expression::{Expression, PARTS};
 
 use super::answer::Refusal;
@@ -37,8 +37,8 @@ pub(super) fn write(
 }
 
 /// Returns the steps to the value of a parameter that is written in a source.
-fn place(node: &Node, source: &Arc<Source>, name: &str) -> Option<Vec<Step>> {
-    let mut at = vec![Step::from("params"), Step::from(name)];
+fn place(node: &Node, source: &Arc<Source>, name: &str) -> Option<Vec<PathStep>> {
+    let mut at = vec![PathStep::from("params"), PathStep::from(name)];
     let parameter = find(node, &at).filter(|it| Arc::ptr_eq(it.place.source(), source))?;
     if let Value::Mapping(_) = parameter.value {
         parameter.get("value")?;
@@ -48,7 +48,7 @@ fn place(node: &Node, source: &Arc<Source>, name: &str) -> Option<Vec<Step>> {
 }
 
 /// Returns the steps to the number of a parameter, which may be a part of a complex one.
-fn number(good: &Good, name: &str) -> Option<Vec<Step>> {
+fn number(good: &Good, name: &str) -> Option<Vec<PathStep>> {
     let parts = PARTS.iter().enumerate();
     let whole = parts
         .filter_map(|(part, end)| Some((part, name.strip_suffix(end)?)))

@@ -5,7 +5,7 @@ use super::Named;
 /// Method by which a system of maps is iterated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Method {
+pub enum Iteration {
     /// All compositions of maps.
     #[default]
     Deterministic,
@@ -13,7 +13,7 @@ pub enum Method {
     Chaos,
 }
 
-impl Named for Method {
+impl Named for Iteration {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("deterministic", Self::Deterministic),
         ("chaos", Self::Chaos),
@@ -25,7 +25,7 @@ impl Named for Method {
 #[non_exhaustive]
 pub struct DensityView {
     /// Method by which a system of maps is drawn.
-    pub method: Option<Method>,
+    pub method: Option<Iteration>,
     /// Number of points of random iteration.
     pub points: Option<u64>,
     /// Mapping of hits to tones. Elements have tones only if there is one.
@@ -39,7 +39,7 @@ pub struct DensityView {
 }
 
 setters!(DensityView {
-    method: Option<Method>,
+    method: Option<Iteration>,
     points: Option<u64>,
     tone: Option<Tone>,
     gamma: Option<f64>,

@@ -1,6 +1,6 @@
 //! Affine maps between two, in the plane and in space.
 
-use crate::expression::{Affine, Arithmetic, Doubles};
+use crate::expression::{AffineOf, Arithmetic, Doubles};
 use crate::geometry::{
     Affine as _, BaseElement, DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Piece,
 };
@@ -128,7 +128,7 @@ fn rotated(tween: Tween, both: [DMat3; 2]) -> Option<DMat3> {
         Some(axis) => {
             let angle = (angle * tween.share).to_degrees();
             let turn = Doubles.turn(&angle);
-            let turn = Affine::rotation_about(&mut Doubles, &axis.to_array(), &turn);
+            let turn = AffineOf::rotation_about(&mut Doubles, &axis.to_array(), &turn);
             DMat3::from_cols_array_2d(&turn.axes)
         }
     };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use dashu_int::IBig;
 
 use crate::compile::Chords;
-use crate::expression::{Affine, Arithmetic, Precise, Precision, Program};
+use crate::expression::{AffineOf, Arithmetic, Precise, Precision, Program};
 use crate::graph::{Graph, Instance};
 use crate::grow::{ReplacementContext, TraversalState};
 use crate::ifs::System;
@@ -213,9 +213,9 @@ impl<'a> Constants<'a> {
             }
             Kind::Structure(structure, canonical) => {
                 let object = |number: usize| canonical[number].map(|it| &structure.objects()[it]);
-                let mut product = |transforms: &[Affine<Program>], slots: &[f64]| {
+                let mut product = |transforms: &[AffineOf<Program>], slots: &[f64]| {
                     let slots: Vec<_> = slots.iter().copied().map(Precise::of).collect();
-                    Affine::product(&mut self.precision, transforms, &slots)
+                    AffineOf::product(&mut self.precision, transforms, &slots)
                 };
                 let inner = match object(instance.object) {
                     Some(of) => product(&of.transforms, &of.slots),

@@ -3,7 +3,7 @@
 use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
-use crate::expression::{Affine, Precise, leading};
+use crate::expression::{AffineOf, Precise, leading};
 use crate::geometry::{DAffine2, Direction};
 
 /// Point or vector, in integer multiples of a unit that depends on the context.
@@ -29,8 +29,8 @@ impl Fixed {
     }
 
     /// Returns a map in multiples of 2^-`bits`.
-    pub(super) fn of(map: &Affine<Precise>, bits: usize) -> Self {
-        let Affine { axes, origin } = map.map(|number| number.fixed(bits));
+    pub(super) fn of(map: &AffineOf<Precise>, bits: usize) -> Self {
+        let AffineOf { axes, origin } = map.map(|number| number.fixed(bits));
         Self { axes, origin }
     }
 

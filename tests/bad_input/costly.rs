@@ -13,14 +13,14 @@ use kfrac::grow::{Growth, WalkError};
 use super::hostile::{kfrac, refused};
 
 /// Asserts that the program accepts a file without a diagnostic.
-fn accepted(text: &str, arguments: &[&str]) {
+pub(super) fn accepted(text: &str, arguments: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("many.yaml"), text).unwrap();
     let outcome = kfrac(folder.path(), arguments);
     assert_eq!(outcome.status, Some(0), "{}", outcome.said);
 }
 
-const CHECK: [&str; 2] = ["check", "many.yaml"];
+pub(super) const CHECK: [&str; 2] = ["check", "many.yaml"];
 const INFO: [&str; 4] = ["info", "many.yaml", "--steps", "2"];
 
 /// Returns a rule with two lists of equal numbers of elements, and many generators that name each other.

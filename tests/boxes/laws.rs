@@ -99,7 +99,7 @@ fn sorted_keys_count_as_bits_do() {
     for level in [10, 18] {
         let boxes = 1usize << level;
         let map = DAffine2::from_scale(DVec2::splat(boxes as f64 * (1.0 - 1e-9)));
-        let counts = counts(&points, &map, [boxes, boxes, 1], level);
+        let counts = counts(points.iter().copied(), &map, [boxes, boxes, 1], level);
         for (number, &count) in counts.iter().enumerate() {
             let size = f64::from(1u32 << number) / (boxes as f64 * (1.0 - 1e-9));
             assert_eq!(count, naive(size), "{level} {number}");

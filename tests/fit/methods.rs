@@ -1,6 +1,6 @@
 //! Fits by the skeleton and by moments.
 
-use kfrac::fit::{BranchPoints, Candidate, Disk, FitOptions, Method, Shape};
+use kfrac::fit::{BranchPoints, Candidate, Disk, FitOptions, Method, Silhouette};
 use kfrac::geometry::{DAffine2, DMat2, DVec2};
 use kfrac::ifs::about;
 use kfrac::{Bits, fit};
@@ -33,7 +33,7 @@ fn the_koch_island_is_found_by_its_skeleton() {
         });
         crossed.count() % 2 == 1
     };
-    let shape = Shape::new(Bits::of(SIDE, SIDE, is_inside)).unwrap();
+    let shape = Silhouette::new(Bits::of(SIDE, SIDE, is_inside)).unwrap();
     let options = FitOptions::default().method(Method::Skeleton).similar(true);
     let found = fit(&shape, &options).unwrap();
     assert_eq!(found.candidate.maps.len(), 6);
@@ -114,7 +114,7 @@ fn algorithm_one_finds_angles() {
                 radius: 34.0,
             }],
         };
-        let shape = Shape::new(candidate.attractor([160, 160], None).unwrap().pixels).unwrap();
+        let shape = Silhouette::new(candidate.attractor([160, 160], None).unwrap().pixels).unwrap();
         let points = BranchPoints {
             centre: Some(middle),
             branches: candidate
@@ -175,7 +175,7 @@ fn weighted(weights: [f64; 3]) -> (Bits, Vec<u8>) {
 fn densities_are_found() {
     let weights = [0.45, 0.3, 0.25];
     let (bits, values) = weighted(weights);
-    let shape = Shape::new(bits).unwrap().with_values(&values).unwrap();
+    let shape = Silhouette::new(bits).unwrap().with_values(&values).unwrap();
     let options = FitOptions::default().maps(3..=3).similar(true).effort(2000);
     let found = fit(&shape, &options.method(Method::Collage)).unwrap();
     let density = found.density.as_ref().unwrap();
@@ -192,7 +192,7 @@ fn densities_are_found() {
 #[test]
 fn methods_are_compared() {
     let (bits, _) = weighted([1.0 / 3.0; 3]);
-    let shape = Shape::new(bits).unwrap();
+    let shape = Silhouette::new(bits).unwrap();
     let options = FitOptions::default().maps(3..=3).similar(true).effort(6000);
     let moments = fit(&shape, &options.clone().method(Method::Moments)).unwrap();
     assert_eq!(moments.method, Method::Moments);
@@ -226,7 +226,7 @@ fn the_maple_leaf_is_found_by_its_skeleton() {
     let place =
         DAffine2::from_scale_angle_translation(DVec2::splat(2.94), 0.0, DVec2::new(98.0, 91.0));
     let drawn = leaf.moved(&place).attractor([200, 200], None).unwrap();
-    let shape = Shape::new(drawn.pixels).unwrap();
+    let shape = Silhouette::new(drawn.pixels).unwrap();
     let options = FitOptions::default().method(Method::Skeleton).maps(2..=3);
     let found = fit(&shape, &options).unwrap();
     assert!(

@@ -7,7 +7,7 @@ use std::fs;
 use kfrac::Fractal;
 use kfrac::diagnostic::Source;
 use kfrac::geometry::{DAffine3, DVec3};
-use kfrac::import::{Format, ImportOptions, read};
+use kfrac::import::{ImportOptions, SourceFormat, read};
 use proptest::prelude::*;
 use tempfile::TempDir;
 
@@ -17,7 +17,11 @@ use crate::common::cases;
 /// Returns the file of a program and the messages about it.
 fn converted(program: &str) -> (Option<String>, String) {
     let source = Source::new("program.es", program);
-    let (mut imported, _) = read(&source, Format::EisenScript, &ImportOptions::default());
+    let (mut imported, _) = read(
+        &source,
+        SourceFormat::EisenScript,
+        &ImportOptions::default(),
+    );
     let entry = imported.pop().expect("a program is an entry");
     let yaml = entry.document.map(|document| document.to_yaml());
     (yaml, entry.found.to_string())

@@ -7,7 +7,7 @@ use kfrac::geometry::{DMat3, DVec2, DVec3};
 use kfrac::geometry::{Frame, Frame3, Outline as _};
 use kfrac::graph::Graph;
 use kfrac::grow::{Elements, Growth};
-use kfrac::lsystem::{Tropism, Walked};
+use kfrac::lsystem::{NoGraph, Tropism};
 use kfrac::model::Model;
 use kfrac::style::ColorBy;
 
@@ -35,7 +35,7 @@ fn frames(model: &Model, steps: u32) -> Vec<Frame3> {
     placed(&model.graph_in_space(steps).unwrap().unwrap(), steps)
 }
 
-fn walked(model: &Model) -> Option<Walked> {
+fn walked(model: &Model) -> Option<NoGraph> {
     match model {
         Model::LSystemInSpace(system) => system.walked(),
         _ => panic!("a system in space"),
@@ -151,7 +151,7 @@ fn levelling_lays_the_left_side_flat_and_keeps_the_heading() {
         let text = |level: &str| format!("axiom: \"{turns}{level}F\"\nproductions: {{}}\n");
         let before = frames(&model(&text("")), 0)[0];
         let levelled = model(&text("$"));
-        assert_eq!(walked(&levelled), Some(Walked::Level));
+        assert_eq!(walked(&levelled), Some(NoGraph::Level));
         let after = frames(&levelled, 0)[0].map().matrix3;
         assert!((before.map().matrix3.x_axis - after.x_axis).length() < 1e-14);
         assert!(
@@ -170,7 +170,7 @@ fn levelling_lays_the_left_side_flat_and_keeps_the_heading() {
 fn tropism_bends_by_its_formula() {
     let text = "heading: [1, 1, 0]\ntropism: {towards: [0, -2, 0], e: 0.1}\naxiom: FFFF\nproductions: {}\n";
     let model = model(text);
-    assert_eq!(walked(&model), Some(Walked::Tropism));
+    assert_eq!(walked(&model), Some(NoGraph::Tropism));
     let lines = frames(&model, 0);
     for pair in lines.windows(2) {
         let [a, b] = [&pair[0], &pair[1]].map(|frame| frame.map().matrix3.x_axis);
@@ -260,7 +260,7 @@ fn compiled_systems_draw_what_the_word_does() {
         let text = text_of(name);
         let read = document_of(&format!("{text}\ntropism: {{towards: [0, -1, 0], e: 0}}\n"));
         let (read, _) = read.resolve(&[]).unwrap();
-        assert_eq!(walked(&read), Some(Walked::Tropism));
+        assert_eq!(walked(&read), Some(NoGraph::Tropism));
         for steps in [0, 1, 2, 4, 5] {
             let graph = compiled.graph_in_space(steps).unwrap().unwrap();
             assert_eq!(graph.depth(), Some(steps), "{name} is compiled");

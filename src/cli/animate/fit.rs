@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::figure::sheet::Fit;
+use crate::figure::sheet::CellView;
 use crate::geometry::{Bounds, DVec2, DVec3};
 use crate::render::{Canvas, Size, Unit};
 
@@ -31,7 +31,7 @@ pub(super) fn fit(
     }
     let size = arguments.size.size;
     let is_free = !arguments.others.gives("view") && arguments.zoom.is_none();
-    let fits_all = arguments.fit == Fit::All && is_free;
+    let fits_all = arguments.fit == CellView::All && is_free;
     if loaded.model.is_in_space() {
         let size = match size {
             Size::Exactly(width, height) => [width, height],

@@ -23,11 +23,11 @@ use crate::symmetry::Symmetry;
 use super::super::Failure;
 use super::super::labels::labels;
 use super::super::rule::Loaded;
-use super::{DRAWN, GameArguments, Iteration};
+use super::{DRAWN, GameArguments, RandomIteration};
 
 /// Random iteration in the plane.
 pub(in crate::cli) struct PlaneGame<'a> {
-    iteration: Iteration<'a, DAffine2>,
+    iteration: RandomIteration<'a, DAffine2>,
     /// System in the coordinates of the iteration.
     source: Arc<System>,
     /// Whether hits replace steps, for which the file has a palette.
@@ -66,7 +66,7 @@ impl<'a> PlaneGame<'a> {
             .within(&place)
             .map_or_else(|| source.clone(), Arc::new);
         let start = chaos.start(|start| place.origin_of(start.place.truncate()));
-        let mut iteration = Iteration::new(arguments, loaded, &source, place, start)?;
+        let mut iteration = RandomIteration::new(arguments, loaded, &source, place, start)?;
         let own = source
             .metadata()
             .symmetry
@@ -100,14 +100,14 @@ impl<'a> PlaneGame<'a> {
 
     /// Returns the canvas that shows the attractor and the ways to it, or the window.
     fn canvas(&self, size: Size) -> Result<Canvas, RenderError> {
-        let Iteration { system, start, .. } = &self.iteration;
+        let RandomIteration { system, start, .. } = &self.iteration;
         let render::Options { view, .. } = self.picture_options(size);
         density_canvas(&self.source, system, start, &view, size)
     }
 
     /// Returns style and view of the picture.
     fn picture_options(&self, size: Size) -> render::Options {
-        let Iteration {
+        let RandomIteration {
             arguments, place, ..
         } = &self.iteration;
         let options = render::Options {

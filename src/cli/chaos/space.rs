@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::chaos::{ClassBy, RandomPoint, RandomPoints, Start};
-use crate::export::{self, Surface};
+use crate::export::{self, Relief};
 use crate::geometry::{Bounds, DAffine3, DVec3, Frame3, Homothety};
 use crate::graph::Graph;
 use crate::grow::Progress;
@@ -16,13 +16,13 @@ use crate::style::{ColorBy, Style};
 
 use super::super::Failure;
 use super::super::rule::Loaded;
-use super::{GameArguments, Iteration, classes};
+use super::{GameArguments, RandomIteration, classes};
 
 /// Number of points from which normals are computed.
 const SURFACE: usize = 1_000_000;
 
 /// Random iteration in space.
-pub(in crate::cli) type SpaceGame<'a> = Iteration<'a, DAffine3>;
+pub(in crate::cli) type SpaceGame<'a> = RandomIteration<'a, DAffine3>;
 
 impl<'a> SpaceGame<'a> {
     /// Returns the game that the options request.
@@ -83,7 +83,7 @@ impl<'a> SpaceGame<'a> {
                 bounds
             }
         };
-        let surface = Surface::of(&bounds, cloud());
+        let surface = Relief::of(&bounds, cloud());
         let mut style = style.clone();
         style.color_by = match (self.color_by, self.arguments.picture.asked_color_by()) {
             (ColorBy::Hits, None) => ColorBy::LastMap,

@@ -1,7 +1,7 @@
 //! Parameters as the command line writes them.
 
 use crate::expression::{Expression, ExpressionError, PARTS, Scope};
-use crate::family::Axis;
+use crate::family::ParameterRange;
 
 use super::{Assignment, ParameterPart, Ranges, Values};
 
@@ -136,7 +136,7 @@ fn circle(name: &str, inside: &str) -> Result<Vec<ParameterPart>, String> {
 pub(in crate::cli) fn ranges(text: &str) -> Result<Ranges, String> {
     let Assignment { name, parts } = assignment(text)?;
     let axis = |part: ParameterPart| match part.values {
-        Values::Range([from, to]) if from != to => Ok(Axis {
+        Values::Range([from, to]) if from != to => Ok(ParameterRange {
             name: part.name,
             from,
             to,

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use crate::fit::{Fit, Rival, Shape};
+use crate::fit::{Fit, Rival, Silhouette};
 
 use super::super::pixels::PixelSet;
 
@@ -68,7 +68,7 @@ struct Other {
 }
 
 impl<'a> Report<'a> {
-    pub(super) fn new(set: &'a PixelSet, shape: &Shape, fit: &'a Fit, seed: u64) -> Self {
+    pub(super) fn new(set: &'a PixelSet, shape: &Silhouette, fit: &'a Fit, seed: u64) -> Self {
         let dimension = fit.dimension.as_ref();
         let [width, height] = shape.size();
         let score = &fit.score;

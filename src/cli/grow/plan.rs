@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::export;
 use crate::render::{self, MeshFormat, Unit, ZoomTarget};
-use crate::style::{ColorBy, DensityView, Method, Named};
+use crate::style::{ColorBy, DensityView, Iteration, Named};
 
 use super::super::{Failure, format};
 use super::Arguments;
@@ -112,7 +112,7 @@ pub(super) fn of_file(arguments: &Arguments, file: DensityView) -> Option<(Argum
         || arguments.between.is_some()
         || arguments.turn.is_some()
         || arguments.zoom.is_asked();
-    let is_of_points = file.method == Some(Method::Chaos) && !chaos.is_asked();
+    let is_of_points = file.method == Some(Iteration::Chaos) && !chaos.is_asked();
     if is_of_points && (has_elements || chaos.method().is_some()) {
         return None;
     }

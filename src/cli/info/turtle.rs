@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::geometry::Frame3;
 use crate::graph::Graph;
-use crate::lsystem::Walked;
+use crate::lsystem::NoGraph;
 use crate::model::Model;
 
 /// Way in which the elements of a word are found.
@@ -24,7 +24,7 @@ impl TurtleInfo {
         };
         // The graph of a word is the same for any number of steps.
         let compiled = graph.depth().is_some();
-        let why = system.walked().unwrap_or(Walked::Modules);
+        let why = system.walked().unwrap_or(NoGraph::Modules);
         Some(Self {
             compiled,
             walked: (!compiled).then(|| why.to_string()),

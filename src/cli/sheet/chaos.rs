@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::figure::sheet::{Fit, write_pixels};
+use crate::figure::sheet::{CellView, write_pixels};
 use crate::geometry::Bounds;
 use crate::render::{self, Format};
 use crate::style::View;
@@ -39,7 +39,7 @@ impl Arguments {
                 PlaneGame::new(arguments, &individual.loaded, view, None)
             });
         let mut games = games.collect::<Result<Vec<_>, Failure>>()?;
-        if contents.fit == Fit::All {
+        if contents.fit == CellView::All {
             let mut all = Bounds::EMPTY;
             for game in &games {
                 all.add_all(&game.window(self.size, &path)?);

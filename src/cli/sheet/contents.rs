@@ -2,7 +2,7 @@
 
 use crate::catalogue::Catalogue;
 use crate::document::Setting;
-use crate::figure::sheet::Fit;
+use crate::figure::sheet::CellView;
 use crate::fractal::Goal;
 use crate::model::Model;
 
@@ -39,7 +39,7 @@ pub(super) struct Contents {
     steps: Option<Several>,
     /// Numbers of rules, of values of each parameter that varies, of seeds and of steps that are given.
     counts: Vec<usize>,
-    pub(super) fit: Fit,
+    pub(super) fit: CellView,
 }
 
 impl Contents {
@@ -92,8 +92,8 @@ impl Contents {
             )));
         }
         let fit = match rules.len() {
-            1 => Fit::All,
-            _ => Fit::Each,
+            1 => CellView::All,
+            _ => CellView::Each,
         };
         Ok(Self {
             individuals,
@@ -110,7 +110,7 @@ impl Contents {
     /// pictures have one scale.
     pub(super) fn in_plane(mut self, arguments: &Arguments) -> Result<Self, Failure> {
         let is_one = self.individuals.len() == 1;
-        if self.fit == Fit::All && !is_one {
+        if self.fit == CellView::All && !is_one {
             let place = self.first().place()?;
             for individual in &mut self.individuals {
                 individual.loaded = individual.loaded.clone().within(place);

@@ -50,6 +50,20 @@ pub(super) fn excess(words: &LSystem, steps: u32) -> Option<u64> {
     Some(work(words, &kinds, steps)).filter(|work| *work > MAX_WORK)
 }
 
+/// Halves a number of steps until the graph takes at most an eighth of the limit, or one step is left. Systems of too many kinds
+/// keep theirs.
+pub(super) fn soon(words: &LSystem, steps: u32) -> u32 {
+    let is_large = |steps| match Kinds::of(words, steps, MAX_KINDS) {
+        Ok(kinds) => work(words, &kinds, steps) > MAX_WORK / 8,
+        Err(_) => false,
+    };
+    let mut soon = steps;
+    while soon > 1 && is_large(soon) {
+        soon /= 2;
+    }
+    soon
+}
+
 /// Returns the error of a graph that is too large, whose word cannot be derived instead.
 pub(super) fn large(words: &LSystem, steps: u32, work: u64, word: RewriteError) -> CompileError {
     // The work grows with the steps, at least in proportion but for the axiom.
@@ -66,6 +80,9 @@ pub(super) fn large(words: &LSystem, steps: u32, work: u64, word: RewriteError) 
         word,
     }
 }
+
+/// [Work](crate::work) of a module whose effect is found.
+const MODULE: usize = 16;
 
 /// Limit of the work of a graph whose displacements are summed in big integers: in modules of [`SHORT`] bits.
 const MAX_LONG: u64 = 1 << 21;
@@ -103,8 +120,12 @@ pub(super) fn check(
     steps: u32,
     most: u64,
 ) -> Result<(), NotCompiled> {
-    match work(words, kinds, steps) <= most {
-        true => Ok(()),
+    let modules = work(words, kinds, steps);
+    match modules <= most {
+        true => {
+            crate::work::count(MODULE * usize::try_from(modules).unwrap_or(usize::MAX / MODULE));
+            Ok(())
+        }
         false => Err(NotCompiled),
     }
 }

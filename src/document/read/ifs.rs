@@ -382,6 +382,7 @@ fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<LinearDocumen
     let Some(keys) = keys.and_then(|keys| PLACEMENTS.get(keys)) else {
         let message = match rotate {
             Some(_) => "this map turns, but has no scale",
+            None if fields.in_order().next().is_some() => "this map has no scale and no matrix",
             None => "this map is empty",
         };
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);

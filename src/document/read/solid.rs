@@ -7,7 +7,7 @@ use crate::document::reader::Reader;
 use crate::document::shape::{Form, Shape, keys};
 use crate::document::{WrittenNumber, WrittenPoint};
 
-use super::space::{TURN, read_factors, read_solid, read_turns};
+use super::space::{TURN, read_factors, read_name_of_solid, read_turns};
 
 mapping! {
     /// A ball as written.
@@ -104,6 +104,6 @@ pub(super) fn read_solid_set(reader: &mut Reader, key: &str, node: &Node) -> Opt
         "cone" => SolidDocument::Cone(ShaftDocument::from_node(reader, node)?),
         "mesh" => SolidDocument::Mesh(read_mesh(reader, node)?),
         "box" => SolidDocument::Cuboid(CuboidDocument::from_node(reader, node)?),
-        _ => SolidDocument::Hull(read_solid(reader, node)?),
+        _ => SolidDocument::Named(read_name_of_solid(reader, node)?),
     })
 }

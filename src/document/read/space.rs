@@ -141,6 +141,7 @@ pub(super) fn read_linear(reader: &mut Reader, fields: &Fields<'_>) -> Option<Li
     let Some(scale) = scale else {
         let message = match rotate {
             Some(_) => "this map turns, but has no scale",
+            None if fields.in_order().next().is_some() => "this map has no scale and no matrix",
             None => "this map is empty",
         };
         reader.error_with_hint(&fields.place.first_line(), message, MAP_HINT);
@@ -275,25 +276,34 @@ fn number(value: f64, node: &Node) -> WrittenNumber {
     }
 }
 
-/// Returns the corners of a solid of a name, about the origin; all coordinates are exact expressions. Reports
-/// an unknown name.
-pub(super) fn read_solid(reader: &mut Reader, node: &Node) -> Option<Vec<WrittenPoint>> {
+/// Reads the name of a solid. Reports one that is not known.
+pub(super) fn read_name_of_solid(reader: &mut Reader, node: &Node) -> Option<Written<String>> {
     let name = reader.text(node)?;
-    let Some(corners) = corners_of(&name) else {
+    if !SOLIDS.contains(&name.as_str()) {
         let hint = crate::diagnostic::did_you_mean(&name, SOLIDS)
             .unwrap_or_else(|| format!("one of: {}", SOLIDS.join(", ")));
         reader.error_with_hint(&node.place, format!("'{name}' is no solid"), hint);
         return None;
-    };
+    }
+    Some(Written {
+        value: name,
+        place: node.place.clone(),
+    })
+}
+
+/// Returns the corners of a solid of a name, about the origin; all coordinates are exact expressions. `None` if the name is
+/// not known.
+pub(crate) fn corners_of_solid(name: &Written<String>) -> Option<Vec<WrittenPoint>> {
     let coordinate = |text: &str| Written {
         value: Expression::parse(text).unwrap_or_else(|_| Expression::unknown()),
-        place: node.place.clone(),
+        place: name.place.clone(),
     };
+    let corners = corners_of(&name.value)?;
     let corners = corners.iter().map(|[x, y, z]| WrittenPoint {
         x: coordinate(x),
         y: coordinate(y),
         z: Some(Box::new(coordinate(z))),
-        place: node.place.clone(),
+        place: name.place.clone(),
     });
     Some(corners.collect())
 }
@@ -349,4 +359,20 @@ fn corners_of(name: &str) -> Option<Vec<[String; 3]>> {
         }
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SOLIDS, corners_of};
+
+    #[test]
+    fn every_solid_has_corners() {
+        for name in SOLIDS {
+            assert!(
+                corners_of(name).is_some_and(|corners| corners.len() >= 4),
+                "{name}"
+            );
+        }
+        assert!(corners_of("ball").is_none());
+    }
 }

@@ -52,7 +52,10 @@ pub(super) fn read_vertices(reader: &mut Reader, node: &Node) -> Option<MapsDocu
             read_points(reader, &fields, VERTICES.hint).map(VerticesDocument::Listed)
         }
         (Some(&"solid"), Some(node)) if reader.is_in_space => {
-            space::read_solid(reader, node).map(VerticesDocument::Listed)
+            let name = space::read_name_of_solid(reader, node);
+            { name.as_ref() }
+                .and_then(space::corners_of_solid)
+                .map(VerticesDocument::Listed)
         }
         (Some(&"solid"), _) => {
             let message = "a solid lies in space";

@@ -158,6 +158,10 @@ fn each_mistake_has_its_message() {
         ("a: !e!x 1\n", "1:4 tags such as '!e!x' are not used here"),
         ("a: b: c\n", "1:5 a second ':' in a line"),
         (
+            &*format!("{}: 1\n", "k".repeat(1100)),
+            "1:1 a key has at most 1,024 characters",
+        ),
+        (
             "a: 1\n b: 2\n",
             "2:2 this line continues the text of line 1",
         ),

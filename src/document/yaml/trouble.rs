@@ -339,11 +339,19 @@ fn tab(source: &Arc<Source>, at: usize) -> Diagnostic {
 /// Returns the error for a misplaced ':': the second one in a line, or one in a line that continues the
 /// previous line's text.
 fn colon(source: &Arc<Source>, at: usize, last: &Range<usize>) -> Diagnostic {
+    /// Number of characters within which the ':' of a key comes (YAML 1.2.2, section 7.4.2).
+    const LONGEST_KEY: usize = 1024;
     if spans_lines(source, last) && last.end == at {
         let (line, _) = source.line_column(last.start);
         return Diagnostic::error(format!("this line continues the text of line {line}"))
             .at(&Place::new(source, line_start(source, at)..at))
             .hint("check its indentation, and that the line before has a ': ' with the space");
+    }
+    let text = source.text().get(last.clone()).unwrap_or_default();
+    if last.end == at && text.chars().count() > LONGEST_KEY {
+        return Diagnostic::error("a key has at most 1,024 characters")
+            .at(&Place::new(source, last.clone()))
+            .hint("write a shorter one");
     }
     Diagnostic::error("a second ':' in a line")
         .at(&Place::new(source, at..at + 1))

@@ -3,7 +3,7 @@
 use crate::Bits;
 use crate::geometry::{DAffine2, DVec2};
 
-use super::super::Shape;
+use super::super::Silhouette;
 use super::super::orbit::Level;
 use super::super::shape::{distances, place};
 
@@ -27,7 +27,7 @@ pub(in crate::fit) struct Ground {
 impl Ground {
     /// Creates the ground of a shape, of at most `side` cells, with a sample of `sample` cells; `None` without cells.
     #[expect(clippy::cast_precision_loss, reason = "pictures are small")]
-    pub(in crate::fit) fn new(shape: &Shape, side: usize, sample: usize) -> Option<Self> {
+    pub(in crate::fit) fn new(shape: &Silhouette, side: usize, sample: usize) -> Option<Self> {
         let level = Level::new(shape, side);
         let bits = level.cells();
         let (width, height) = (bits.width(), bits.height());

@@ -18,7 +18,7 @@ pub(super) use self::ground::Ground;
 pub(super) use self::pairs::{Form, clamped};
 use super::orbit::{Level, Orbit};
 use super::refine::{Refined, refine};
-use super::{Candidate, Disk, FitError, FitOptions, Method, Shape, methods};
+use super::{Candidate, Disk, FitError, FitOptions, Method, Silhouette, methods};
 
 /// Cells of the long side at which copies are searched.
 const GROUND: usize = 96;
@@ -52,7 +52,7 @@ fn shorten(list: &mut Vec<Refined>, most: usize) {
 
 /// A search for collages of a shape; what does not depend on the number of maps is done once.
 pub(super) struct Collage<'s> {
-    shape: &'s Shape,
+    shape: &'s Silhouette,
     options: &'s FitOptions,
     ground: Ground,
     copies: Vec<Copy>,
@@ -63,7 +63,7 @@ pub(super) struct Collage<'s> {
 }
 
 impl<'s> Collage<'s> {
-    pub(super) fn new(shape: &'s Shape, options: &'s FitOptions) -> Result<Self, FitError> {
+    pub(super) fn new(shape: &'s Silhouette, options: &'s FitOptions) -> Result<Self, FitError> {
         let ground = Ground::new(shape, GROUND, SAMPLE).ok_or(FitError::Empty)?;
         Ok(Self {
             copies: copies::copies(&ground, options.threads.get()),

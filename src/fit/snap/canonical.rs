@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use crate::geometry::DVec2;
 
 use super::super::orbit::{Level, Orbit, outside};
-use super::super::{FitError, Shape};
+use super::super::{FitError, Silhouette};
 use super::{Placed, Snapped, upright};
 
 /// Steps of a pixel to which places are rounded, if the picture stays exact.
@@ -27,7 +27,7 @@ impl Snapped {
     /// shape's there.
     pub(super) fn found(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         level: &Level,
         orbit: &mut Orbit,
         cancel: Option<&AtomicBool>,
@@ -56,7 +56,7 @@ impl Snapped {
     /// The picture of the result has the same result, as far as the same maps and an exact place are found again.
     pub(super) fn canonical(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         placed: Placed,
         cancel: Option<&AtomicBool>,
     ) -> Result<Placed, FitError> {
@@ -65,7 +65,7 @@ impl Snapped {
         }
         let mut best = self.round(shape, placed, cancel)?;
         for _ in 0..PICTURES {
-            let Ok(picture) = Shape::new(best.drawn.pixels.clone()) else {
+            let Ok(picture) = Silhouette::new(best.drawn.pixels.clone()) else {
                 break;
             };
             let start = self.drawn(&picture, best.frame, cancel)?;
@@ -86,7 +86,7 @@ impl Snapped {
     /// place, rounded to the largest step with which the picture is still the shape's.
     fn round(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         placed: Placed,
         cancel: Option<&AtomicBool>,
     ) -> Result<Placed, FitError> {
@@ -137,7 +137,7 @@ impl Snapped {
     /// shape; none if the frame is not upright, or the boxes have different forms.
     fn boxed(
         &self,
-        shape: &Shape,
+        shape: &Silhouette,
         cancel: Option<&AtomicBool>,
     ) -> Result<Vec<[DVec2; 2]>, FitError> {
         let Some(unit) = upright(self.frame[1]).map(DVec2::normalize_or_zero) else {

@@ -2,12 +2,12 @@
 
 use crate::diagnostic::{Diagnostics, Severity, Source};
 use crate::geometry::{DAffine2, DVec2};
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 use crate::model::Model;
 
 fn read(text: &str) -> (Vec<Imported>, Diagnostics) {
     let source = Source::new("some/tile.aifs", text);
-    crate::import::read(&source, Format::Aifs, &ImportOptions::default())
+    crate::import::read(&source, SourceFormat::Aifs, &ImportOptions::default())
 }
 
 /// Returns the only entry of a text.

@@ -2,16 +2,16 @@
 
 use crate::diagnostic::{Diagnostics, Severity, Source};
 use crate::geometry::DAffine2;
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 use crate::model::Model;
 
-use super::{Columns, ColumnsError};
+use super::{ColumnsError, MapColumns};
 
 fn read_with(text: &str, columns: Option<&str>) -> Imported {
     let columns = columns.map(|columns| columns.parse().unwrap());
     let options = ImportOptions { columns };
     let source = Source::new("some/maple.csv", text);
-    let (mut imported, stray) = crate::import::read(&source, Format::Csv, &options);
+    let (mut imported, stray) = crate::import::read(&source, SourceFormat::Csv, &options);
     assert!(stray.is_empty(), "{stray}");
     assert_eq!(imported.len(), 1);
     imported.remove(0)
@@ -162,7 +162,7 @@ fn refusals_have_their_lines() {
 
 #[test]
 fn columns_are_letters() {
-    let columns = |text: &str| text.parse::<Columns>();
+    let columns = |text: &str| text.parse::<MapColumns>();
     assert_eq!(columns("a, b c,def p"), columns("abcdefp"));
     assert_eq!(columns("abcdex"), Err(ColumnsError::Unknown("x".into())));
     assert_eq!(columns("abcdefa"), Err(ColumnsError::Twice('a')));

@@ -1,7 +1,7 @@
 //! Tests of the import of EisenScript.
 
 use crate::diagnostic::Source;
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 use crate::instancing::{Appearance, Drift, Tint};
 use crate::style::Colour;
 
@@ -9,8 +9,11 @@ use super::colour::{hsv, parse};
 
 fn read(text: &str) -> Imported {
     let source = Source::new("some/tower.es", text);
-    let (mut imported, stray) =
-        crate::import::read(&source, Format::EisenScript, &ImportOptions::default());
+    let (mut imported, stray) = crate::import::read(
+        &source,
+        SourceFormat::EisenScript,
+        &ImportOptions::default(),
+    );
     assert!(stray.is_empty() && imported.len() == 1, "{imported:?}");
     imported.remove(0)
 }

@@ -1,12 +1,15 @@
 //! Tests of the import of FractaSketch's templates.
 
 use crate::diagnostic::Source;
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 
 fn read(text: &str) -> Imported {
     let source = Source::new("some/koch.fsk", text);
-    let (mut imported, stray) =
-        crate::import::read(&source, Format::FractaSketch, &ImportOptions::default());
+    let (mut imported, stray) = crate::import::read(
+        &source,
+        SourceFormat::FractaSketch,
+        &ImportOptions::default(),
+    );
     assert!(stray.is_empty() && imported.len() == 1, "{imported:?}");
     imported.remove(0)
 }

@@ -8,9 +8,9 @@ use crate::model::Model;
 
 use super::commands::{self, Command, Heading};
 use super::entries::{self, Entry};
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 
-fn read(source: &Arc<Source>, format: Format) -> (Vec<Imported>, Diagnostics) {
+fn read(source: &Arc<Source>, format: SourceFormat) -> (Vec<Imported>, Diagnostics) {
     crate::import::read(source, format, &ImportOptions::default())
 }
 
@@ -154,7 +154,7 @@ fn scales_without_their_numbers_are_told() {
 fn systems_of_maps_are_read() {
     let (imported, stray) = read(
         &source("fern { ; Barnsley\n 0 0 0 .16 0 0 .01\n .85 .04 -.04 .85 0 1.6 .85 }"),
-        Format::Ifs,
+        SourceFormat::Ifs,
     );
     assert!(
         stray.is_empty() && imported[0].found.is_empty(),
@@ -196,7 +196,7 @@ few (3d) {
 }
 flat { .5 0 0 0 .5 0 0 0 .5 0 0 0 1 }
 ";
-    let (imported, stray) = read(&source(text), Format::Ifs);
+    let (imported, stray) = read(&source(text), SourceFormat::Ifs);
     let [fern, few, flat] = &imported[..] else {
         panic!("{imported:?}");
     };
@@ -233,7 +233,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
             "space (3D) { 1 }\nodd (4D) { 1 }\nword { 1 two 3 4 5 6 7 }\nshort { .5 0 0 .5 0 0 1 .5 0 }\n\
              grows { 2 0 0 2 0 0 1 }\nnone { }\nnever { .5 0 0 .5 0 0 1 .5 0 0 .5 1 0 0 }\ninf { .5 0 0 .5 inf 1e999 1 }",
         ),
-        Format::Ifs,
+        SourceFormat::Ifs,
     );
     let read: Vec<_> = imported
         .iter()
@@ -289,7 +289,7 @@ fn systems_that_cannot_be_told_are_named_and_the_others_read() {
 
 /// Returns the only entry of an L-system file as YAML, from `angle` on.
 fn lsystem(text: &str) -> String {
-    let (imported, stray) = read(&Source::new("test.l", text), Format::LSystems);
+    let (imported, stray) = read(&Source::new("test.l", text), SourceFormat::LSystems);
     assert!(stray.is_empty(), "{stray}");
     let [entry] = &imported[..] else {
         panic!("{imported:?}");
@@ -401,7 +401,7 @@ fn the_step_that_is_taken_draws_something() {
         ("X F=FF X=+", 20_000, 12),
     ] {
         let text = format!("a {{ angle 4 axiom {entry} }}");
-        let (imported, _) = read(&Source::new("test.l", text), Format::LSystems);
+        let (imported, _) = read(&Source::new("test.l", text), SourceFormat::LSystems);
         let document = imported[0].document.as_ref().expect("it is right");
         let (Model::LSystem(system), _) = document.resolve(&[]).expect("it is right") else {
             panic!("it is an L-system");
@@ -415,7 +415,7 @@ fn the_step_that_is_taken_draws_something() {
 fn the_turtle_has_two_headings() {
     let (imported, _) = read(
         &Source::new("test.l", "a { angle 4 axiom F+\\45D[+F\\45D]FD!+\\45FD|F }"),
-        Format::LSystems,
+        SourceFormat::LSystems,
     );
     assert!(imported[0].found.is_empty(), "{}", imported[0].found);
     let document = imported[0].document.as_ref().expect("it is right");
@@ -445,7 +445,7 @@ fn lsystems_that_cannot_be_told_are_named_and_the_others_read() {
                 bracket { angle 4 axiom F]F F=F[[F }\n\
                 good { angle 4 axiom F F=FF }\nturned { angle 4 axiom F\\10F F=FF }\ncoloured { angle 4 axiom c3[F] F=FF }\n\
                 quote { angle 4 axiom F'F }\ntwo { angle 4 axiom FD }\nback { angle 5 axiom F|!F }";
-    let (imported, _) = read(&Source::new("test.l", text), Format::LSystems);
+    let (imported, _) = read(&Source::new("test.l", text), SourceFormat::LSystems);
     let read = imported.iter().map(|entry| {
         (
             &entry.name[..],

@@ -1,11 +1,11 @@
 //! Tests of the import of genes.
 
 use crate::diagnostic::{Diagnostics, Source};
-use crate::import::{Format, ImportOptions, Imported};
+use crate::import::{ImportOptions, Imported, SourceFormat};
 
 fn read(text: &str) -> (Vec<Imported>, Diagnostics) {
     let source = Source::new("some/curves.genes", text);
-    crate::import::read(&source, Format::Genes, &ImportOptions::default())
+    crate::import::read(&source, SourceFormat::Genes, &ImportOptions::default())
 }
 
 fn yaml(imported: &Imported) -> String {

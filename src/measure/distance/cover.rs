@@ -20,6 +20,9 @@ pub enum NoCover {
     /// The cover takes more points than are allowed.
     #[error(transparent)]
     TooMany(#[from] TooMany),
+    /// Too many parts of the set, which hardly shrink, are to be examined at once.
+    #[error("its parts hardly shrink: more than 8 million are examined at once")]
+    TooManyOpen,
     /// Growing the approximant failed.
     #[error(transparent)]
     Walk(WalkError<TooMany>),
@@ -151,6 +154,9 @@ const OVERLAPPING: usize = 12;
 /// Number of copies that are examined before overlaps are judged.
 const FEW: usize = 4096;
 
+/// Maximum number of copies that are kept to be examined: half a gigabyte in the plane.
+const MAX_OPEN: usize = 1 << 23;
+
 /// Covers a limit set by its copies that are as small as the radius, or by cells of grids where copies overlap
 /// heavily.
 fn cover_limit<F: Covering>(
@@ -194,6 +200,9 @@ fn cover_limit<F: Covering>(
                     children.map(|(_, instance)| (instance.object, map * *instance.frame.map())),
                 );
                 region.work(1)?;
+                if open.len() > MAX_OPEN {
+                    return Err(NoCover::TooManyOpen);
+                }
             }
             _ => F::add_outline(region, &graph.base_elements()[object.base_element], &map)?,
         }

@@ -103,7 +103,7 @@ pub fn hausdorff<F: Covering>(
         let finer = (radius / FINER).max(wanted);
         match covers(finer) {
             Ok(points) => (radius, best) = (finer, points),
-            Err((_, NoCover::TooMany(_))) => break,
+            Err((_, NoCover::TooMany(_) | NoCover::TooManyOpen)) => break,
             Err(error) => return Err(error),
         }
     }

@@ -17,7 +17,7 @@ use super::{EXACT, LimitCopy, LimitSet, MAX_WORK};
 /// cubes about the plane. The set that the layers converge to is the slice; a cube of a layer that meets the set
 /// beside the plane counts, until it becomes too small.
 #[derive(Clone, Debug)]
-pub struct Slice {
+pub struct SlicedSet {
     pub(super) set: LimitSet<DAffine3>,
 }
 
@@ -27,7 +27,7 @@ impl LimitSet<DAffine3> {
     /// # Errors
     ///
     /// Returns the range of `normal` · x over the set, if the plane lies outside.
-    pub fn slice(&self, normal: DVec3, offset: f64) -> Result<Slice, [f64; 2]> {
+    pub fn slice(&self, normal: DVec3, offset: f64) -> Result<SlicedSet, [f64; 2]> {
         /// Distance, relative to the set, up to which a plane beside the set touches it.
         const ROUNDING: f64 = 1e-9;
         let length = normal.length();
@@ -55,7 +55,7 @@ impl LimitSet<DAffine3> {
             return Err([low, high].map(|at| at * length + offset));
         }
         let flat = |corner: DVec3| corner.with_z(0.0);
-        Ok(Slice {
+        Ok(SlicedSet {
             set: Self {
                 objects: self.objects.clone(),
                 start,
@@ -66,7 +66,7 @@ impl LimitSet<DAffine3> {
     }
 }
 
-impl Slice {
+impl SlicedSet {
     /// Returns the slice as a set that is covered by layers.
     pub(in crate::measure) fn set(&self) -> &LimitSet<DAffine3> {
         &self.set

@@ -69,6 +69,7 @@ impl<M: StructureMap> Resolver<OfInstancing<M>> {
         let whole = M::product(&union.transforms, &slots);
         for prepared in all {
             let map = M::product(&prepared.transforms, &slots);
+            self.kind.size += prepared.work;
             if !(whole * map).is_finite() {
                 let at = level.map_or_else(String::new, |level| format!(" at level {level}"));
                 let message = format!("the transform of this instance is not finite{at}");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::document::{ShapeDocument, TransformDocument, WrittenNumber};
-use crate::expression::{Affine, Arithmetic, Folding, Program, Scope, Symbols};
+use crate::expression::{AffineOf, Arithmetic, Folding, Program, Scope, Symbols};
 use crate::geometry::{DAffine2, DAffine3, DVec3, Round, Solid};
 use crate::ifs::{AffineMap, Shape};
 use crate::resolve::Resolver;
@@ -30,6 +30,14 @@ pub(in crate::resolve) trait StructureMap: AffineMap {
 
     /// Returns the number of sides of a set of one shape.
     fn sides(set: &Self::Set) -> usize;
+
+    /// Returns the [work](Program::work) of the formulas of transforms.
+    fn work(transforms: &[Self::Written]) -> usize;
+}
+
+fn work<const D: usize>(transforms: &[AffineOf<Program, D>]) -> usize {
+    let numbers = transforms.iter().flat_map(AffineOf::numbers);
+    numbers.map(Program::work).sum()
 }
 
 impl StructureMap for DAffine2 {
@@ -39,30 +47,30 @@ impl StructureMap for DAffine2 {
         resolver: &mut Resolver<OfInstancing<Self>>,
         document: &TransformDocument,
         scope: &Scope,
-    ) -> Option<Affine<Program>> {
+    ) -> Option<AffineOf<Program>> {
         let mut two = |x: &WrittenNumber, y: &WrittenNumber| {
             [resolver.program(x, scope), resolver.program(y, scope)]
         };
         let of = &mut Symbols;
         Some(match document {
-            TransformDocument::Scale([x, y]) => Affine::scaling(of, two(x, y)),
+            TransformDocument::Scale([x, y]) => AffineOf::scaling(of, two(x, y)),
             TransformDocument::Translate(shift) => {
-                Affine::identity(of).moved_to(two(&shift.x, &shift.y))
+                AffineOf::identity(of).moved_to(two(&shift.x, &shift.y))
             }
             TransformDocument::Matrix([first, second]) => {
                 let [a, c] = two(&first.x, &first.y);
                 let [b, d] = two(&second.x, &second.y);
-                Affine::linear(of, [[a, b], [c, d]])
+                AffineOf::linear(of, [[a, b], [c, d]])
             }
             TransformDocument::Rotate(angle) => {
                 let [angle, _] = two(angle, angle);
                 let turn = of.turn(&angle);
-                Affine::rotation(of, turn)
+                AffineOf::rotation(of, turn)
             }
             TransformDocument::TranslateBack(shift) => {
                 let back = two(&shift.x, &shift.y);
                 let back = back.each_ref().map(|it| of.negate(it));
-                Affine::identity(of).moved_to(back)
+                AffineOf::identity(of).moved_to(back)
             }
             TransformDocument::Linear(map) => resolver.linear_in_scope::<Self, 2>(map, scope)?,
             // The notations of space were not read.
@@ -86,6 +94,10 @@ impl StructureMap for DAffine2 {
             Shape::Point(_) | Shape::Union(_) => 0,
         }
     }
+
+    fn work(transforms: &[AffineOf<Program>]) -> usize {
+        work(transforms)
+    }
 }
 
 impl StructureMap for DAffine3 {
@@ -95,25 +107,25 @@ impl StructureMap for DAffine3 {
         resolver: &mut Resolver<OfInstancing<Self>>,
         document: &TransformDocument,
         scope: &Scope,
-    ) -> Option<Affine<Program, 3>> {
+    ) -> Option<AffineOf<Program, 3>> {
         let of = &mut Folding;
         Some(match document {
             TransformDocument::ScaleInSpace(factors) => {
                 let factors = factors.each_ref().map(|it| resolver.program(it, scope));
-                Affine::scaling(of, factors)
+                AffineOf::scaling(of, factors)
             }
             TransformDocument::Translate(shift) => {
-                Affine::identity(of).moved_to(resolver.point_in_scope(shift, scope))
+                AffineOf::identity(of).moved_to(resolver.point_in_scope(shift, scope))
             }
             TransformDocument::MatrixInSpace(rows) => {
                 let rows = rows.each_ref().map(|it| resolver.point_in_scope(it, scope));
                 // The document has rows, the map has columns.
                 let columns =
                     [0, 1, 2].map(|column: usize| rows.each_ref().map(|row| row[column].clone()));
-                Affine::linear(of, columns)
+                AffineOf::linear(of, columns)
             }
             TransformDocument::Turns(turns) => {
-                let mut all = Affine::identity(of);
+                let mut all = AffineOf::identity(of);
                 for turn in turns {
                     let angle = resolver.program(&turn.angle, scope);
                     all = resolver.turn(turn, &angle)?.after(of, &all);
@@ -123,7 +135,7 @@ impl StructureMap for DAffine3 {
             TransformDocument::TranslateBack(shift) => {
                 let back = resolver.point_in_scope(shift, scope);
                 let back = back.each_ref().map(|it| of.negate(it));
-                Affine::identity(of).moved_to(back)
+                AffineOf::identity(of).moved_to(back)
             }
             // The notations of the plane were not read.
             TransformDocument::Scale(_)
@@ -161,5 +173,9 @@ impl StructureMap for DAffine3 {
 
     fn sides(set: &Arc<[Solid]>) -> usize {
         set.iter().map(|solid| solid.faces().len()).sum()
+    }
+
+    fn work(transforms: &[AffineOf<Program, 3>]) -> usize {
+        work(transforms)
     }
 }

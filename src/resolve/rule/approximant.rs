@@ -3,10 +3,11 @@
 use crate::document::{Entry, FractalDocument, Listed, Written, WrittenNumber, WrittenPoint};
 use crate::expression::Expression;
 use crate::geometry::{DVec2, Direction};
-use crate::grow::{Element, Elements};
+use crate::grow::{Element, Elements, WalkError};
 use crate::kind::Kind;
 
 use crate::resolve::Resolver;
+use crate::resolve::fractal::{INSTEAD, TOO_SLOW};
 
 /// Entries of a list of elements, with whether each joins the one before.
 type Entries = (Vec<Entry>, Vec<bool>);
@@ -18,6 +19,10 @@ impl<K> Resolver<K> {
     /// Grows a rule of the plane and returns the elements of its approximant, in the order of traversal, as the entries of an
     /// initiator. Reports a mistake and returns `None`.
     pub(super) fn approximant(&mut self, document: &FractalDocument) -> Option<Entries> {
+        self.within_budget(document, |resolver| resolver.entries_of(document))
+    }
+
+    fn entries_of(&mut self, document: &FractalDocument) -> Option<Entries> {
         let (model, growth) = self.grown(document)?;
         if model.kind() != Kind::Rule || model.is_in_space() {
             let message =
@@ -34,6 +39,10 @@ impl<K> Resolver<K> {
             Ok(_) => {
                 let message = "this approximant has no element";
                 self.error_with_hint(&document.place, message, "another number of steps");
+                return None;
+            }
+            Err(WalkError::TooManyElements { .. }) if self.is_slow(&growth) => {
+                self.error_with_hint(&document.place, TOO_SLOW, INSTEAD);
                 return None;
             }
             Err(error) => {

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::document::node::{Node, Value};
-use crate::edit::{Edit, Step, find, steps};
+use crate::edit::{Edit, PathStep, find, steps};
 
 use super::super::answer::Refusal;
 use super::nice;
@@ -100,7 +100,7 @@ const DEFAULTS: [(&str, &str); 4] = [
     ("connected", "true"),
 ];
 
-pub(super) fn below(at: &[Step], step: impl Into<Step>) -> Vec<Step> {
+pub(super) fn below(at: &[PathStep], step: impl Into<PathStep>) -> Vec<PathStep> {
     at.iter().cloned().chain([step.into()]).collect()
 }
 
@@ -171,7 +171,7 @@ impl Design<'_> {
                 let map = self.map(*map)?;
                 let text = super::source_text(&map.node);
                 Ok(vec![match map.at.last() {
-                    Some(Step::Item(item)) => Edit::insert(vec!["maps".into()], item + 1, text),
+                    Some(PathStep::Item(item)) => Edit::insert(vec!["maps".into()], item + 1, text),
                     _ => Edit::add(vec!["maps".into()], format!("{} copy", map.name), text),
                 }])
             }
@@ -363,8 +363,10 @@ impl Design<'_> {
         let all: Vec<_> = points.iter().map(|[x, y]| format!("[{x}, {y}]")).collect();
         let list = format!("[{}]", all.join(", "));
         let whole = match panel.list.first() {
-            Some(Step::Key(key)) if key == "initiator" => Some(("elements", [key.as_str().into()])),
-            Some(Step::Key(key)) if key == "base_element" => {
+            Some(PathStep::Key(key)) if key == "initiator" => {
+                Some(("elements", [key.as_str().into()]))
+            }
+            Some(PathStep::Key(key)) if key == "base_element" => {
                 Some(("points", [key.as_str().into()]))
             }
             _ => None,
@@ -390,7 +392,7 @@ impl Design<'_> {
     /// Writes a component that is named into the file.
     fn own(&self, panel: &str) -> Result<Vec<Edit>, Refusal> {
         let panel = self.panel(panel)?;
-        let at: Vec<Step> = match panel.role {
+        let at: Vec<PathStep> = match panel.role {
             Role::Initiator => vec!["initiator".into()],
             Role::BaseElement => vec!["base_element".into()],
             _ => panel

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
-use crate::edit::{Step, find};
+use crate::edit::{PathStep, find};
 
 use super::maps;
 use super::names::{Basis, Names};
@@ -20,7 +20,7 @@ pub(super) struct Builder<'a> {
     scene: Scene,
 }
 
-fn below(at: &[Step], more: &[Step]) -> Vec<Step> {
+fn below(at: &[PathStep], more: &[PathStep]) -> Vec<PathStep> {
     at.iter().chain(more).cloned().collect()
 }
 
@@ -52,7 +52,7 @@ impl<'a> Builder<'a> {
         }
         if let Some(Value::Mapping(entries)) = self.root.get("generators").map(|it| &it.value) {
             for (key, _) in entries {
-                let at = ["generators".into(), Step::Key(key.name.clone())];
+                let at = ["generators".into(), PathStep::Key(key.name.clone())];
                 self.scene.generators.push(key.name.clone());
                 self.generator(&at, &key.name);
             }
@@ -64,7 +64,7 @@ impl<'a> Builder<'a> {
 
     /// Shows an iterated function system.
     pub(super) fn system(mut self) -> Scene {
-        let vertices = ["vertices", "points"].map(Step::from);
+        let vertices = ["vertices", "points"].map(PathStep::from);
         if let Some(list) = find(self.root, &vertices) {
             let mut panel = self.panel(&vertices, "Vertices", Role::Maps, list);
             panel.id = "vertices".into();
@@ -106,7 +106,7 @@ impl<'a> Builder<'a> {
     }
 
     fn maps(&mut self) {
-        let at = [Step::from("maps")];
+        let at = [PathStep::from("maps")];
         let Some(node) = self.root.get("maps") else {
             return;
         };
@@ -120,10 +120,10 @@ impl<'a> Builder<'a> {
         self.scene.panels.push(panel);
     }
 
-    fn panel(&self, at: &[Step], title: &str, role: Role, node: &Node) -> Panel {
+    fn panel(&self, at: &[PathStep], title: &str, role: Role, node: &Node) -> Panel {
         let is_own = Arc::ptr_eq(node.place.source(), self.source);
         let file = node.place.source().name();
-        let id: Vec<_> = at.iter().map(Step::to_string).collect();
+        let id: Vec<_> = at.iter().map(PathStep::to_string).collect();
         Panel {
             id: id.join("/"),
             title: title.to_owned(),
@@ -144,7 +144,7 @@ impl<'a> Builder<'a> {
 
     /// Shows an initiator or a base element.
     fn component(&mut self, key: &str, title: &str, role: Role) {
-        let at = [Step::from(key)];
+        let at = [PathStep::from(key)];
         let Some(node) = self.root.get(key) else {
             return;
         };
@@ -173,12 +173,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Shows a generator: each of its parts.
-    fn generator(&mut self, at: &[Step], title: &str) {
+    fn generator(&mut self, at: &[PathStep], title: &str) {
         let Some(node) = find(self.root, at) else {
             return;
         };
         let random = node.get("random");
-        let lists: Vec<(Vec<Step>, String, bool)> = match node.get("parts").map(|it| &it.value) {
+        let lists: Vec<(Vec<PathStep>, String, bool)> = match node.get("parts").map(|it| &it.value)
+        {
             Some(Value::Sequence(parts)) => parts
                 .iter()
                 .enumerate()
@@ -222,7 +223,7 @@ impl<'a> Builder<'a> {
     /// Returns the figures at the limits of random functions.
     fn ghosts(
         &self,
-        at: &[Step],
+        at: &[PathStep],
         list: &Node,
         generator: &Node,
         closed: bool,

@@ -1,7 +1,7 @@
 //! Generators of a rule: copied, renamed, removed, and replaced from a step on.
 
 use crate::document::node::{Node, Value};
-use crate::edit::{Edit, Step, find};
+use crate::edit::{Edit, PathStep, find};
 
 use super::super::answer::Refusal;
 use super::act::{Design, below, is_written, plain};
@@ -11,7 +11,7 @@ impl Design<'_> {
     pub(super) fn add_generator(&self, from: &str, name: &str) -> Result<Vec<Edit>, Refusal> {
         let mut edits = self.copy(from, name)?;
         let [old, new] = [from, name].map(crate::document::node::scalar);
-        let select = || vec![Step::from("select")];
+        let select = || vec![PathStep::from("select")];
         match self.root.get("select") {
             None => edits.push(Edit::Add {
                 to: Vec::new(),
@@ -54,10 +54,10 @@ impl Design<'_> {
     }
 
     /// Returns the places where generators are named, with the names.
-    fn uses(&self) -> Vec<(Vec<Step>, String)> {
+    fn uses(&self) -> Vec<(Vec<PathStep>, String)> {
         let mut found = Vec::new();
         add_uses(self.root, &mut Vec::new(), &mut found);
-        let by_index: Vec<Step> = ["select", "by_index"].map(Step::from).into();
+        let by_index: Vec<PathStep> = ["select", "by_index"].map(PathStep::from).into();
         if let Some(Value::Sequence(items)) = find(self.root, &by_index).map(|it| &it.value) {
             for (number, item) in items.iter().enumerate() {
                 let name = item.written().unwrap_or_default().to_owned();
@@ -69,7 +69,7 @@ impl Design<'_> {
 
     pub(super) fn rename(&self, from: &str, to: &str) -> Vec<Edit> {
         let mut edits = vec![Edit::rename(vec!["generators".into(), from.into()], to)];
-        let at_random: Vec<Step> = ["select", "at_random", from].map(Step::from).into();
+        let at_random: Vec<PathStep> = ["select", "at_random", from].map(PathStep::from).into();
         if find(self.root, &at_random).is_some() {
             edits.push(Edit::rename(at_random, to));
         }
@@ -112,7 +112,7 @@ impl Design<'_> {
                 }
             }
         }
-        let at_random: Vec<Step> = ["select", "at_random", name].map(Step::from).into();
+        let at_random: Vec<PathStep> = ["select", "at_random", name].map(PathStep::from).into();
         if find(self.root, &at_random).is_some() {
             edits.push(Edit::remove(at_random));
         }
@@ -168,7 +168,7 @@ impl Design<'_> {
 }
 
 /// Adds the places of all keys `use`.
-fn add_uses(node: &Node, at: &mut Vec<Step>, found: &mut Vec<(Vec<Step>, String)>) {
+fn add_uses(node: &Node, at: &mut Vec<PathStep>, found: &mut Vec<(Vec<PathStep>, String)>) {
     match &node.value {
         Value::Sequence(items) => {
             for (number, item) in items.iter().enumerate() {
@@ -179,7 +179,7 @@ fn add_uses(node: &Node, at: &mut Vec<Step>, found: &mut Vec<(Vec<Step>, String)
         }
         Value::Mapping(entries) => {
             for (key, node) in entries {
-                at.push(Step::Key(key.name.clone()));
+                at.push(PathStep::Key(key.name.clone()));
                 add_uses(node, at, found);
                 at.pop();
                 if let ("use", Some(name)) = (key.name.as_str(), node.written()) {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::document::node::{Node, Value};
-use crate::edit::{Edit, Step};
+use crate::edit::{Edit, PathStep};
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::ifs;
 
@@ -21,7 +21,7 @@ pub(super) struct MapHandle {
     /// Forms that it is written in, as `scale`, `rotate` and `shift`.
     pub(super) form: String,
     #[serde(skip)]
-    pub(super) at: Vec<Step>,
+    pub(super) at: Vec<PathStep>,
     #[serde(skip)]
     pub(super) node: Node,
 }
@@ -36,8 +36,8 @@ impl MapHandle {
 }
 
 /// Returns the maps of a list, or of a mapping of names.
-pub(super) fn handles(node: &Node, at: &[Step], names: &Names) -> Vec<MapHandle> {
-    let entries: Vec<(Step, &Node)> = match &node.value {
+pub(super) fn handles(node: &Node, at: &[PathStep], names: &Names) -> Vec<MapHandle> {
+    let entries: Vec<(PathStep, &Node)> = match &node.value {
         Value::Sequence(items) => {
             let items = items.iter().enumerate();
             items.map(|(number, item)| (number.into(), item)).collect()
@@ -45,12 +45,12 @@ pub(super) fn handles(node: &Node, at: &[Step], names: &Names) -> Vec<MapHandle>
         Value::Mapping(entries) => {
             let entries = entries.iter();
             entries
-                .map(|(key, node)| (Step::Key(key.name.clone()), node))
+                .map(|(key, node)| (PathStep::Key(key.name.clone()), node))
                 .collect()
         }
         _ => Vec::new(),
     };
-    let handle = |(step, node): (Step, &Node)| {
+    let handle = |(step, node): (PathStep, &Node)| {
         let (map, basis) = affine(node, names)?;
         let forms = [
             "matrix",
@@ -66,8 +66,8 @@ pub(super) fn handles(node: &Node, at: &[Step], names: &Names) -> Vec<MapHandle>
         let image = |x, y| map.transform_point2(DVec2::new(x, y)).to_array();
         Some(MapHandle {
             name: match &step {
-                Step::Item(number) => (number + 1).to_string(),
-                Step::Key(name) => name.clone(),
+                PathStep::Item(number) => (number + 1).to_string(),
+                PathStep::Key(name) => name.clone(),
             },
             frame: [image(0.0, 0.0), image(1.0, 0.0), image(0.0, 1.0)],
             basis,
@@ -184,7 +184,8 @@ pub(super) fn edits(
     let is_one = |key: &str| node.get(key).is_none_or(|node| names.value(node).is_some());
     let keeps = similar || node.get("matrix").is_none() && is_one("scale");
     let new = dragged(old, grip, to.into(), keeps);
-    let step = |key: &str| -> Vec<Step> { handle.at.iter().cloned().chain([key.into()]).collect() };
+    let step =
+        |key: &str| -> Vec<PathStep> { handle.at.iter().cloned().chain([key.into()]).collect() };
     let number = |value: f64| nice::written(value, nice::expression(value).is_some(), pixel / 4.0);
     let two = |value: DVec2| format!("[{}, {}]", number(value.x), number(value.y));
     let put = |key: &str, value: String| match node.get(key) {

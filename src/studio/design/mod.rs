@@ -28,7 +28,7 @@ mod solve;
 use serde::Serialize;
 
 use crate::document::node::Node;
-use crate::edit::{Edit, Step, edit};
+use crate::edit::{Edit, PathStep, edit};
 use crate::kind::Kind;
 
 use super::answer::Refusal;
@@ -135,7 +135,7 @@ fn source_text(node: &Node) -> String {
     }
 }
 
-fn joined(at: &[Step]) -> String {
-    let all: Vec<_> = at.iter().map(Step::to_string).collect();
+fn joined(at: &[PathStep]) -> String {
+    let all: Vec<_> = at.iter().map(PathStep::to_string).collect();
     all.join("/")
 }

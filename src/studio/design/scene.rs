@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::document::node::{Node, Value};
-use crate::edit::Step;
+use crate::edit::PathStep;
 
 use super::maps;
 use super::names::{Basis, Names};
@@ -52,7 +52,7 @@ pub(super) struct Panel {
     /// Lower left and upper right corner.
     pub(super) window: [f64; 4],
     #[serde(skip)]
-    pub(super) list: Vec<Step>,
+    pub(super) list: Vec<PathStep>,
     #[serde(skip)]
     pub(super) names: Names,
 }
@@ -69,7 +69,7 @@ pub(super) struct Point {
     pub(super) pinned: bool,
     /// The places where it is written.
     #[serde(skip)]
-    pub(super) written: Vec<Vec<Step>>,
+    pub(super) written: Vec<Vec<PathStep>>,
 }
 
 /// An element.
@@ -90,7 +90,7 @@ pub(super) struct Element {
 
 impl Panel {
     /// Adds a point, or a place where a known one is written.
-    pub(super) fn add(&mut self, node: &Node, at: Vec<Step>) -> Option<usize> {
+    pub(super) fn add(&mut self, node: &Node, at: Vec<PathStep>) -> Option<usize> {
         let ([x, y], basis) = self.names.point(node)?;
         let text = match &node.value {
             Value::Sequence(parts) => {
