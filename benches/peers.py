@@ -64,7 +64,7 @@ NUMBA = [
 ]
 
 # Points in space, and the smallest ratio of times to numpy, on one thread.
-BOXES = (2_000_000, 8)
+BOXES = (2_000_000, 50)
 
 # Steps of the sponge that trimesh divides into voxels of its cubes' size; and the largest number of seconds in which
 # all voxels down to 3^-12 are counted.

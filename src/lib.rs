@@ -106,7 +106,8 @@
 //!
 //! The model of an iterated function system is [`ifs`]; its measure, its contraction, its connectedness and fractal
 //! interpolation are worked out on it without a graph, and [`family`] makes maps of its parameters. A set that is
-//! another fractal is grown when its file is resolved: the model holds what it draws.
+//! another fractal is grown when its file is resolved: the model holds what it draws. All such sets of a file share a budget of
+//! the `work` that is counted on a thread.
 //!
 //! Random iteration, the [`chaos`] game, is a way of its own: from affine maps to histograms, or to the
 //! nearest points in space, which `render` turns into pictures.
