@@ -7,7 +7,7 @@ use crate::common::{compiled, document, document_of, grown, resolved};
 use kfrac::geometry::{DAffine2, DVec2};
 use kfrac::graph::{Graph, Replacement};
 use kfrac::grow::Growth;
-use kfrac::measure::{Distance, Precision, Subject, Subset, hausdorff};
+use kfrac::measure::{Distance, NoCover, Precision, Subject, Subset, hausdorff};
 
 const KOCH: &str = "\
 kind: ifs
@@ -416,6 +416,20 @@ fn what_cannot_be_compared_is_told() {
         assert!(errors.contains(said), "{errors}");
         assert!(output.stdout.is_empty());
     }
+}
+
+/// Thousands of parts, of which one hardly shrinks, are not all kept in memory on the way to a small part.
+#[test]
+fn parts_that_hardly_shrink_are_given_up() {
+    let points = "  - [0.001, 0.001]\n".repeat(9_000);
+    let text = format!("initiator: segment\ngenerator:\n  - [0, 0]\n{points}  - [1, 0]\n");
+    let subject = graph(&text);
+    let subject = Subject::new(&subject, Subset::Limit).unwrap();
+    let size = subject.bounds().size().max_element();
+    assert_eq!(
+        subject.cover(size / 1000.0, 4_000_000),
+        Err(NoCover::TooManyOpen)
+    );
 }
 
 /// Copies of ferns overlap, but so little that squares would take five times the points.
