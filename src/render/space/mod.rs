@@ -70,7 +70,7 @@ use self::scene::{ClassBy, End, Part};
 use self::shade::Inks;
 use self::shadows::Shadows;
 use self::slice::Search;
-use self::tile::{Scene, Tile};
+use self::tile::{Scene, Tile, Workspaces};
 use self::turned::Turned;
 use super::png::TooManyPixels;
 use super::{Options, Picture, Pixels, RenderError, Size};
@@ -301,6 +301,7 @@ fn draw_unlit(
         },
         cuts: cuts.collect(),
         placement,
+        workspaces: Workspaces::default(),
         inks: has_colours.then(|| Inks::new(&inks, lit.as_ref(), space.shade.unwrap_or_default())),
         cancel,
     };
@@ -313,8 +314,8 @@ fn draw_unlit(
         if scene.is_cancelled() {
             return Err(RenderError::Walk(WalkError::Cancelled));
         }
-        drawn += tile.descent.drawn;
-        deepest = deepest.max(tile.descent.deepest);
+        drawn += tile.drawn;
+        deepest = deepest.max(tile.deepest);
         if let Some(depths) = &mut depths {
             depths.add(tile.at, &tile.depths);
         }

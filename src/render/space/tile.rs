@@ -1,7 +1,7 @@
 //! Tiles of a picture in space, each of which is drawn by one thread.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
@@ -23,12 +23,42 @@ pub(super) struct Tile<'a> {
     pub(super) at: [u32; 2],
     /// Instances of the initiator that may be seen in the row.
     pub(super) start: Arc<[usize]>,
-    buffer: Buffer,
-    pub(super) descent: Descent,
+    /// Number of solids that were drawn.
+    pub(super) drawn: u64,
+    /// Greatest number of steps of a solid that was drawn.
+    pub(super) deepest: u32,
     /// Premultiplied colours of the pixels, in rows, if the scene has inks.
     colours: Vec<[f64; 4]>,
     /// Depths of the pixels.
     pub(super) depths: Vec<Option<u32>>,
+}
+
+/// Memory with which a thread draws a tile.
+struct Workspace {
+    buffer: Buffer,
+    descent: Descent,
+}
+
+/// Memory that is reused from tile to tile: of as many tiles as are drawn at once.
+#[derive(Default)]
+pub(super) struct Workspaces(Mutex<Vec<Workspace>>);
+
+impl Workspaces {
+    fn spares(&self) -> MutexGuard<'_, Vec<Workspace>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn take(&self) -> Workspace {
+        let spare = self.spares().pop();
+        spare.unwrap_or_else(|| Workspace {
+            buffer: Buffer::new(),
+            descent: Descent::default(),
+        })
+    }
+
+    fn put(&self, workspace: Workspace) {
+        self.spares().push(workspace);
+    }
 }
 
 /// State that all tiles share.
@@ -36,6 +66,7 @@ pub(super) struct Scene<'a> {
     pub(super) roots: Roots<'a>,
     pub(super) cuts: Vec<HalfSpace>,
     pub(super) placement: Placement,
+    pub(super) workspaces: Workspaces,
     /// Inks, if colours are seen.
     pub(super) inks: Option<Inks>,
     pub(super) cancel: Option<&'a AtomicBool>,
@@ -66,29 +97,35 @@ impl<'a> Tile<'a> {
             scene,
             at: [0, 0],
             start: Arc::default(),
-            buffer: Buffer::new(),
-            descent: Descent::default(),
+            drawn: 0,
+            deepest: 0,
             colours: Vec::new(),
             depths: Vec::new(),
         }
     }
 
     pub(super) fn draw(&mut self) {
-        let Scene { roots, inks, .. } = self.scene;
         self.colours.clear();
         self.depths.clear();
+        (self.drawn, self.deepest) = (0, 0);
         if self.scene.is_cancelled() {
             return;
         }
+        let mut workspace = self.scene.workspaces.take();
+        self.draw_with(&mut workspace);
+        self.scene.workspaces.put(workspace);
+    }
+
+    fn draw_with(&mut self, Workspace { buffer, descent }: &mut Workspace) {
+        let Scene { roots, inks, .. } = self.scene;
         let view = self.scene.view(self.at);
-        self.buffer.clear();
-        self.descent.drawn = 0;
-        self.descent.deepest = 0;
-        self.descent
-            .run(roots, &view, &mut self.buffer, &self.start);
+        buffer.clear();
+        (descent.drawn, descent.deepest) = (0, 0);
+        descent.run(roots, &view, buffer, &self.start);
+        (self.drawn, self.deepest) = (descent.drawn, descent.deepest);
         let Some(inks) = inks else {
             for y in 0..TILE {
-                let rows = self.buffer.rows_of_pixels(y);
+                let rows = buffer.rows_of_pixels(y);
                 let pixels = (0..TILE).map(|x| shade::nearest(shade::samples(rows, x)));
                 self.depths.extend(pixels.map(solid::depth_of));
             }
@@ -96,12 +133,12 @@ impl<'a> Tile<'a> {
         };
         let is_tinted = roots.finds_colours();
         if is_tinted {
-            self.descent.tints.settle(&mut self.buffer);
+            descent.tints.settle(buffer);
         }
         for y in 0..TILE {
-            let tints: Option<[&[Colour]; SAMPLES]> = is_tinted
-                .then(|| std::array::from_fn(|row| self.descent.tints.row(y * SAMPLES + row)));
-            let rows = self.buffer.rows_of_pixels(y);
+            let tints: Option<[&[Colour]; SAMPLES]> =
+                is_tinted.then(|| std::array::from_fn(|row| descent.tints.row(y * SAMPLES + row)));
+            let rows = buffer.rows_of_pixels(y);
             for x in 0..TILE {
                 let samples = shade::samples(rows, x);
                 let tints = tints.map(|rows| shade::samples(rows, x));
