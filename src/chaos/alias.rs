@@ -1,5 +1,8 @@
 //! Weighted random choice from one random word, by the alias method.
 
+use super::lookup::{ENTRIES, LookUp};
+use super::random::LANES;
+
 /// An alias table: chooses by weight in constant time, without a branch (Walker 1977, in the construction of
 /// Vose 1991).
 #[derive(Clone, Debug)]
@@ -22,24 +25,24 @@ struct Entry {
 #[derive(Clone, Copy)]
 pub(super) struct FewAliases {
     bits: u32,
-    rests: [u32; FewAliases::MOST],
-    aliases: [u32; FewAliases::MOST],
+    rests: [u32; ENTRIES],
+    aliases: [u32; ENTRIES],
 }
 
 impl FewAliases {
-    /// Largest number of entries: a power of two.
-    pub(super) const MOST: usize = 32;
-
-    /// Chooses as [`AliasTable::choose`] does, for several words. Every line is for all words at once, so that it can be
-    /// vectorised.
+    /// Chooses as [`AliasTable::choose`] does, for all walkers. Every line is for all of them at once, so that it can be
+    /// vectorised; `look_up` looks entries up.
     #[inline(always)]
-    pub(super) fn choose<const N: usize>(&self, words: &[u32; N]) -> [u32; N] {
-        let mut chosen = [0; N];
-        for lane in 0..N {
-            let own = words[lane] >> (32 - self.bits);
-            let entry = own as usize % Self::MOST;
-            let keeps = (words[lane] << self.bits) < self.rests[entry];
-            chosen[lane] = if keeps { own } else { self.aliases[entry] };
+    pub(super) fn choose(&self, words: &[u32; LANES], look_up: impl LookUp) -> [u32; LANES] {
+        let mut own = [0; LANES];
+        for lane in 0..LANES {
+            own[lane] = words[lane] >> (32 - self.bits);
+        }
+        let (rests, aliases) = (look_up(&self.rests, &own), look_up(&self.aliases, &own));
+        let mut chosen = [0; LANES];
+        for lane in 0..LANES {
+            let keeps = (words[lane] << self.bits) < rests[lane];
+            chosen[lane] = if keeps { own[lane] } else { aliases[lane] };
         }
         chosen
     }
@@ -49,13 +52,13 @@ impl AliasTable {
     /// Returns the first row, if it has few entries.
     pub(super) fn few(&self) -> Option<FewAliases> {
         let row = self.entries.get(..1 << self.bits)?;
-        if row.len() > FewAliases::MOST {
+        if row.len() > ENTRIES {
             return None;
         }
         let mut few = FewAliases {
             bits: self.bits,
-            rests: [0; FewAliases::MOST],
-            aliases: [0; FewAliases::MOST],
+            rests: [0; ENTRIES],
+            aliases: [0; ENTRIES],
         };
         for (place, entry) in row.iter().enumerate() {
             few.rests[place] = entry.rest;
@@ -138,6 +141,7 @@ fn entries(weights: &[f64], count: usize) -> Vec<Entry> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chaos::lookup;
 
     /// Returns the probability of every choice, summed over the table's entries.
     fn chances(table: &AliasTable, row: usize, count: usize) -> Vec<f64> {
@@ -159,13 +163,15 @@ mod tests {
         let weights: Vec<f64> = (1..=20).map(f64::from).collect();
         let table = AliasTable::of_rows(&[weights]);
         let mut word = 0_u32;
-        let words: [u32; 1000] = std::array::from_fn(|_| {
-            word = word.wrapping_add(2_654_435_761);
-            word
-        });
-        let chosen = table.few().unwrap().choose(&words);
-        for (word, chosen) in words.into_iter().zip(chosen) {
-            assert_eq!(table.choose(0, word), chosen as usize);
+        for _ in 0..30 {
+            let words: [u32; LANES] = std::array::from_fn(|_| {
+                word = word.wrapping_add(2_654_435_761);
+                word
+            });
+            let chosen = table.few().unwrap().choose(&words, lookup::one_by_one);
+            for (word, chosen) in words.into_iter().zip(chosen) {
+                assert_eq!(table.choose(0, word), chosen as usize);
+            }
         }
         assert!(AliasTable::of_rows(&[vec![1.0; 33]]).few().is_none());
     }

@@ -2,8 +2,9 @@
 
 use crate::geometry::{DAffine3, DVec3, HalfSpace};
 
-use super::alike::Alike;
 use super::course::Course;
+use super::few::Few;
+use super::lookup::{self, LookUp};
 use super::random::LANES;
 use super::real::Real;
 use super::tally::{Cancelled, Counter, Tally};
@@ -125,10 +126,7 @@ pub fn play_in_space(
     let course = Course::new(system, window.to_window, window.scale(), game);
     // The last one is for points outside.
     let bins = width as usize * height as usize + 1;
-    let fresh = || Nearest {
-        keys: vec![DepthPicture::EMPTY; bins],
-        hits: if counts { vec![0; bins] } else { Vec::new() },
-    };
+    let fresh = || Nearest::new(bins, counts);
     if let Some(progress) = game.progress {
         progress.expect(game.points);
     }
@@ -154,6 +152,16 @@ pub(super) struct Nearest {
     pub(super) hits: Vec<u32>,
 }
 
+impl Nearest {
+    /// Creates empty pixels; if it `counts` hits, with counters.
+    pub(super) fn new(bins: usize, counts: bool) -> Self {
+        Self {
+            keys: vec![DepthPicture::EMPTY; bins],
+            hits: if counts { vec![0; bins] } else { Vec::new() },
+        }
+    }
+}
+
 /// Pixel and key of a point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Spot {
@@ -167,11 +175,9 @@ impl Counter for Nearest {
     #[inline(always)]
     fn add(&mut self, spots: &[Spot]) {
         for spot in spots {
-            // Few points are nearer than all before them: a branch is foreseen, and spares storing.
-            if let Some(key) = self.keys.get_mut(spot.pixel as usize)
-                && spot.key < *key
-            {
-                *key = spot.key;
+            // A branch would be mispredicted while a picture fills.
+            if let Some(key) = self.keys.get_mut(spot.pixel as usize) {
+                *key = spot.key.min(*key);
             }
         }
         if !self.hits.is_empty() {
@@ -194,58 +200,71 @@ impl Counter for Nearest {
 }
 
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
-fn walk_single(
+pub(super) fn walk_single(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
 ) -> Result<(), Cancelled> {
-    walk_in::<f32>(course, window, wave, tally)
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
+    multiversion::target::match_target! {
+        "x86_64+avx512f" => {
+            let look_up = |table: &_, places: &_| lookup::by_permutation(table, places);
+            return walk_in::<f32, true>(course, window, wave, tally, look_up);
+        }
+        _ => {}
+    }
+    #[allow(unreachable_code, reason = "of processors with AVX-512")]
+    walk_in::<f32, false>(course, window, wave, tally, lookup::one_by_one)
 }
 
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
-fn walk_double(
+pub(super) fn walk_double(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
 ) -> Result<(), Cancelled> {
-    walk_in::<f64>(course, window, wave, tally)
+    walk_in::<f64, false>(course, window, wave, tally, lookup::one_by_one)
 }
 
+/// Walks a wave in one precision; `look_up` is `SOON` if it takes less time than what it replaces.
 #[inline(always)]
-fn walk_in<T: Real>(
+fn walk_in<T: Real, const SOON: bool>(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,
     wave: u64,
     tally: &mut Tally<'_, Nearest>,
+    look_up: impl LookUp,
 ) -> Result<(), Cancelled> {
     let is_free = !course.system.is_recurrent()
         && course.maps.iter().all(Option::is_some)
         && matches!(course.classes, ClassBy::One | ClassBy::Map { ago: 0 });
+    let cuts = cuts_of::<T>(window);
+    let lens = Lens::new(window, &cuts);
+    if is_free && let Some(mut few) = Few::<_, _, true>::new(course, lens, look_up) {
+        run(course, wave, &mut few, tally)
+    } else if is_free
+        && SOON
+        && let Some(mut few) = Few::<_, _, false>::new(course, lens, look_up)
+    {
+        run(course, wave, &mut few, tally)
+    } else if is_free {
+        let mut any = Any::<_, _, true>::new(course, wave, lens);
+        run(course, wave, &mut any, tally)
+    } else {
+        let mut any = Any::<_, _, false>::new(course, wave, lens);
+        run(course, wave, &mut any, tally)
+    }
+}
+
+/// Returns the normals and distances of the half-spaces of a window.
+pub(super) fn cuts_of<T: Real>(window: &DepthWindow<'_>) -> Vec<[T; 4]> {
     let cuts = window.within.iter().map(|cut| {
         let [x, y, z] = cut.normal.to_array();
         [x, y, z, cut.distance].map(T::of)
     });
-    let cuts: Vec<[T; 4]> = cuts.collect();
-    let lens = Lens::<T>::new(window, &cuts);
-    if let Some(mut alike) = { is_free }.then(|| Alike::new(course, lens)).flatten() {
-        run(course, wave, &mut alike, tally)
-    } else if is_free {
-        run(
-            course,
-            wave,
-            &mut Any::<_, _, true>::new(course, wave, lens),
-            tally,
-        )
-    } else {
-        run(
-            course,
-            wave,
-            &mut Any::<_, _, false>::new(course, wave, lens),
-            tally,
-        )
-    }
+    cuts.collect()
 }
 
 /// An affine map: its columns, each completed by a zero.

@@ -13,10 +13,11 @@
 //! that contract or else by an estimate along a walk; otherwise in double precision.
 
 mod alias;
-mod alike;
 mod course;
 mod depth;
+mod few;
 mod histogram;
+mod lookup;
 mod points;
 mod random;
 mod raster;

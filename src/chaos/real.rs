@@ -2,6 +2,9 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::lookup::{ENTRIES, LookUp};
+use super::random::LANES;
+
 /// Floating-point numbers of walkers. Sums and products are those of IEEE 754, each rounded separately, and
 /// are the same on every machine.
 pub(super) trait Real:
@@ -18,6 +21,13 @@ pub(super) trait Real:
     const WHOLE: Self;
 
     fn of(value: f64) -> Self;
+
+    /// Looks up an entry of a table for every walker, if numbers have 32 bits by `look_up`.
+    fn look_up(
+        table: &[Self; ENTRIES],
+        places: &[u32; LANES],
+        look_up: impl LookUp,
+    ) -> [Self; LANES];
 
     /// Returns the lower bits of the mantissa: for a number from [`WHOLE`](Self::WHOLE) on, the difference to
     /// it.
@@ -44,6 +54,24 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn look_up(
+        table: &[Self; ENTRIES],
+        places: &[u32; LANES],
+        look_up: impl LookUp,
+    ) -> [Self; LANES] {
+        // Loops, which are compiled for the vectors of the caller, unlike `map`.
+        let (mut bits, mut found) = ([0; ENTRIES], [0.0; LANES]);
+        for (bits, value) in bits.iter_mut().zip(table) {
+            *bits = value.to_bits();
+        }
+        let looked_up = look_up(&bits, places);
+        for (found, bits) in found.iter_mut().zip(looked_up) {
+            *found = Self::from_bits(bits);
+        }
+        found
+    }
+
+    #[inline(always)]
     fn mantissa(self) -> u32 {
         self.to_bits() & 0x007f_ffff
     }
@@ -56,6 +84,15 @@ impl Real for f64 {
     #[inline(always)]
     fn of(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn look_up(table: &[Self; ENTRIES], places: &[u32; LANES], _: impl LookUp) -> [Self; LANES] {
+        let mut found = [0.0; LANES];
+        for lane in 0..LANES {
+            found[lane] = table[places[lane] as usize % ENTRIES];
+        }
+        found
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@
 
 use std::cell::Cell;
 
+use crate::fast_hash::FastMap;
 use crate::geometry::{Bounds, Frame, Frame2, Outline, Point};
 use crate::rule::Placement;
 
@@ -54,6 +55,8 @@ pub(super) struct Reach<F: Frame> {
     hulls: Option<(Box<dyn Hulls<F>>, Fineness)>,
     /// Objects that are certain to draw something.
     alive: Vec<bool>,
+    /// Object that stands for each: in the limit, the first of those that draw nothing themselves and have its behaviour.
+    alike: Vec<usize>,
     /// Padding around every object, as a multiple of its length.
     pads: Vec<f64>,
     /// Whether a search may take long, because no other bounds follow.
@@ -237,8 +240,20 @@ impl<F: Bounded> Graph<F> {
             looked: Cell::new(0),
             hulls,
             alive,
+            alike: self.alike(limit),
             pads,
         })
+    }
+
+    /// Returns the object that stands for each in boxes of approximants, or of the limit.
+    fn alike(&self, limit: bool) -> Vec<usize> {
+        let mut first = FastMap::default();
+        let objects = self.objects.iter().enumerate();
+        let alike = objects.map(|(number, object)| match limit && !object.is_kept() {
+            true => *first.entry(object.behaviour).or_insert(number),
+            false => number,
+        });
+        alike.collect()
     }
 
     /// Returns the largest distance from an object's origin at which it draws something or places an
@@ -293,7 +308,10 @@ impl<F: Bounded> Graph<F> {
         (reach, spared): (&Reach<F>, f64),
     ) -> Option<f64> {
         let start = start.iter();
-        let start = start.map(|instance| child(instance, direction, 0.0, 0.0));
+        let start = start.map(|instance| SupportTerm {
+            object: reach.alike[instance.object],
+            ..child(instance, direction, 0.0, 0.0)
+        });
         let mut states = Merged::from_iter(start).reaching(f64::NEG_INFINITY);
         let mut best = f64::NEG_INFINITY;
         let (mut work, mut looked) = (0, 0);
@@ -366,6 +384,7 @@ impl<F: Bounded> Graph<F> {
                         spend(1);
                         reach.looked.set(reach.looked.get() + 1);
                         let mut child = child(instance, state.vector, state.offset, state.lost);
+                        child.object = reach.alike[child.object];
                         child.parent = parent;
                         if falls_short(reach.at_most(&child), certain) {
                             return;

@@ -200,8 +200,9 @@ fn unit_and_length<P: Point>(vector: P) -> (P, f64) {
     reason = "casts from floats saturate"
 )]
 fn decimals<P: Point>(unit: P) -> [i64; 3] {
+    // Rounds as `round` does, which is a function where the processor need not have it.
     unit.coordinates()
-        .map(|value| (value * 1e10).round() as i64)
+        .map(|value| (value * 1e10 + 0.5_f64.copysign(value)) as i64)
 }
 
 #[cfg(test)]

@@ -43,12 +43,12 @@ pub fn points_in_space(
     options: &Options,
     space: &SpaceOptions,
 ) -> Result<SpacePicture, RenderError> {
-    let (pixmap, depths) = draw(graph, system, game, tone, options, space)?;
+    let (pixmap, depths, placement) = draw(graph, system, game, tone, options, space)?;
     let size = [pixmap.width(), pixmap.height()];
     Ok(SpacePicture {
         pixels: Pixels::of(pixmap),
-        sight: depths.placement().sight(space.camera.look_at),
-        depths: Some(depths).filter(|_| space.keeps_depths),
+        sight: placement.sight(space.camera.look_at),
+        depths: depths.filter(|_| space.keeps_depths),
         picture: described(size, 0, game.points),
     })
 }
@@ -105,6 +105,9 @@ impl Maps {
     }
 }
 
+/// A picture with the depths of its pixels, if they are needed, and its placement.
+type Drawn = (Pixmap, Option<DepthMap>, Placement);
+
 /// Draws the picture into memory.
 fn draw(
     graph: &Graph<Frame3>,
@@ -113,7 +116,7 @@ fn draw(
     tone: Tone,
     options: &Options,
     space: &SpaceOptions,
-) -> Result<(Pixmap, DepthMap), RenderError> {
+) -> Result<Drawn, RenderError> {
     draw_with(graph, system, game, tone, options, space, SIDE)
 }
 
@@ -126,7 +129,7 @@ fn draw_with(
     options: &Options,
     space: &SpaceOptions,
     most: u32,
-) -> Result<(Pixmap, DepthMap), RenderError> {
+) -> Result<Drawn, RenderError> {
     let ways: Vec<DVec3> = match game.start {
         crate::chaos::Start::Attractor => Vec::new(),
         crate::chaos::Start::Points { .. } => {
@@ -179,32 +182,47 @@ fn draw_with(
         colours(style, class_by, maps.count + maps.before)
     };
     let inks = Inks::new(&inks, None, space.shade.unwrap_or_default());
-    // The samples of a pixel.
-    let all = &keys;
-    let samples = |at: usize| {
-        let (fine, width) = (fine as usize, width as usize);
-        let (x, y) = (at % width * fine, at / width * fine);
-        let row = width * fine;
-        let rows = (y..y + fine).map(move |y| y * row + x);
-        rows.flat_map(move |start| &all[start..start + fine])
-    };
-    for (at, pixel) in pixmap.pixels_mut().iter_mut().enumerate() {
-        let mut sum = [0.0; 4];
-        for key in samples(at).filter(|key| **key != EMPTY) {
-            let own = inks.sample(*key, None);
-            sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
-        }
-        // Pixels are transparent until they show something.
-        if sum[3] > 0.0 {
-            *pixel = shade::premultiplied(sum.map(|part| part / f64::from(fine * fine)));
+    let fine = fine as usize;
+    match fine {
+        1 => ink::<1>(&mut pixmap, &keys, &inks),
+        _ => ink::<{ SIDE as usize }>(&mut pixmap, &keys, &inks),
+    }
+    // Points have no normals.
+    let depths = space.needs_depths(false).then(|| {
+        let row = width as usize * fine;
+        let pixels = keys.chunks_exact(row * fine).flat_map(|rows| {
+            (0..row).step_by(fine).map(move |x| {
+                let samples = rows.chunks_exact(row).flat_map(|row| &row[x..x + fine]);
+                samples.min().and_then(|key| depth_of(*key))
+            })
+        });
+        DepthMap::of(&placement, pixels)
+    });
+    finish(&mut pixmap, depths.as_ref(), None, false, options, space)?;
+    Ok((pixmap, depths, placement))
+}
+
+/// Colours pixels by the keys of `FINE` samples along a side of each.
+fn ink<const FINE: usize>(pixmap: &mut Pixmap, keys: &[u32], inks: &Inks) {
+    #[expect(clippy::cast_precision_loss, reason = "there are few samples a pixel")]
+    let samples = (FINE * FINE) as f64;
+    let width = pixmap.width() as usize;
+    let rows = keys.chunks_exact(width * FINE * FINE);
+    for (pixels, rows) in pixmap.pixels_mut().chunks_exact_mut(width).zip(rows) {
+        for (x, pixel) in pixels.iter_mut().enumerate() {
+            let mut sum = [0.0; 4];
+            for row in rows.chunks_exact(width * FINE) {
+                for key in &row[x * FINE..(x + 1) * FINE] {
+                    let own = inks.sample(*key, None);
+                    sum.iter_mut().zip(own).for_each(|(sum, part)| *sum += part);
+                }
+            }
+            // Pixels are transparent until they show something.
+            if sum[3] > 0.0 {
+                *pixel = shade::premultiplied(sum.map(|part| part / samples));
+            }
         }
     }
-    let pixels = width as usize * height as usize;
-    let nearest = (0..pixels).map(|at| samples(at).min().and_then(|key| depth_of(*key)));
-    let depths = DepthMap::of(&placement, nearest);
-    // Points have no normals.
-    finish(&mut pixmap, Some(&depths), None, false, options, space)?;
-    Ok((pixmap, depths))
 }
 
 /// Number of points for each sample of a pixel from which pictures are antialiased: with fewer, samples on the set stay
