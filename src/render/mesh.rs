@@ -111,17 +111,10 @@ pub fn write_mesh(
         let (shell, elements) = Shell::of(&walk)?;
         return shell.write(format, options, elements, out);
     }
-    let mut size = Meshed::default();
-    walk.each(
-        || Sizes(Meshed::default(), &walk),
-        |Sizes(of_span, _)| {
-            let one = std::mem::take(of_span);
-            size.elements += one.elements;
-            size.corners += one.corners;
-            size.faces += one.faces;
-            Ok(())
-        },
-    )?;
+    let size = match walk.forecast() {
+        Some(size) => size,
+        None => walk.counted()?,
+    };
     out.write_all(&encode::head(format, &options.labels.title, &size)?)?;
     for &pass in Pass::of(format) {
         // Corners of the elements before a span.
@@ -160,6 +153,46 @@ impl Walk<'_> {
         Ok(())
     }
 
+    /// Returns the size of the mesh if it is known without a walk, and within the limit of growth.
+    fn forecast(&self) -> Option<Meshed> {
+        if self.graph.counts_index() || self.graph.is_of_one_step() {
+            return None;
+        }
+        let mut forecast = self.graph.forecast()?;
+        for _ in 0..self.growth.steps {
+            if !forecast.advance() {
+                return None;
+            }
+        }
+        let elements = forecast.elements().to_u64()?;
+        let mut size = (elements <= self.growth.max_elements).then(Meshed::default)?;
+        for population in forecast.populations()? {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a whole number within the limit of growth"
+            )]
+            size.add(self, population.object, population.count as u64);
+        }
+        Some(size)
+    }
+
+    /// Returns the size of the mesh from a walk.
+    fn counted(&self) -> Result<Meshed, WalkError<io::Error>> {
+        let mut size = Meshed::default();
+        self.each(
+            || Sizes(Meshed::default(), self),
+            |Sizes(of_span, _)| {
+                let one = std::mem::take(of_span);
+                size.elements += one.elements;
+                size.corners += one.corners;
+                size.faces += one.faces;
+                Ok(())
+            },
+        )?;
+        Ok(size)
+    }
+
     /// Returns the shape of an element and its colour, if it is visible.
     fn shape(&self, element: &Element<Frame3>) -> Option<(&Shape, [u8; 3])> {
         let object = &self.graph.objects()[element.object];
@@ -188,6 +221,19 @@ impl Walk<'_> {
     }
 }
 
+impl Meshed {
+    /// Adds elements of an object, if they are visible.
+    fn add(&mut self, walk: &Walk<'_>, object: usize, count: u64) {
+        let object = &walk.graph.objects()[object];
+        if object.visible {
+            let shape = &walk.shapes[object.base_element];
+            self.elements += count;
+            self.corners += count * shape.corners().len() as u64;
+            self.faces += count * shape.faces() as u64;
+        }
+    }
+}
+
 /// Counts the faces of a span.
 struct Sizes<'a>(Meshed, &'a Walk<'a>);
 
@@ -196,13 +242,7 @@ impl Visitor<Frame3> for Sizes<'_> {
 
     fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
         let Self(size, walk) = self;
-        let object = &walk.graph.objects()[element.object];
-        if object.visible {
-            let shape = &walk.shapes[object.base_element];
-            size.elements += 1;
-            size.corners += shape.corners().len() as u64;
-            size.faces += shape.faces() as u64;
-        }
+        size.add(walk, element.object, 1);
         Ok(())
     }
 

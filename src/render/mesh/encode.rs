@@ -39,6 +39,9 @@ impl Shape {
     }
 }
 
+/// Bytes of a triangle in PLY: the number of corners, their indices, and the colour.
+const TRIANGLE: usize = 1 + 3 * 4 + 3;
+
 /// Part of a file that is encoded by one walk.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
@@ -124,56 +127,63 @@ impl Encoder {
         colour: impl Fn(usize) -> [u8; 3],
     ) -> bool {
         let Mesh { corners, faces } = &shape.mesh;
-        if self.pass != Pass::Faces {
-            let images = corners.iter().map(|corner| map.transform_point3(*corner));
-            self.images.clear();
-            self.images.extend(images);
-            if !self.images.iter().all(|image| image.as_vec3().is_finite()) {
-                return false;
-            }
-        }
+        let images = corners.iter().map(|corner| map.transform_point3(*corner));
         let is_mirrored = map.matrix3.determinant() < 0.0;
+        let mut is_finite = true;
         match self.pass {
             Pass::Triangles => {
+                self.images.clear();
+                self.images.extend(images);
+                is_finite = self.images.iter().all(|image| image.as_vec3().is_finite());
                 for face in faces {
                     self.triangle(face, is_mirrored);
                 }
             }
             Pass::Corners => {
-                for image in &self.images {
+                for image in images {
+                    is_finite &= image.as_vec3().is_finite();
                     match self.format {
-                        MeshFormat::Obj => push_line(&mut self.bytes, *image),
-                        _ => push(&mut self.bytes, *image),
+                        MeshFormat::Obj => push_line(&mut self.bytes, image),
+                        _ => push(&mut self.bytes, image),
                     }
                 }
             }
             Pass::Faces => {
                 for (number, face) in faces.iter().enumerate() {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        reason = "no more than 255 corners"
-                    )]
-                    self.bytes.push(face.len() as u8);
-                    let bytes = &mut self.bytes;
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        reason = "the number of all corners fits into 32 bits"
-                    )]
-                    let mut index = |corner: &usize| {
-                        bytes.extend((self.corners + *corner as u32).to_le_bytes());
-                    };
-                    match is_mirrored {
-                        false => face.iter().for_each(&mut index),
-                        true => face.iter().rev().for_each(&mut index),
-                    }
-                    self.bytes.extend(colour(number));
+                    self.face(face, is_mirrored, colour(number));
                 }
             }
         }
         #[expect(clippy::cast_possible_truncation, reason = "a shape has few corners")]
         let own = corners.len() as u32;
         self.corners += own;
-        true
+        is_finite
+    }
+
+    /// Adds a list of corners with its colour.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "lists have no more than 255 corners, and the number of all corners fits into 32 bits"
+    )]
+    fn face(&mut self, face: &[usize], is_mirrored: bool, colour: [u8; 3]) {
+        let before = self.corners;
+        let index = |corner: &usize| (before + *corner as u32).to_le_bytes();
+        if let &[a, b, c] = face {
+            let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
+            let mut triangle = [3; TRIANGLE];
+            for (bytes, corner) in triangle[1..].chunks_exact_mut(4).zip([a, b, c]) {
+                bytes.copy_from_slice(&index(&corner));
+            }
+            triangle[TRIANGLE - 3..].copy_from_slice(&colour);
+            self.bytes.extend_from_slice(&triangle);
+            return;
+        }
+        self.bytes.push(face.len() as u8);
+        match is_mirrored {
+            false => self.bytes.extend(face.iter().flat_map(index)),
+            true => self.bytes.extend(face.iter().rev().flat_map(index)),
+        }
+        self.bytes.extend(colour);
     }
 
     /// Adds a triangle of STL, with its normal.
@@ -202,37 +212,32 @@ impl Encoder {
 
     /// Lets faces refer to corners behind `before` others, in the way of the format.
     fn refer(&mut self, before: u32) {
+        let of = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
+        if self.format != MeshFormat::Obj {
+            // All are triangles.
+            for triangle in self.bytes.chunks_exact_mut(TRIANGLE) {
+                for index in triangle[1..TRIANGLE - 3].chunks_exact_mut(4) {
+                    index.copy_from_slice(&(before + of(index)).to_le_bytes());
+                }
+            }
+            return;
+        }
         let mut text = Vec::new();
         let mut number = itoa::Buffer::new();
         let mut at = 0;
         while let Some(&corners) = self.bytes.get(at) {
             let end = at + 1 + 4 * usize::from(corners);
-            if self.format == MeshFormat::Obj {
-                text.push(b'f');
+            text.push(b'f');
+            for index in self.bytes[at + 1..end].chunks_exact(4) {
+                // Corners are counted from 1.
+                text.push(b' ');
+                let corner = u64::from(before) + u64::from(of(index)) + 1;
+                text.extend_from_slice(number.format(corner).as_bytes());
             }
-            for index in self.bytes[at + 1..end].chunks_exact_mut(4) {
-                let own = index
-                    .iter()
-                    .rev()
-                    .fold(0, |sum, byte| sum << 8 | u32::from(*byte));
-                match self.format {
-                    MeshFormat::Obj => {
-                        // Corners are counted from 1.
-                        text.push(b' ');
-                        let corner = u64::from(before) + u64::from(own) + 1;
-                        text.extend_from_slice(number.format(corner).as_bytes());
-                    }
-                    _ => index.copy_from_slice(&(before + own).to_le_bytes()),
-                }
-            }
-            if self.format == MeshFormat::Obj {
-                text.push(b'\n');
-            }
+            text.push(b'\n');
             at = end + 3;
         }
-        if self.format == MeshFormat::Obj {
-            self.bytes = text;
-        }
+        self.bytes = text;
     }
 }
 
@@ -254,7 +259,9 @@ fn push_line(bytes: &mut Vec<u8>, point: DVec3) {
     reason = "rounded to single precision"
 )]
 fn push(bytes: &mut Vec<u8>, point: DVec3) {
-    for number in point.to_array() {
-        bytes.extend((number as f32 + 0.0).to_le_bytes());
+    let mut place = [0; 12];
+    for (bytes, number) in place.chunks_exact_mut(4).zip(point.to_array()) {
+        bytes.copy_from_slice(&(number as f32 + 0.0).to_le_bytes());
     }
+    bytes.extend_from_slice(&place);
 }

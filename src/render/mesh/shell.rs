@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::iter::repeat_n;
 
 use crate::geometry::{BEYOND, DAffine3, DVec3, Frame3, Mesh};
 use crate::grow::{Element, Visitor};
@@ -71,10 +72,19 @@ impl Shell {
             faces: shape.faces() as u64,
         };
         out.write_all(&head(format, &options.labels.title, &size)?)?;
+        let colours = match shape.faces() == self.mesh.faces.len() {
+            true => self.colours,
+            // Triangles have the colours of their faces.
+            false => {
+                let faces = self.mesh.faces.iter().zip(self.colours);
+                let triangles =
+                    faces.flat_map(|(face, colour)| repeat_n(colour, face.len().saturating_sub(2)));
+                triangles.collect()
+            }
+        };
         for &pass in Pass::of(format) {
             let mut encoder = Encoder::new(format, pass);
-            // Faces of PLY are triangulated only where one has too many corners, and then lose their colours.
-            let colour = |face: usize| self.colours.get(face).copied().unwrap_or_default();
+            let colour = |face: usize| colours.get(face).copied().unwrap_or_default();
             if !encoder.add(&shape, &DAffine3::IDENTITY, colour) {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND).into());
             }

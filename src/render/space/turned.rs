@@ -427,21 +427,23 @@ impl<'a> Builder<'a> {
         // Rows consist of pieces.
         let columns = (end[0] - corner[0]).next_multiple_of(PIECE);
         let corner = [corner[0].min(WIDTH - columns), corner[1]];
+        let rows = { self.keys.chunks_exact(WIDTH) }
+            .take(end[1])
+            .skip(corner[1]);
+        let keys = rows.flat_map(|row| &row[corner[0]..corner[0] + columns]);
+        let depths = keys.clone().map(|key| depth_in_stamp(*key));
+        let classes = keys.map(|key| match *key {
+            EMPTY => 0,
+            key => key as u16 & MAX_CLASS,
+        });
+        let nearest = depths.clone().fold(NOTHING, u16::min);
+        let has_classes = classes.clone().any(|class| class > 0);
+        // Just as much room as is needed: what is given back between thousands of stamps would be lost.
         let size = columns * (end[1] - corner[1]);
-        let mut samples = Vec::with_capacity(2 * size);
-        let mut classes = Vec::with_capacity(size);
-        for row in self.keys.chunks_exact(WIDTH).take(end[1]).skip(corner[1]) {
-            let keys = &row[corner[0]..corner[0] + columns];
-            samples.extend(keys.iter().map(|key| depth_in_stamp(*key)));
-            classes.extend(keys.iter().map(|key| match *key {
-                EMPTY => 0,
-                key => key as u16 & MAX_CLASS,
-            }));
-        }
-        let nearest = samples.iter().fold(NOTHING, |least, own| least.min(*own));
-        let has_classes = classes.iter().any(|class| *class > 0);
+        let mut samples = Vec::with_capacity(if has_classes { 2 * size } else { size });
+        samples.extend(depths);
         if has_classes {
-            samples.append(&mut classes);
+            samples.extend(classes);
         }
         TurnedStamp {
             samples: samples.into(),
