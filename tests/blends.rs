@@ -4,7 +4,7 @@ use crate::common;
 use kfrac::graph::Graph;
 use kfrac::grow::Growth;
 use kfrac::render::{self, Format, Options, Size, pixels};
-use kfrac::style::{Blend, Colour, View};
+use kfrac::style::{Blend, Colour, View, Width};
 
 /// Squares of side 2 from (0, 0) and from (1, 0), of one colour, and a square from (2, 1).
 const SQUARES: &str = "initiator:
@@ -81,6 +81,27 @@ fn overlapping_elements_are_mixed() {
     let whole = tiny_skia::Pixmap::decode_png(&png).unwrap();
     let pixel = whole.pixel(15, 15).unwrap();
     assert_eq!([pixel.red(), pixel.green(), pixel.blue()], multiplied[1]);
+}
+
+/// The inside of an outline is mixed with what lies below the element, not with the element's own fill.
+#[test]
+fn an_outline_covers_the_fill_of_its_element() {
+    for is_banded in [false, true] {
+        let mut options = options("orange", Blend::Multiply);
+        options.style.stroke = Some(Colour::parse("teal").unwrap());
+        options.style.width = Width::Pixels(6.0);
+        if is_banded {
+            options = options.in_one_piece(1).band(400);
+        }
+        options.format = Format::Png;
+        let mut png = Vec::new();
+        render::write(&graph(), &Growth::steps(0), &options, &mut png).unwrap();
+        let whole = tiny_skia::Pixmap::decode_png(&png).unwrap();
+        // The left side of the upper square, where it is alone: outside, inside, and its area.
+        let pixels = [18, 21, 30].map(|x| whole.pixel(x, 5).unwrap());
+        let colours = pixels.map(|it| [it.red(), it.green(), it.blue()]);
+        assert_eq!(colours, [[0, 128, 128], [0, 128, 128], [255, 165, 0]]);
+    }
 }
 
 #[test]

@@ -169,7 +169,13 @@ impl Outline {
             Some(rows) => draw_band(pixmap, &path, (paint, blend), rows),
         };
         if !in_pieces {
-            draw(pixmap, &paint);
+            let is_mixed = !matches!(blend, Blend::Joined | Blend::Normal);
+            match paint.stroke {
+                Some(stroke) if is_mixed && !is_long && paint.fill.is_some() => {
+                    draw_as_one(pixmap, &path, (&paint, blend), (&stroke, self.band));
+                }
+                _ => draw(pixmap, &paint),
+            }
             return;
         }
         let (width, height) = (pixmap.width(), pixmap.height());
@@ -217,6 +223,43 @@ fn draw(pixmap: &mut Pixmap, path: &tiny_skia::Path, (paint, blend): (&Paint, Bl
             none,
             None,
         );
+    }
+}
+
+/// Draws a path whose stroke covers its fill before both together are mixed with what lies below.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "casts from floats saturate, and pictures are small"
+)]
+fn draw_as_one(
+    pixmap: &mut Pixmap,
+    path: &tiny_skia::Path,
+    (paint, blend): (&Paint, Blend),
+    (stroke, band): (&Stroke, Option<[u32; 2]>),
+) {
+    let reach = stroke.pen.width as f32 / 2.0 * MITER_LIMIT + 1.0;
+    let bounds = path.bounds();
+    let rows = band.unwrap_or([0, pixmap.height()]);
+    let within = |[from, to]: [f32; 2], [least, most]: [u32; 2]| {
+        let side = |value: f32| (value as u32).clamp(least, most);
+        [side(from - reach), side((to + reach).ceil())]
+    };
+    let [left, right] = within([bounds.left(), bounds.right()], [0, pixmap.width()]);
+    let [top, bottom] = within([bounds.top(), bounds.bottom()], rows);
+    let moved = path.clone();
+    let moved = moved.transform(Transform::from_translate(-(left as f32), -(top as f32)));
+    let layer = Pixmap::new(right - left, bottom - top);
+    if let (Some(mut layer), Some(moved)) = (layer, moved) {
+        draw(&mut layer, &moved, (paint, Blend::Normal));
+        let mixed = PixmapPaint {
+            blend_mode: mode(blend),
+            ..PixmapPaint::default()
+        };
+        let at = [left, top].map(u32::cast_signed);
+        let none = Transform::identity();
+        pixmap.draw_pixmap(at[0], at[1], layer.as_ref(), &mixed, none, None);
     }
 }
 
@@ -294,14 +337,18 @@ fn draw_band(
     }
 }
 
+fn mode(blend: Blend) -> BlendMode {
+    match blend {
+        Blend::Joined | Blend::Normal => BlendMode::SourceOver,
+        Blend::Multiply => BlendMode::Multiply,
+        Blend::Add => BlendMode::Plus,
+        Blend::Screen => BlendMode::Screen,
+    }
+}
+
 fn ink(colour: Colour, blend: Blend) -> Ink<'static> {
     let mut ink = Ink {
-        blend_mode: match blend {
-            Blend::Joined | Blend::Normal => BlendMode::SourceOver,
-            Blend::Multiply => BlendMode::Multiply,
-            Blend::Add => BlendMode::Plus,
-            Blend::Screen => BlendMode::Screen,
-        },
+        blend_mode: mode(blend),
         ..Ink::default()
     };
     let [red, green, blue, opacity] = colour.rgba();
