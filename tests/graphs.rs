@@ -128,3 +128,54 @@ fn components_have_no_graph() {
     assert_ne!(status, Some(0));
     assert!(said.contains("--graph draws the graph of a rule"), "{said}");
 }
+
+/// An initiator with corners that are not those of the base element shears all elements; their lengths are then not multiplied by
+/// the factors of the generator.
+#[test]
+fn forecasts_know_sheared_initiators() {
+    let text = |third: &str| {
+        format!(
+            "space: 3\ninitiator: [{{corners: [[0, 0, 0], [1, 0, 0], {third}], up: [0, 0, 1]}}]\n\
+             base_element: triangle-tile\n\
+             generator: [{{face: [[0, 0, 0], [1/2, 0, 0], [1/4, 0, sqrt(3)/4]]}}]\n"
+        )
+    };
+    for (third, is_known) in [("[1/2, sqrt(3)/2, 0]", true), ("[0, 3, 0]", false)] {
+        let document = common::document_of(&text(third));
+        let model = document.resolve(&[]).unwrap().0;
+        let graph = model.graph_in_space(1).unwrap().unwrap();
+        let mut forecast = graph.forecast().unwrap();
+        assert!(forecast.advance());
+        assert_eq!(forecast.level().length.is_some(), is_known, "{third}");
+    }
+}
+
+/// Meshes and tables hold whole elements.
+#[test]
+fn cuts_are_for_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, option) in [("a.stl", "--cut"), ("a.glb", "--cut"), ("a.csv", "--slice")] {
+        let given = [
+            "grow",
+            "menger",
+            "--steps",
+            "1",
+            option,
+            "1,0,0=0.5",
+            "-o",
+            file,
+        ];
+        let (status, said) = common::said(folder.path(), &given);
+        assert_ne!(status, Some(0));
+        assert!(
+            said.contains(&format!("{option} applies to pictures")),
+            "{said}"
+        );
+    }
+    let given = [
+        "grow", "menger", "--steps", "1", "--mesh", "shell", "-o", "a.png",
+    ];
+    let (status, said) = common::said(folder.path(), &given);
+    assert_ne!(status, Some(0));
+    assert!(said.contains("--mesh applies to meshes"), "{said}");
+}

@@ -144,6 +144,64 @@ fn the_shell_of_a_menger_sponge_is_its_surface() {
     }
 }
 
+/// Cubes that are written as meshes, one of them mirrored, and one turned, are those that are written as boxes.
+#[test]
+fn faces_of_meshes_keep_their_sides() {
+    let mesh = "{points: [[0,0,0], [1,0,0], [1,1,0], [0,1,0], [0,0,1], [1,0,1], [1,1,1], [0,1,1]], \
+                faces: [[0,3,2,1], [4,5,6,7], [0,1,5,4], [1,2,6,5], [2,3,7,6], [3,0,4,7]]}";
+    let scene = "[cube, {object: cube, translate: [1, 0, 0]}, \
+                 {object: cube, scale: [-1, 1, 1], translate: [3, 0, 0]}, \
+                 {object: cube, rotate: {z: 180}, translate: [4, 1, 0]}]";
+    for (map, expected) in [
+        ("", 4.0),
+        (", scale: [1, -1, 1]", 4.0),
+        (", rotate: {x: 40}, scale: [1, 2, 1]", 8.0),
+    ] {
+        let text = format!(
+            "kind: instancing\nspace: 3\nobjects: {{cube: [{{mesh: {mesh}}}], row: {scene}}}\n\
+             scene: [{{object: row{map}}}]\n"
+        );
+        let model = common::document_of(&text).resolve(&[]).unwrap().0;
+        let drawn = model.drawn_in_space(Some(3), &Growth::steps(3), ColorBy::None);
+        let drawn = drawn.unwrap().unwrap();
+        let growth = Growth::steps(drawn.steps.unwrap());
+        let mesh = MeshOptions::default().format(MeshFormat::Obj);
+        let mut bytes = Vec::new();
+        write_mesh(&drawn.graph, &growth, &Options::default(), mesh, &mut bytes).unwrap();
+        let read = read_obj(&bytes);
+        let [volume, _] = sizes(&read);
+        assert!(is_near(volume, expected), "{map}: {volume}");
+    }
+}
+
+/// Triangles of a shell have the colours of the faces that they divide.
+#[test]
+fn shells_in_ply_keep_their_colours() {
+    let (options, graph) = graph("menger");
+    let mut options = options;
+    options.style.color_by = ColorBy::Normal;
+    let mesh = MeshOptions::default().format(MeshFormat::Ply).shell(true);
+    let mut bytes = Vec::new();
+    write_mesh(&graph, &Growth::steps(1), &options, mesh, &mut bytes).unwrap();
+    let ((corners, faces), colours) = read_ply(&bytes);
+    assert_eq!((faces.len(), colours.len()), (2 * 72, 2 * 72));
+    let mut of_normals: BTreeMap<String, Vec<[u8; 3]>> = BTreeMap::new();
+    for (face, colour) in faces.iter().zip(colours) {
+        let [a, b, c] = [0, 1, 2].map(|number: usize| corners[face[number]]);
+        let normal = (b - a).cross(c - a).normalize().round() + DVec3::ZERO;
+        of_normals
+            .entry(normal.to_string())
+            .or_default()
+            .push(colour);
+    }
+    assert_eq!(of_normals.len(), 6);
+    for colours in of_normals.values() {
+        assert!(colours.len() == 24 && colours.iter().all(|it| *it == colours[0]));
+    }
+    let different: std::collections::BTreeSet<_> = of_normals.values().map(|it| it[0]).collect();
+    assert!(different.len() > 2);
+}
+
 /// Returns the number of edges that faces do not pass as often in one direction as in the other.
 fn open_edges(faces: &[Vec<usize>]) -> usize {
     let mut edges: BTreeMap<[usize; 2], i32> = BTreeMap::new();

@@ -86,6 +86,22 @@ impl SpaceArguments {
         given.chain(cuts).collect()
     }
 
+    /// Returns the name of an option that confines the set, if one is given.
+    fn confines(&self) -> Option<&'static str> {
+        let slice = self.slice.map(|_| "--slice");
+        slice.or_else(|| self.cut.first().map(|_| "--cut"))
+    }
+
+    /// Refuses options that confine the set, for a file that holds whole elements or points.
+    pub(super) fn refuse_cuts(&self) -> Result<(), Failure> {
+        let Some(option) = self.confines() else {
+            return Ok(());
+        };
+        let message =
+            format!("{option} applies to pictures, and this file holds whole elements or points");
+        Err(Failure::Usage(message))
+    }
+
     /// Returns whether occlusion is asked for.
     pub(super) fn occludes(&self) -> bool {
         self.occlusion == Some(true)

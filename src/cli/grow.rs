@@ -353,6 +353,12 @@ impl Arguments {
             self.tile.refuse_in_space(&loaded)?;
             self.pyramid.refuse_in_space(&loaded)?;
             let loaded = loaded.grown(&self.growth);
+            if self.scene.is_asked() && !matches!(plan, Plan::Scene(_)) {
+                return Err(scene::mesh_of_none());
+            }
+            if let Plan::Scene(_) | Plan::Table(_) | Plan::Chaos(Some(_)) | Plan::Cloud = plan {
+                self.space.refuse_cuts()?;
+            }
             return match *plan {
                 Plan::Scene(format) => scene::write(self, &loaded, format),
                 Plan::Picture { format, .. } if self.draws_faces(format) => {

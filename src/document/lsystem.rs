@@ -80,6 +80,8 @@ pub struct ModuleDocument {
     pub character: char,
     /// Arguments.
     pub arguments: Vec<WrittenNumber>,
+    /// The first argument of `~` as text: the name of a stamp.
+    pub name: Option<String>,
     /// Source span of the module.
     pub place: Place,
 }

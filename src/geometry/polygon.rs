@@ -31,7 +31,8 @@ pub enum PolygonError {
     Crosses,
 }
 
-/// Returns the polygon with some corners, in order, as one convex solid, or as triangles if it is not convex.
+/// Returns the polygon with some corners, in order, as one convex solid, or as triangles if it is not convex. Their corners
+/// run around in the same direction.
 ///
 /// # Errors
 ///
@@ -61,7 +62,7 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<Solid>, PolygonError> {
     }
     // Of simple polygons, only a convex one is as large as its hull; the surface of that has two sides.
     if hull.corners().len() <= points.len() && (whole - area).abs() <= EQUAL * area {
-        return Ok(vec![hull]);
+        return Ok(vec![hull.facing(unit)]);
     }
     if points.len() > MAX_POINTS {
         return Err(PolygonError::Crosses);
@@ -76,7 +77,7 @@ pub fn polygon(points: &[DVec3]) -> Result<Vec<Solid>, PolygonError> {
     if (doubled.sum::<f64>() / 2.0 - area).abs() > EQUAL * area {
         return Err(PolygonError::Crosses);
     }
-    let triangle = |ear: &[usize; 3]| Solid::hull(&ear.map(|corner| points[corner]));
+    let triangle = |ear: &[usize; 3]| Solid::hull(&ear.map(|corner| points[corner])).facing(unit);
     Ok(ears.iter().map(triangle).collect())
 }
 
@@ -110,7 +111,7 @@ pub(crate) fn triangulated(points: &[DVec3]) -> Vec<Solid> {
     };
     let solids = triangles
         .iter()
-        .map(|it| Solid::hull(&it.map(|corner| points[corner])));
+        .map(|it| Solid::hull(&it.map(|corner| points[corner])).facing(normal));
     solids.filter(|it| it.corners().len() == 3).collect()
 }
 

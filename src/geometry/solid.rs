@@ -229,7 +229,27 @@ impl Solid {
             return Self::round(round, *map * self.place);
         }
         let corners = { self.corners.iter() }.map(|corner| map.transform_point3(*corner));
-        Self::hull(&corners.collect::<Vec<_>>())
+        let image = Self::hull(&corners.collect::<Vec<_>>());
+        let front = self.side.map(|side| side.normal).or_else(|| self.across());
+        match front {
+            // A vector across a plane is mapped by the cofactors; the outside of an inside stays outside.
+            Some(front) => {
+                let DMat3 {
+                    x_axis,
+                    y_axis,
+                    z_axis,
+                } = map.matrix3;
+                let cofactors = [
+                    y_axis.cross(z_axis),
+                    z_axis.cross(x_axis),
+                    x_axis.cross(y_axis),
+                ];
+                let [x, y, z] = cofactors;
+                let sign = map.matrix3.determinant().signum();
+                image.facing(DMat3::from_cols(x, y, z) * front * sign)
+            }
+            None => image,
+        }
     }
 
     /// Returns the image under a similarity.
@@ -237,12 +257,17 @@ impl Solid {
     pub fn transformed(&self, map: &DAffine3) -> Self {
         let linear = map.matrix3;
         let ratio = linear.x_axis.length();
-        let corners = { self.corners.iter() }.map(|corner| map.transform_point3(*corner));
+        let mut corners: Vec<DVec3> = { self.corners.iter() }
+            .map(|corner| map.transform_point3(*corner))
+            .collect();
+        if linear.determinant() < 0.0 && self.across().is_some() {
+            corners.reverse();
+        }
         Self {
             place: *map * self.place,
             faces: Arc::clone(&self.faces),
             round: self.round,
-            corners: corners.collect(),
+            corners: corners.into(),
             surface: self.surface * ratio * ratio,
             volume: self.volume * ratio * ratio * ratio,
             side: self.side.map(|side| Side {
@@ -259,6 +284,23 @@ impl Solid {
             side: Some(side),
             ..self
         }
+    }
+
+    /// Returns a polygon with its corners counter-clockwise from where a vector points.
+    pub(super) fn facing(self, front: DVec3) -> Self {
+        match self.across() {
+            Some(across) if across.dot(front) < 0.0 => Self {
+                corners: self.corners.iter().rev().copied().collect(),
+                ..self
+            },
+            _ => self,
+        }
+    }
+
+    /// Returns a vector across a polygon, to where its corners are counter-clockwise; `None` for another solid.
+    fn across(&self) -> Option<DVec3> {
+        let is_polygon = self.round.is_none() && self.dimension() == 2.0;
+        is_polygon.then(|| across(&self.corners))
     }
 
     /// Returns the front of a surface; `None` for a solid with an inside, and for a flat one both sides of which are
@@ -318,7 +360,7 @@ impl Solid {
     }
 
     /// Returns the faces: the corners of each, counter-clockwise from outside. A solid in a plane has one face,
-    /// counter-clockwise from its [front](Self::side), and one on a line none.
+    /// counter-clockwise from its [front](Self::side), or else as its corners are listed, and one on a line none.
     #[must_use]
     pub fn polygons(&self) -> Vec<Vec<DVec3>> {
         let hull = Self::hull(&self.corners);
@@ -328,9 +370,8 @@ impl Solid {
             0..3 => Vec::new(),
             _ if hull.place.matrix3.determinant() == 0.0 => {
                 let mut face = hull.corners.to_vec();
-                let [from, middle, to] = [face[0], face[1], face[2]];
-                let normal = (middle - from).cross(to - from);
-                if self.side.is_some_and(|side| side.normal.dot(normal) < 0.0) {
+                let front = self.side.map(|side| side.normal).or_else(|| self.across());
+                if front.is_some_and(|front| front.dot(across(&face)) < 0.0) {
                     face.reverse();
                 }
                 vec![face]
@@ -345,6 +386,16 @@ impl Solid {
             }
         }
     }
+}
+
+/// Returns the sum of the vectors across the triangles of a fan around the first corner.
+fn across(corners: &[DVec3]) -> DVec3 {
+    let Some((first, others)) = corners.split_first() else {
+        return DVec3::ZERO;
+    };
+    let triangles = others.windows(2);
+    let triangles = triangles.map(|pair| (pair[0] - *first).cross(pair[1] - *first));
+    triangles.sum()
 }
 
 /// Returns orthonormal axes along which points extend from the most to the least, and the number of those

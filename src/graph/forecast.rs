@@ -169,7 +169,7 @@ impl<'g, F: Frame> Forecast<'g, F> {
         let mut forecast = Self {
             graph,
             is_plain: graph.is_plain(),
-            is_similar: graph.is_similar(),
+            is_similar: graph.is_similar() && graph.starts_similar(),
             population: Tallies::new(graph.objects.len()),
             fractals: Count::from(graph.initiator(0).count() as u64),
             step: 0,
@@ -313,7 +313,9 @@ impl<'g, F: Frame> Forecast<'g, F> {
                 // The sum of no numbers would be -0.
                 .then(|| all().fold(0.0, |length, (_, tally)| length + tally.sums.length)),
             area: match self.outlines {
-                Outlines::ClosedElements if plain => Some(all().map(area).sum()),
+                Outlines::ClosedElements if plain && self.scales_areas() => {
+                    Some(all().map(area).sum())
+                }
                 Outlines::ClosedPaths if plain => {
                     Some((self.path_area + all().map(bulge).sum::<f64>()).abs())
                 }
@@ -322,6 +324,12 @@ impl<'g, F: Frame> Forecast<'g, F> {
             volume: (plain && self.outlines == Outlines::ClosedElements)
                 .then(|| all().map(volume).fold(0.0, |sum, volume| sum + volume)),
         }
+    }
+
+    /// Returns whether maps change all areas by one factor: in space, only similarities do.
+    fn scales_areas(&self) -> bool {
+        let is_plane = F::Point::ZERO.triangle(F::Point::ZERO).is_some();
+        is_plane || self.is_similar
     }
 
     /// Iterates over the elements of the current approximant, by object; `None` if they depend on draws.

@@ -353,6 +353,12 @@ impl<F: Frame> Graph<F> {
                 .all(|(_, instance)| instance.frame.is_similarity(instance.length))
     }
 
+    /// Returns whether the frames of all instances in which fractals start are similarities, up to rounding.
+    pub(crate) fn starts_similar(&self) -> bool {
+        let mut starts = self.starts().flat_map(|start| &start.instances);
+        !self.affine || starts.all(|it| it.frame.is_similarity(it.length))
+    }
+
     /// Returns whether any element may join the one before it.
     pub(crate) fn joins(&self) -> bool {
         let all = self.instances().map(|(_, instance)| instance);

@@ -402,8 +402,11 @@ impl TurtleFrame for Frame3 {
 
     fn levelled(compass: Compass, heading: Heading3) -> Heading3 {
         let ahead = heading.rotation(compass).x_axis;
+        /// Sine of the angle to the vertical up to which a turtle is upright, but for the rounding of its turns.
+        const UPRIGHT: f64 = 1e-12;
         // The y axis points up, against gravity.
-        match DVec3::Y.cross(ahead).try_normalize() {
+        let left = DVec3::Y.cross(ahead);
+        match left.try_normalize().filter(|_| left.length() > UPRIGHT) {
             Some(left) => Heading3::of(DMat3::from_cols(ahead, left, ahead.cross(left))),
             None => heading,
         }

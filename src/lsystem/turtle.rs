@@ -111,8 +111,10 @@ pub(crate) struct Turtle<'s, F: TurtleFrame = Frame2> {
     last: Option<(f64, i64)>,
     /// Whether the turtle stands at the end of the preceding line.
     is_down: bool,
-    /// Indices of outlines by the modules that draw them.
-    known: BTreeMap<(Vec<u32>, Vec<u64>), usize>,
+    /// Number of polygons that the present module has closed.
+    closed: u32,
+    /// Indices of outlines by the modules that draw them, and the number of polygons that the last of these closed before.
+    known: BTreeMap<(Vec<u32>, Vec<u64>, u32), usize>,
 }
 
 impl LSystem {
@@ -166,6 +168,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
             drawing: Drawing::default(),
             last: None,
             is_down: false,
+            closed: 0,
             known: BTreeMap::new(),
         }
     }
@@ -190,6 +193,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
 
     /// Performs the actions of the next module of a word.
     pub(crate) fn read(&mut self, symbol: usize, arguments: &[f64]) {
+        self.closed = 0;
         for action in &self.words.symbols[symbol].meaning {
             if self.stays(action) {
                 self.act(action, symbol, arguments);
@@ -413,7 +417,9 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
         let is_local = open.min_depth == open.depth && !F::depends_on_the_way(self.system);
         if self.open.is_empty() && is_local {
             self.remember(symbol, arguments);
-            made = *self.known.entry(self.inside.clone()).or_insert(number);
+            let (symbols, arguments) = self.inside.clone();
+            let key = (symbols, arguments, self.closed);
+            made = *self.known.entry(key).or_insert(number);
         }
         if made == number {
             let inverse = frame.map().inverse();
@@ -423,6 +429,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
             let outline = outline.unwrap_or_else(F::line);
             self.drawing.polygons.push(outline);
         }
+        self.closed += 1;
         self.put(frame, Drawn::Polygon(made), symbol, &open.state);
     }
 }

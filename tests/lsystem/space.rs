@@ -163,6 +163,14 @@ fn levelling_lays_the_left_side_flat_and_keeps_the_heading() {
     // Upwards there is nothing to level.
     let upright = frames(&model("heading: 90\naxiom: $F\nproductions: {}\n"), 0)[0];
     assert_eq!(upright.map().matrix3.x_axis, DVec3::Y);
+    // Nor after turns there and back, whose rounding does not decide about the left side.
+    for angle in [18, 25] {
+        let text = |level: &str| {
+            format!("heading: 90\naxiom: /(40)&({angle})^({angle}){level}F\nproductions: {{}}\n")
+        };
+        let [before, after] = ["", "$"].map(|level| frames(&model(&text(level)), 0)[0]);
+        assert!((before.map().matrix3.y_axis - after.map().matrix3.y_axis).length() < 1e-14);
+    }
 }
 
 /// ABOP, section 2.3.3: the turtle turns by e · |H × T| about H × T after each line.

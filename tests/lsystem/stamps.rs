@@ -31,6 +31,43 @@ fn lines(text: &str, steps: u32, seed: u64) -> Vec<[DVec2; 2]> {
     drawn.map(|(_, ends)| ends).collect()
 }
 
+/// Names are read from the text, however the file writes it.
+#[test]
+fn words_of_several_lines_and_with_escapes_place_stamps() {
+    let drawn_of = |axiom: &str| {
+        let text = format!("axiom: {axiom}\nproductions: {{F: F}}\n");
+        drawn(&graph(&system(&text), 0, 0), 0, 0)
+    };
+    let expected = drawn_of("F ~(triangle)F FF[~(triangle, 2)]F");
+    assert!(expected.len() == 7 && expected[1].0 != expected[0].0);
+    for axiom in [
+        ">-\n  F ~(triangle)F\n  FF[~(triangle, 2)]F",
+        "F ~(triangle)F\n  FF[~(triangle, 2)]F",
+        r#""F \u007e(triangle)F FF[~(\u0074riangle, 2)]F""#,
+    ] {
+        assert_eq!(drawn_of(axiom), expected, "{axiom}");
+    }
+}
+
+/// A triangle and a trapezium, by one symbol, whether the word is compiled or read.
+#[test]
+fn polygons_of_one_symbol_are_kept_apart() {
+    let text = "axiom: Z\nproductions: {A: A}\n\
+                symbols: {Z: [open, draw, {turn: 120}, draw, {turn: 120}, draw, close, {turn: 90}, \
+                open, {draw: 3}, {turn: 90}, {draw: 4}, {turn: 90}, {draw: 3}, {turn: 90}, {draw: 4}, close]}\n";
+    let system = system(text);
+    for graph in [
+        graph(&system, 0, 0),
+        Graph::of_derived_word(&system, 0, 0, MOST).unwrap(),
+    ] {
+        let areas = drawn(&graph, 0, 0).into_iter().map(|(number, _)| {
+            let area = graph.base_elements()[number].signed_area();
+            (area * 1e6).round() / 1e6
+        });
+        assert_eq!(areas.collect::<Vec<_>>(), [0.433_013, 12.0]);
+    }
+}
+
 #[test]
 fn stamps_lie_along_the_heading() {
     let text = "length: 3\naxiom: F+~(leaf)f~(dot, 2)L\nproductions: {}\n\

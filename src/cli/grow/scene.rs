@@ -40,6 +40,11 @@ impl SceneArguments {
     }
 }
 
+/// Returns the error of an option of meshes for another file.
+pub(super) fn mesh_of_none() -> Failure {
+    Failure::Usage("--mesh applies to meshes: write a .stl, .obj or .ply".into())
+}
+
 /// Writes a step of a set in space; returns the path, a summary and the number of bytes.
 pub(super) fn write(
     arguments: &Arguments,
@@ -85,8 +90,7 @@ pub(super) fn write(
     let (summary, bytes) = match format {
         SceneFormat::Nested(format) => {
             if arguments.scene.is_asked() {
-                let message = "--mesh applies to meshes: write a .stl, .obj or .ply";
-                return Err(Failure::Usage(message.into()));
+                return Err(mesh_of_none());
             }
             if !format.stays_nested() {
                 let otherwise = format!(

@@ -101,6 +101,13 @@ impl<'n> Text<'n> {
     }
 }
 
+/// Returns the text of the first of some arguments in brackets.
+fn first_argument(arguments: &str) -> Option<&str> {
+    let arguments = arguments.trim_start().strip_prefix('(')?;
+    let end = arguments.find([',', ')'])?;
+    Some(arguments[..end].trim())
+}
+
 impl<'r> WordReader<'r> {
     pub(super) fn new(reader: &'r mut Reader) -> Self {
         Self { reader, modules: 0 }
@@ -163,9 +170,11 @@ impl<'r> WordReader<'r> {
                 Some(found) => found,
                 None => return (modules, false),
             };
+            let name = (character == '~').then(|| first_argument(&text.text[end..next]));
             modules.push(ModuleDocument {
                 character,
                 arguments,
+                name: name.flatten().map(str::to_owned),
                 place: text.at(start..text.trimmed(start..next).end),
             });
             at = next;

@@ -103,8 +103,7 @@ impl<'g> Nested<'g> {
     ) -> Result<Self, RenderError> {
         refusal::check(graph, style, steps)?;
         if style.color_by == ColorBy::Normal {
-            // Instances of one object have several.
-            return Err(SpaceError::ColorBy(style.color_by).into());
+            return Err(SpaceError::FaceColours.into());
         }
         let colours = Colours::of(style, graph, steps)?;
         let start = Aspect {

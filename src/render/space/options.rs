@@ -25,6 +25,11 @@ pub enum SpaceError {
         .0.name()
     )]
     ColorBy(ColorBy),
+    /// Colours differ from face to face, and instances of one object share theirs.
+    #[error(
+        "colours by normal differ from face to face, and nested instances of an object share theirs: a .ply holds them"
+    )]
+    FaceColours,
     /// The graph does not determine the extent of the set.
     #[error("the extent of the set is not known: no bound is found by which its maps contract")]
     NoBounds,

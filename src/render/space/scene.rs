@@ -184,8 +184,7 @@ pub(super) fn has_faces(graph: &Graph<Frame3>, steps: Option<u32>) -> bool {
 
 /// Returns whether all maps of a graph are similarities, those of the initiator included.
 pub(super) fn is_similar(graph: &Graph<Frame3>) -> bool {
-    let mut start = graph.initiator(0).instances.iter();
-    graph.is_similar() && start.all(|it| it.frame.is_similarity(it.length))
+    graph.is_similar() && graph.starts_similar()
 }
 
 /// Returns the instances of the initiator.

@@ -106,7 +106,8 @@ impl Resolver<OfLSystem> {
     /// Returns the index of the symbol that places a stamp, which is added to the alphabet if it is new. An argument
     /// after the name is the length in steps.
     fn placing(&mut self, module: &ModuleDocument, name: &WrittenNumber) -> usize {
-        let known = self.stamp(name.place.text(), &name.place);
+        let written = module.name.as_deref();
+        let known = self.stamp(written.unwrap_or(name.place.text()), &name.place);
         let arity = module.arguments.len() - 1;
         if known.is_some() && arity > 1 {
             let message = "a stamp has a name, and perhaps a length in steps";
