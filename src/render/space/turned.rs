@@ -438,7 +438,6 @@ impl<'a> Builder<'a> {
         });
         let nearest = depths.clone().fold(NOTHING, u16::min);
         let has_classes = classes.clone().any(|class| class > 0);
-        // Just as much room as is needed: what is given back between thousands of stamps would be lost.
         let size = columns * (end[1] - corner[1]);
         let mut samples = Vec::with_capacity(if has_classes { 2 * size } else { size });
         samples.extend(depths);
