@@ -228,9 +228,9 @@ pub(super) fn walk_double(
     walk_in::<f64, false>(course, window, wave, tally, lookup::one_by_one)
 }
 
-/// Walks a wave in one precision; `look_up` is `SOON` if it takes less time than what it replaces.
+/// Walks a wave in one precision; looking up is `FAST` if it takes less time than walks by arbitrary maps do.
 #[inline(always)]
-fn walk_in<T: Real, const SOON: bool>(
+fn walk_in<T: Real, const FAST: bool>(
     course: &Course<'_, DAffine3>,
     window: &DepthWindow<'_>,
     wave: u64,
@@ -245,7 +245,7 @@ fn walk_in<T: Real, const SOON: bool>(
     if is_free && let Some(mut few) = Few::<_, _, true>::new(course, lens, look_up) {
         run(course, wave, &mut few, tally)
     } else if is_free
-        && SOON
+        && FAST
         && let Some(mut few) = Few::<_, _, false>::new(course, lens, look_up)
     {
         run(course, wave, &mut few, tally)

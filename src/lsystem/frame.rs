@@ -401,9 +401,9 @@ impl TurtleFrame for Frame3 {
     }
 
     fn levelled(compass: Compass, heading: Heading3) -> Heading3 {
-        let ahead = heading.rotation(compass).x_axis;
         /// Sine of the angle to the vertical up to which a turtle is upright, but for the rounding of its turns.
         const UPRIGHT: f64 = 1e-12;
+        let ahead = heading.rotation(compass).x_axis;
         // The y axis points up, against gravity.
         let left = DVec3::Y.cross(ahead);
         match left.try_normalize().filter(|_| left.length() > UPRIGHT) {
