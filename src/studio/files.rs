@@ -4,7 +4,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::catalogue::Shelf;
-use crate::kind::Kind;
 
 use super::answer::Refusal;
 
@@ -54,12 +53,12 @@ impl Roots {
         }
     }
 
-    /// Returns the path of a new file in the library, in the folder of its kind, which is made if it is missing.
-    pub(super) fn in_library(&self, name: &str, kind: Kind) -> Result<PathBuf, Refusal> {
+    /// Returns the path of a new file in the library, in the folder of its shelf, which is made if it is missing.
+    pub(super) fn in_library(&self, name: &str, shelf: Shelf) -> Result<PathBuf, Refusal> {
         let Some(library) = &self.library else {
             return Err(Refusal::wrong("there is no folder for a library"));
         };
-        let folder = library.join(Shelf::Fractals(kind).folder());
+        let folder = library.join(shelf.folder());
         let made = fs::create_dir_all(&folder);
         made.map_err(|error| Refusal::wrong(format!("'{}': {error}", folder.display())))?;
         self.allowed(&folder.join(name))

@@ -207,6 +207,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/thumb", get(pictures::thumb))
         .route("/open", post(changes::open))
         .route("/save", post(changes::save))
+        .route("/component", post(changes::component))
         .route("/export", post(pictures::export))
         .route("/complete", post(reports::completions))
         .route("/events", get(reports::events))

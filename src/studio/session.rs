@@ -334,10 +334,7 @@ impl Session {
         if !is_own && !replaces && path.exists() {
             return Err(Refusal::conflict(format!("'{}' exists", path.display())));
         }
-        let mut file = OutputFile::create(&path)?;
-        let written = std::io::Write::write_all(&mut file, self.text().as_bytes());
-        written.map_err(|error| Refusal::wrong(error.to_string()))?;
-        file.finish()?;
+        write(&path, self.text())?;
         self.saved = Some(Arc::clone(self.text()));
         self.theirs = None;
         if !is_own {
@@ -348,6 +345,21 @@ impl Session {
             self.take(checked);
         }
         Ok(path)
+    }
+
+    /// Saves a component of the rule in the library of the person, under a new name.
+    pub(super) fn save_component(&self, panel: &str, name: &str) -> Result<(), Refusal> {
+        let is_plain = |it: char| it.is_alphanumeric() || it == '-' || it == '_';
+        if name.is_empty() || !name.chars().all(is_plain) {
+            let message = "the name of a component consists of letters, digits, '-' and '_'";
+            return Err(Refusal::wrong(message));
+        }
+        let new = design::component(&self.reader(), self.good()?, &self.look, panel, name)?;
+        let path = self.roots.in_library(&format!("{name}.yaml"), new.shelf)?;
+        if path.exists() {
+            return Err(Refusal::conflict(format!("'{}' exists", path.display())));
+        }
+        write(&path, &new.text)
     }
 
     /// Returns a path from the folder in which the program was started, where it leads there.
@@ -434,4 +446,13 @@ fn is_same(a: &Path, b: &Path) -> bool {
         (Ok(a), Ok(b)) => a == b,
         _ => a == b,
     }
+}
+
+/// Writes a file, all of it or nothing.
+fn write(path: &Path, text: &str) -> Result<(), Refusal> {
+    let mut file = OutputFile::create(path)?;
+    let written = std::io::Write::write_all(&mut file, text.as_bytes());
+    written.map_err(|error| Refusal::wrong(error.to_string()))?;
+    file.finish()?;
+    Ok(())
 }

@@ -417,6 +417,16 @@ try {
   await browser.value("(() => { const field = document.querySelector('#design-rows input[aria-label=\"y of point 2\"]'); field.value = '-1/4'; field.dispatchEvent(new Event('change')); })()");
   await becomes(raised.replace("[1/2, 1/2]", "[1/2, -1/4]"), "a field of the table is written");
   await shoot("design-table");
+  await browser.value("document.querySelector('[data-panel=generator] svg').focus()");
+  await browser.key("p");
+  for (const moves of [{ ArrowRight: 2 }, { ArrowRight: 1, ArrowUp: 2 }, { ArrowRight: 1, ArrowDown: 2 }]) {
+    for (const [name, times] of Object.entries(moves)) for (let step = 0; step < times; step += 1) await browser.key(name);
+    const count = await browser.value("document.querySelectorAll('[data-panel=generator] .handle.chosen').length");
+    await browser.key(" ");
+    await browser.until(`document.querySelectorAll('[data-panel=generator] .handle.chosen').length > ${count}`);
+  }
+  await browser.key("Enter");
+  await becomes(koch.replace("[1/2, sqrt(3)/6]", "[1/2, 1/3]"), "arrow keys, Space and Enter draw a figure");
   for (let step = 0; step < 30 && (await value("#code")) !== MINE; step += 1) {
     await browser.key("z", { modifiers: 2 });
     await new Promise((resolve) => setTimeout(resolve, 80));

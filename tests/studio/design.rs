@@ -465,12 +465,186 @@ maps:
     {
         assert_eq!(line(&hand, number), unchanged);
     }
-    hand.act(json!({ "act": "add_map", "map": 0 }));
+    hand.act(json!({ "act": "add_map", "panel": "maps", "map": 0 }));
     assert_eq!(line(&hand, 1), "  - {scale: 1/2, shift: [0, 0]}");
-    hand.act(json!({ "act": "remove_map", "map": 1 }));
+    hand.act(json!({ "act": "remove_map", "panel": "maps", "map": 1 }));
     hand.undo();
     hand.undo();
     hand.undo();
+    assert_eq!(hand.text(), text);
+}
+
+/// Transforms of instances are done in the order of the file, and new ones stand where they do what the hand did.
+#[test]
+fn instances_keep_the_order_of_their_transforms() {
+    let text = "\
+kind: instancing
+objects:
+  leaf: [{polygon: [[0, 0], [1, 0], [0.5, 1]]}]
+  tree:
+    - leaf # the trunk
+    - {object: tree, scale: 1/2, rotate: 30, translate: [0, 1]} # turned
+    - {object: tree, translate: [1, 1], scale: 0.4}
+    - {object: leaf, translate: [3, 3]}
+    - {object: leaf, scale: [1/2, 1/4], translate: [5, 5]}
+scene: [tree]
+";
+    let sine = 0.75f64.sqrt();
+    let dragged = |panel: &str, from, to, more| {
+        let hand = Hand::of(text);
+        hand.drag(panel, from, to, more);
+        let new = hand.text();
+        let lines = new.lines().zip(text.lines());
+        let changed: Vec<_> = lines.filter(|(new, old)| new != old).collect();
+        assert!(changed.len() <= 1 && new.lines().count() == text.lines().count());
+        changed
+            .first()
+            .map_or(String::new(), |(new, _)| new.trim_start().to_owned())
+    };
+    let tree = |from, to| dragged("objects/tree", from, to, json!({}));
+    for (from, to, line) in [
+        (
+            [0.0, 1.0],
+            [0.5, 1.0],
+            "- {object: tree, scale: 1/2, rotate: 30, translate: [1/2, 1]} # turned",
+        ),
+        (
+            [sine / 2.0, 1.25],
+            [0.0, 1.25],
+            "- {object: tree, scale: 1/4, rotate: 90, translate: [0, 1]} # turned",
+        ),
+        // The translation is scaled, and the scale would move the instance.
+        (
+            [0.4, 0.4],
+            [0.6, 0.4],
+            "- {object: tree, translate: [3/2, 1], scale: 0.4}",
+        ),
+        ([0.8, 0.4], [0.6, 0.4], ""),
+        (
+            [0.0, 0.0],
+            [0.25, 0.0],
+            "- {object: leaf, translate: [1/4, 0]} # the trunk",
+        ),
+        (
+            [4.0, 3.0],
+            [3.0, 3.5],
+            "- {object: leaf, scale: 1/2, rotate: 90, translate: [3, 3]}",
+        ),
+        (
+            [5.5, 5.0],
+            [6.0, 5.0],
+            "- {object: leaf, scale: [1, 1/4], translate: [5, 5]}",
+        ),
+        (
+            [5.0, 5.25],
+            [4.5, 5.0],
+            "- {object: leaf, scale: [1/2, 1/2], rotate: 90, translate: [5, 5]}",
+        ),
+    ] {
+        assert_eq!(tree(from, to), line, "{from:?}");
+    }
+    let line = dragged(
+        "objects/tree",
+        [5.5, 5.0],
+        [6.0, 5.0],
+        json!({ "shift": true }),
+    );
+    assert_eq!(line, "- {object: leaf, scale: [1, 1/2], translate: [5, 5]}");
+    let line = dragged("objects/leaf/0/polygon", [0.5, 1.0], [0.5, 0.5], json!({}));
+    assert_eq!(line, "leaf: [{polygon: [[0, 0], [1, 0], [0.5, 0.5]]}]");
+    let hand = Hand::of(text);
+    hand.act(json!({ "act": "add_map", "panel": "objects/tree", "map": 1 }));
+    let copies = hand.text().matches("{object: tree, scale: 1/2").count();
+    assert_eq!(copies, 2, "{}", hand.text());
+    hand.act(json!({ "act": "remove_map", "panel": "objects/tree", "map": 2 }));
+    assert_eq!(hand.text(), text);
+}
+
+/// Of unions with transforms, the whole is moved; parameters that place an instance are solved for.
+#[test]
+fn whole_objects_and_parameters_move_instances() {
+    let text = "\
+kind: instancing
+params: {angle: {value: 0, min: -90, max: 90}}
+objects:
+  up: {union: [up, side], scale: 1/2, translate: [0, 3/4]}
+  side: {union: [side, {object: up, rotate: angle}], scale: 1/2}
+scene: [up]
+";
+    let hand = Hand::of(text);
+    hand.drag("objects", [0.0, 0.75], [0.25, 0.75], json!({}));
+    assert!(
+        hand.text()
+            .contains("up: {union: [up, side], scale: 1/2, translate: [1/4, 3/4]}")
+    );
+    hand.undo();
+    let badge = hand.drag("objects/side/union", [1.0, 0.0], [0.0, 1.0], json!({}));
+    assert!(badge.starts_with("angle = "), "{badge}");
+    assert!(hand.text().contains("rotate: angle"));
+    hand.undo();
+    assert_eq!(hand.text(), text);
+}
+
+/// Components are saved in the library of the person, and those of the library take the place of those of the file.
+#[test]
+fn components_are_saved_and_exchanged() {
+    let text = "\
+title: Mine
+params: {high: 0.3}
+initiator: segment # a line
+generators:
+  bump: # a bump
+    random: {x: \"uniform(0, 1/4)\"}
+    elements:
+      - [0, 0]
+      - {to: [1/2, x], direction: 2}
+      - [1, 0]
+  peak: [[0, 0], [1/2, high], [1, 0]]
+select: {by_index: [bump, peak]}
+";
+    let hand = Hand::of(text);
+    let save = |panel: &str, name: &str| {
+        let asked = json!({ "panel": panel, "name": name });
+        hand.page.call("POST", "/component", &asked)
+    };
+    let reply = save("generators/bump/elements", "my-bump");
+    assert_eq!(reply.status, 200, "{}", reply.error());
+    let saved = hand.page.read("library/generators/my-bump.yaml");
+    let expected = "\
+# yaml-language-server: $schema=../schema/generator.json
+title: my-bump
+random: {x: \"uniform(0, 1/4)\"}
+elements:
+  - [0, 0]
+  - {to: [1/2, x], direction: 2}
+  - [1, 0]
+";
+    assert_eq!(saved, expected);
+    // It exists; it depends on a parameter; it lies in the library; its name leads elsewhere; there is none.
+    for (panel, name, status) in [
+        ("generators/bump/elements", "my-bump", 409),
+        ("generators/peak", "my-peak", 422),
+        ("initiator", "line", 422),
+        ("generators/bump/elements", "../rules/x", 422),
+        ("generators/none", "x", 422),
+    ] {
+        assert_eq!(save(panel, name).status, status, "{panel} as {name}");
+    }
+    let exchange = |panel: &str, name: &str| {
+        hand.act(json!({ "act": "exchange", "panel": panel, "name": name }));
+    };
+    exchange("generators/peak", "my-bump");
+    exchange("initiator", "square");
+    exchange("base_element", "triangle");
+    let new = text
+        .replace("  peak: [[0, 0], [1/2, high], [1, 0]]", "  peak: my-bump")
+        .replace("initiator: segment # a line", "initiator: square # a line");
+    assert_eq!(hand.text(), new + "base_element: triangle\n");
+    let reply = hand.asked(json!({ "act": "exchange", "panel": "initiator", "name": "nothing" }));
+    assert_eq!(reply.status, 422);
+    for _ in 0..3 {
+        hand.undo();
+    }
     assert_eq!(hand.text(), text);
 }
 
@@ -489,16 +663,20 @@ fn random(hand: &Hand, draws: &mut Draws) -> u16 {
     let count = |what: &str| panel[what].as_array().map_or(0, Vec::len);
     let place = [2.0 * draws.unit() - 0.5, 2.0 * draws.unit() - 0.5];
     let points = panel["points"].as_array().unwrap();
-    let from = match points.is_empty() {
-        true => place,
-        false => {
-            let point = &points[draws.below(points.len())];
-            [point["x"].as_f64().unwrap(), point["y"].as_f64().unwrap()]
-        }
+    let maps = panel["maps"].as_array().unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let from = if !points.is_empty() {
+        let point = &points[draws.below(points.len())];
+        [number(&point["x"]), number(&point["y"])]
+    } else if !maps.is_empty() {
+        let corner = &maps[draws.below(maps.len())]["frame"][draws.below(3)];
+        [number(&corner[0]), number(&corner[1])]
+    } else {
+        place
     };
     let element = draws.below(count("elements").max(1));
     let few = count("elements") < 8;
-    match draws.below(12) {
+    match draws.below(13) {
         0..=3 => {
             let more = json!({ "alt": draws.below(4) == 0, "shift": draws.below(3) == 0, "unlocked": draws.below(2) == 0 });
             for (phase, place) in [("down", from), ("move", place)] {
@@ -520,6 +698,8 @@ fn random(hand: &Hand, draws: &mut Draws) -> u16 {
         8 => hand.asked(json!({ "act": "own", "panel": id })).status,
         9 if panels.len() < 6 => hand.asked(json!({ "act": "from_here", "step": draws.below(5), "name": format!("g{}", draws.below(9)) })).status,
         10 => hand.page.call("POST", "/undo", &json!({})).status,
+        11 if maps.len() < 6 => hand.asked(json!({ "act": "add_map", "panel": id, "map": draws.below(maps.len().max(1)) })).status,
+        11 => hand.asked(json!({ "act": "remove_map", "panel": id, "map": draws.below(maps.len()) })).status,
         _ => hand.pointer(id, "double", place, json!({})).status,
     }
 }
@@ -537,7 +717,14 @@ fn memory() -> usize {
 /// A robot makes random gestures; `KFRAC_GESTURES` is their number.
 #[test]
 fn a_robot_breaks_nothing_and_undo_brings_back_every_byte() {
-    let text = "title: Robot # a comment\r\ninitiator: segment\r\ngenerator:\r\n  # the points\r\n  - [0, 0]\r\n  - {to: [1/2, 0.3], direction: 2} # first\r\n  - [1, 0] # second\r\n";
+    let rule = "title: Robot # a comment\r\ninitiator: segment\r\ngenerator:\r\n  # the points\r\n  - [0, 0]\r\n  - {to: [1/2, 0.3], direction: 2} # first\r\n  - [1, 0] # second\r\n";
+    robot(rule, 3);
+    let structure = "kind: instancing # a comment\nobjects:\n  # the leaf\n  leaf: [{polygon: [[0, 0], [1, 0], [0.5, 1]]}]\n  tree:\n    - leaf\n    - {object: tree, scale: 1/2, translate: [0, 1]} # first\n    - {object: tree, rotate: 30, scale: 0.4}\nscene: [tree]\n";
+    robot(structure, 5);
+}
+
+/// Makes many gestures, of which at least one in `share` is done, and undoes them.
+fn robot(text: &str, share: usize) {
     let count = std::env::var("KFRAC_GESTURES")
         .ok()
         .and_then(|it| it.parse().ok())
@@ -558,7 +745,7 @@ fn a_robot_breaks_nothing_and_undo_brings_back_every_byte() {
             before = memory();
         }
     }
-    assert!(done > count / 3, "{done} of {count} gestures were done");
+    assert!(done > count / share, "{done} of {count} gestures were done");
     #[cfg(target_os = "linux")]
     if count >= 2_000 {
         let after = memory();

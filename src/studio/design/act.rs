@@ -6,6 +6,7 @@ use crate::document::node::{Node, Value};
 use crate::edit::{Edit, PathStep, find, steps};
 
 use super::super::answer::Refusal;
+use super::components::component;
 use super::nice;
 use super::scene::{Element, Panel, Role, Scene};
 
@@ -46,6 +47,11 @@ pub(in crate::studio) enum Act {
     Own {
         panel: String,
     },
+    /// Names a component of the library in place of one of the file.
+    Exchange {
+        panel: String,
+        name: String,
+    },
     /// Adds a generator: a copy of another one.
     AddGenerator {
         from: String,
@@ -74,11 +80,13 @@ pub(in crate::studio) enum Act {
     Remove {
         at: String,
     },
-    /// Adds a map to a system, or removes one.
+    /// Adds a copy of a map or an instance behind it, or removes one.
     AddMap {
+        panel: String,
         map: usize,
     },
     RemoveMap {
+        panel: String,
         map: usize,
     },
 }
@@ -152,6 +160,7 @@ impl Design<'_> {
             }
             Act::Draw { panel, points } => self.draw(panel, points),
             Act::Own { panel } => self.own(panel),
+            Act::Exchange { panel, name } => self.exchange(panel, name),
             Act::AddGenerator { from, name } => self.add_generator(from, name),
             Act::RenameGenerator { from, to } => Ok(self.rename(from, to)),
             Act::RemoveGenerator { name } => self.remove_generator(name),
@@ -167,20 +176,23 @@ impl Design<'_> {
                 }
             }]),
             Act::Remove { at } => Ok(vec![Edit::remove(steps(at))]),
-            Act::AddMap { map } => {
-                let map = self.map(*map)?;
+            Act::AddMap { panel, map } => {
+                let map = self.map(panel, *map)?;
                 let text = super::source_text(&map.node);
-                Ok(vec![match map.at.last() {
-                    Some(PathStep::Item(item)) => Edit::insert(vec!["maps".into()], item + 1, text),
-                    _ => Edit::add(vec!["maps".into()], format!("{} copy", map.name), text),
+                let mut list = map.at.clone();
+                Ok(vec![match list.pop() {
+                    Some(PathStep::Item(item)) => Edit::insert(list, item + 1, text),
+                    _ => Edit::add(list, format!("{} copy", map.name), text),
                 }])
             }
-            Act::RemoveMap { map } => Ok(vec![Edit::remove(self.map(*map)?.at.clone())]),
+            Act::RemoveMap { panel, map } => {
+                Ok(vec![Edit::remove(self.map(panel, *map)?.at.clone())])
+            }
         }
     }
 
-    fn map(&self, map: usize) -> Result<&super::maps::MapHandle, Refusal> {
-        let found = self.open("maps")?.maps.get(map);
+    fn map(&self, panel: &str, map: usize) -> Result<&super::maps::MapHandle, Refusal> {
+        let found = self.open(panel)?.maps.get(map);
         found.ok_or_else(|| Refusal::wrong("there is no such map"))
     }
 
@@ -392,20 +404,7 @@ impl Design<'_> {
     /// Writes a component that is named into the file.
     fn own(&self, panel: &str) -> Result<Vec<Edit>, Refusal> {
         let panel = self.panel(panel)?;
-        let at: Vec<PathStep> = match panel.role {
-            Role::Initiator => vec!["initiator".into()],
-            Role::BaseElement => vec!["base_element".into()],
-            _ => panel
-                .list
-                .iter()
-                .take(if panel.id.starts_with("generators/") {
-                    2
-                } else {
-                    1
-                })
-                .cloned()
-                .collect(),
-        };
+        let at = component(panel);
         let node =
             find(self.root, &at).ok_or_else(|| Refusal::wrong("there is no such component"))?;
         let text = plain(node);

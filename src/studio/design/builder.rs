@@ -1,12 +1,14 @@
 //! Scenes of designs, from the values of a file.
 
+mod structure;
+
 use std::sync::Arc;
 
 use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
 use crate::edit::{PathStep, find};
 
-use super::maps;
+use super::maps::{self, MapHandle};
 use super::names::{Basis, Names};
 use super::scene::{MOST, Panel, Role, Scene, element, json, moved, window};
 
@@ -93,16 +95,23 @@ impl<'a> Builder<'a> {
             return;
         };
         for (number, set) in sets.iter().enumerate() {
-            for form in ["segment", "polyline", "polygon"] {
-                if let Some(list) = set.get(form) {
-                    let at = ["condensation".into(), number.into(), form.into()];
-                    let title = format!("Condensation set {}: {form}", number + 1);
-                    let mut panel = self.panel(&at, &title, Role::BaseElement, list);
-                    self.fill(&mut panel, list, form == "polygon");
-                    self.scene.panels.push(panel);
-                }
-            }
+            let at = ["condensation".into(), number.into()];
+            self.shape(&at, &format!("Condensation set {}", number + 1), set);
         }
+    }
+
+    /// Shows a set that is a line or a polygon; returns whether it is one.
+    fn shape(&mut self, at: &[PathStep], title: &str, set: &Node) -> bool {
+        let forms = ["segment", "polyline", "polygon"];
+        let found = forms.iter().find_map(|form| Some((*form, set.get(form)?)));
+        let Some((form, list)) = found else {
+            return false;
+        };
+        let at = below(at, &[form.into()]);
+        let mut panel = self.panel(&at, &format!("{title}: {form}"), Role::BaseElement, list);
+        self.fill(&mut panel, list, form == "polygon");
+        self.scene.panels.push(panel);
+        true
     }
 
     fn maps(&mut self) {
@@ -110,13 +119,19 @@ impl<'a> Builder<'a> {
         let Some(node) = self.root.get("maps") else {
             return;
         };
-        let mut panel = self.panel(&at, "Maps", Role::Maps, node);
-        panel.maps = maps::handles(node, &at, &self.names);
-        if panel.maps.len() > MOST / 4 {
-            panel.why = Some(format!("{} maps are too many to drag", panel.maps.len()));
+        let handles = maps::handles(node, &at, &self.names);
+        self.parallelograms(&at, "Maps", node, handles);
+    }
+
+    /// Shows maps or instances as parallelograms.
+    fn parallelograms(&mut self, at: &[PathStep], title: &str, node: &Node, maps: Vec<MapHandle>) {
+        let mut panel = self.panel(at, title, Role::Maps, node);
+        if maps.len() > MOST / 4 {
+            panel.why = Some(format!("{} maps are too many to drag", maps.len()));
         }
-        let corners = panel.maps.iter().flat_map(maps::MapHandle::corners);
+        let corners = maps.iter().flat_map(MapHandle::corners);
         panel.window = window(corners.chain([[0.0, 0.0], [1.0, 1.0]]));
+        panel.maps = maps;
         self.scene.panels.push(panel);
     }
 
@@ -284,7 +299,8 @@ impl<'a> Builder<'a> {
             (more.direction, more.fertile, more.visible) = (1, true, true);
             panel.elements.push(more);
         }
-        let is_set = panel.list.first() == Some(&"condensation".into());
+        let sets = ["condensation", "objects", "scene"].map(|key| Some(PathStep::from(key)));
+        let is_set = sets.contains(&panel.list.first().cloned());
         if panel.role != Role::Initiator && !is_set {
             let ends = [[0.0, 0.0], [1.0, 0.0]];
             for point in &mut panel.points {

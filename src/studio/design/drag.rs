@@ -386,6 +386,10 @@ impl Drag {
     ) -> Result<Edits, Refusal> {
         let handle = &self.panel.maps[map];
         let names = &self.scene.names;
+        if handle.basis == Basis::Drawn && !event.alt {
+            let why = format!("{} is drawn at random: Alt writes numbers", handle.title());
+            return Ok((Vec::new(), Some(why)));
+        }
         if handle.basis != Basis::Numbers && !event.alt {
             let which = match grip {
                 Grip::Body => 0,
@@ -394,7 +398,7 @@ impl Drag {
             };
             let solved = self.solved(session, event, to, &|names| {
                 let unit = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]][which];
-                let (affine, _) = maps::affine(&handle.node, names)?;
+                let (affine, _) = handle.map(names)?;
                 Some(affine.transform_point2(unit.into()).to_array())
             })?;
             return Ok(written(session, solved));
@@ -403,9 +407,16 @@ impl Drag {
             true => event.snapping().snap(&self.panel, None, None, to).place,
             false => to,
         };
-        let edits = maps::edits(handle, names, grip, snapped, event.shift, event.pixel);
-        let edits = edits.ok_or_else(|| Refusal::wrong("no map of this form lies there"))?;
-        Ok((edits, Some(format!("map {}: {}", handle.name, handle.form))))
+        let edits = handle.edits(names, grip, snapped, event.shift, event.pixel);
+        let Some(edits) = edits else {
+            let why = format!(
+                "{} is written by {}: in this order, they have no map that lies there",
+                handle.title(),
+                handle.form
+            );
+            return Ok((Vec::new(), Some(why)));
+        };
+        Ok((edits, Some(format!("{}: {}", handle.title(), handle.form))))
     }
 
     /// Solves for the parameters for which something lies at a place.

@@ -1,4 +1,4 @@
-//! Maps of systems as parallelograms: images of the unit square.
+//! Maps of systems, and instances of structures, as parallelograms: images of the unit square.
 
 use serde::Serialize;
 
@@ -7,8 +7,21 @@ use crate::edit::{Edit, PathStep};
 use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::ifs;
 
+use super::act::below;
 use super::names::{Basis, Names};
-use super::nice;
+use super::{instances, nice};
+
+/// Keys of maps, in the order in which they are named.
+const FORMS: [&str; 8] = [
+    "matrix",
+    "scale",
+    "rotate",
+    "times",
+    "conjugate",
+    "translate",
+    "shift",
+    "fixed",
+];
 
 /// A map with its handles.
 #[derive(Clone, Debug, Serialize)]
@@ -20,6 +33,8 @@ pub(super) struct MapHandle {
     pub(super) weight: Option<f64>,
     /// Forms that it is written in, as `scale`, `rotate` and `shift`.
     pub(super) form: String,
+    /// Whether it is an instance of a structure, whose transforms are done in the order of the file.
+    pub(super) is_instance: bool,
     #[serde(skip)]
     pub(super) at: Vec<PathStep>,
     #[serde(skip)]
@@ -27,6 +42,56 @@ pub(super) struct MapHandle {
 }
 
 impl MapHandle {
+    /// Creates the handle of a map that is written by a node at a place.
+    pub(super) fn of(
+        name: String,
+        (map, basis): (DAffine2, Basis),
+        node: &Node,
+        at: Vec<PathStep>,
+    ) -> Self {
+        let image = |x, y| map.transform_point2(DVec2::new(x, y)).to_array();
+        Self {
+            name,
+            frame: [image(0.0, 0.0), image(1.0, 0.0), image(0.0, 1.0)],
+            basis,
+            weight: None,
+            form: String::new(),
+            is_instance: false,
+            at,
+            node: node.clone(),
+        }
+    }
+
+    /// Returns the map for other values of names, and what it depends on.
+    pub(super) fn map(&self, names: &Names) -> Option<(DAffine2, Basis)> {
+        match self.is_instance {
+            true => instances::placed(&self.node, names),
+            false => affine(&self.node, names),
+        }
+    }
+
+    /// Returns the edits that write the map of which a grip has been dragged to a place, in the keys in which it is written;
+    /// `similar` keeps its angles. `None` if no map of that form lies there.
+    pub(super) fn edits(
+        &self,
+        names: &Names,
+        grip: Grip,
+        to: [f64; 2],
+        similar: bool,
+        pixel: f64,
+    ) -> Option<Vec<Edit>> {
+        match self.is_instance {
+            true => instances::edits(self, names, grip, to, similar, pixel),
+            false => edits(self, names, grip, to, similar, pixel),
+        }
+    }
+
+    /// Returns the name as the page shows it.
+    pub(super) fn title(&self) -> String {
+        let what = if self.is_instance { "instance" } else { "map" };
+        format!("{what} {}", self.name)
+    }
+
     /// Returns the corners of the parallelogram.
     pub(super) fn corners(&self) -> [[f64; 2]; 4] {
         let [o, x, y] = self.frame;
@@ -51,40 +116,51 @@ pub(super) fn handles(node: &Node, at: &[PathStep], names: &Names) -> Vec<MapHan
         _ => Vec::new(),
     };
     let handle = |(step, node): (PathStep, &Node)| {
-        let (map, basis) = affine(node, names)?;
-        let forms = [
-            "matrix",
-            "scale",
-            "rotate",
-            "times",
-            "conjugate",
-            "translate",
-            "shift",
-            "fixed",
-        ];
-        let written = forms.iter().filter(|key| node.get(key).is_some());
-        let image = |x, y| map.transform_point2(DVec2::new(x, y)).to_array();
+        let name = match &step {
+            PathStep::Item(number) => (number + 1).to_string(),
+            PathStep::Key(name) => name.clone(),
+        };
+        let weight = node.get("weight").and_then(|node| names.value(node));
         Some(MapHandle {
-            name: match &step {
-                PathStep::Item(number) => (number + 1).to_string(),
-                PathStep::Key(name) => name.clone(),
-            },
-            frame: [image(0.0, 0.0), image(1.0, 0.0), image(0.0, 1.0)],
-            basis,
-            weight: node
-                .get("weight")
-                .and_then(|node| names.value(node))
-                .map(|it| it.0),
-            form: written.copied().collect::<Vec<_>>().join(", "),
-            at: at.iter().cloned().chain([step]).collect(),
-            node: node.clone(),
+            weight: weight.map(|it| it.0),
+            form: forms(node, &FORMS),
+            ..MapHandle::of(name, affine(node, names)?, node, below(at, step))
         })
     };
     entries.into_iter().filter_map(handle).collect()
 }
 
+/// Returns the keys of a mapping in which something is written, of several.
+pub(super) fn forms(node: &Node, keys: &[&str]) -> String {
+    let written = keys.iter().filter(|key| node.get(key).is_some());
+    written.copied().collect::<Vec<_>>().join(", ")
+}
+
+/// Returns a number as it is written.
+pub(super) fn number(value: f64, pixel: f64) -> String {
+    nice::written(value, nice::expression(value).is_some(), pixel / 4.0)
+}
+
+/// Returns a vector as it is written.
+pub(super) fn two(value: DVec2, pixel: f64) -> String {
+    format!("[{}, {}]", number(value.x, pixel), number(value.y, pixel))
+}
+
+/// Returns the matrix with some rows, and what it depends on.
+pub(super) fn rows(node: &Node, names: &Names) -> Option<(DMat2, Basis)> {
+    let Value::Sequence(rows) = &node.value else {
+        return None;
+    };
+    let rows: Option<Vec<_>> = rows.iter().map(|row| names.point(row)).collect();
+    let [(a, one), (b, other)] = rows?[..] else {
+        return None;
+    };
+    let matrix = DMat2::from_cols(DVec2::new(a[0], b[0]), DVec2::new(a[1], b[1]));
+    Some((matrix, one.max(other)))
+}
+
 /// Returns a number, or a pair of equal or different ones.
-fn pair(node: &Node, names: &Names) -> Option<(DVec2, Basis)> {
+pub(super) fn pair(node: &Node, names: &Names) -> Option<(DVec2, Basis)> {
     match names.value(node) {
         Some((value, basis)) => Some((DVec2::splat(value), basis)),
         None => names.point(node).map(|(pair, basis)| (pair.into(), basis)),
@@ -92,7 +168,7 @@ fn pair(node: &Node, names: &Names) -> Option<(DVec2, Basis)> {
 }
 
 /// Returns a map of the plane as it is written, and what it depends on.
-pub(super) fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
+fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
     let mut basis = Basis::Numbers;
     let mut take = |key: &str| match node.get(key) {
         None => Some(None),
@@ -109,16 +185,10 @@ pub(super) fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
         Some(Value::Bool(true))
     );
     let linear = match (node.get("matrix"), times) {
-        (Some(rows), _) => {
-            let Value::Sequence(rows) = &rows.value else {
-                return None;
-            };
-            let rows: Option<Vec<_>> = rows.iter().map(|row| names.point(row)).collect();
-            let [(a, one), (b, other)] = rows?[..] else {
-                return None;
-            };
-            basis = basis.max(one).max(other);
-            DMat2::from_cols(DVec2::new(a[0], b[0]), DVec2::new(a[1], b[1]))
+        (Some(node), _) => {
+            let (matrix, own) = rows(node, names)?;
+            basis = basis.max(own);
+            matrix
         }
         (None, Some(s)) if conjugates => ifs::complex_conjugate(s, DVec2::ZERO).matrix2,
         (None, Some(s)) => ifs::complex(s, DVec2::ZERO).matrix2,
@@ -146,7 +216,7 @@ pub(super) enum Grip {
 }
 
 /// Returns the map of which a grip has been dragged to a place; `similar` keeps its angles.
-fn dragged(old: DAffine2, grip: Grip, to: DVec2, similar: bool) -> DAffine2 {
+pub(super) fn dragged(old: DAffine2, grip: Grip, to: DVec2, similar: bool) -> DAffine2 {
     let mut new = old;
     let column = match grip {
         Grip::Body => {
@@ -171,7 +241,7 @@ fn dragged(old: DAffine2, grip: Grip, to: DVec2, similar: bool) -> DAffine2 {
 /// Returns the edits that write a dragged map in the keys in which it is written.
 ///
 /// A map with one factor, or one complex factor, stays a similarity.
-pub(super) fn edits(
+fn edits(
     handle: &MapHandle,
     names: &Names,
     grip: Grip,
@@ -186,8 +256,8 @@ pub(super) fn edits(
     let new = dragged(old, grip, to.into(), keeps);
     let step =
         |key: &str| -> Vec<PathStep> { handle.at.iter().cloned().chain([key.into()]).collect() };
-    let number = |value: f64| nice::written(value, nice::expression(value).is_some(), pixel / 4.0);
-    let two = |value: DVec2| format!("[{}, {}]", number(value.x), number(value.y));
+    let number = |value: f64| number(value, pixel);
+    let two = |value: DVec2| two(value, pixel);
     let put = |key: &str, value: String| match node.get(key) {
         Some(_) => Edit::set(step(key), value),
         None => Edit::add(handle.at.clone(), key, value),

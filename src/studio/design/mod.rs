@@ -1,4 +1,4 @@
-//! Design by hand: initiators, generators, base elements and maps as points that a hand drags.
+//! Design by hand: initiators, generators, base elements, maps and instances as points that a hand drags.
 //!
 //! This is the first state of Kaandorp's system (CWI CS-R8706, 1987, section 2.3). Every gesture becomes
 //! [edits](crate::edit) of the text, whose comments and layout stay; a gesture that would lead to a text with mistakes is
@@ -7,17 +7,21 @@
 //! | module | content |
 //! |---|---|
 //! | `scene` | points and elements, with the places where they are written |
-//! | `maps` | maps of systems as parallelograms |
+//! | `maps` | maps of systems, and instances of structures, as parallelograms |
+//! | `instances` | transforms of instances, in the order of the file |
 //! | `names` | values of numbers, and what they depend on |
 //! | `drag` | a hand that drags: preview, end, and cancelling |
 //! | `snap`, `nice` | where a point comes to rest, and how it is written |
 //! | `solve` | parameters for which a point lies where it is dragged |
 //! | `act` | other gestures |
+//! | `components` | components that are exchanged and saved |
 
 mod act;
 mod builder;
+mod components;
 mod drag;
 mod generators;
+mod instances;
 mod maps;
 mod names;
 mod nice;
@@ -35,6 +39,7 @@ use super::answer::Refusal;
 use super::good::{Checked, Good, Reader};
 use super::look::Look;
 pub(super) use act::Act;
+pub(super) use components::NewComponent;
 pub(super) use drag::{Pointer, pointer};
 use names::Names;
 pub(super) use scene::Scene;
@@ -79,6 +84,7 @@ pub(super) fn scene(good: &Good, look: &Look) -> Scene {
         _ if good.is_in_space => "files in space are designed in their text",
         Kind::Rule => return builder.rule(),
         Kind::Ifs => return builder.system(),
+        Kind::Instancing => return builder.structure(),
         _ => "files of this kind are designed in their text",
     };
     Scene {
@@ -105,6 +111,26 @@ pub(super) fn acted(
     edited(reader, text, &design.edits(act)?)
 }
 
+/// Returns the file of a component, with a title. It depends on nothing else in the rule.
+pub(super) fn component(
+    reader: &Reader,
+    good: &Good,
+    look: &Look,
+    panel: &str,
+    title: &str,
+) -> Result<NewComponent, Refusal> {
+    let scene = scene(good, look);
+    let raw = raw(good)?;
+    let design = act::Design {
+        scene: &scene,
+        root: &good.node,
+        raw: &raw,
+    };
+    let new = design.saved(panel, title)?;
+    checked(reader, new.rule.clone())?;
+    Ok(new)
+}
+
 /// Returns the values of the file alone.
 fn raw(good: &Good) -> Result<Node, Refusal> {
     Node::parse(&good.source).map_err(|_| Refusal::wrong("the text has mistakes"))
@@ -113,7 +139,12 @@ fn raw(good: &Good) -> Result<Node, Refusal> {
 /// Returns an edited text, which has no mistakes.
 fn edited(reader: &Reader, text: &str, edits: &[Edit]) -> Result<Checked, Refusal> {
     let new = edit(text, edits).map_err(|error| Refusal::wrong(error.to_string()))?;
-    let checked = reader.check(new.into());
+    checked(reader, new)
+}
+
+/// Returns a text that has no mistakes.
+fn checked(reader: &Reader, text: String) -> Result<Checked, Refusal> {
+    let checked = reader.check(text.into());
     if checked.good.is_none() {
         let first = checked.problems.iter().find(|it| it.is_error());
         let message = first.map_or_else(

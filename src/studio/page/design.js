@@ -8,6 +8,7 @@ let held = null; // panel and window while a pointer is down
 let drawing = null; // panel and points of a polyline that is drawn
 let waiting = null; // the latest movement that is not sent yet
 let isSending = false;
+let components = null; // those of the library, once they are asked for
 
 const svg = (name, properties = {}, ...children) => {
   const element = document.createElementNS(SVG, name);
@@ -140,12 +141,51 @@ async function cancel(id) {
   await send({ panel: id, x: 0, y: 0, pixel: 1, phase: "cancel" });
 }
 
+// Components.
+
+/** Whether a panel shows a component of a rule, and no further part of one. */
+const isComponent = ({ role, id }) => role === "initiator" || (role === "generator" && !/parts\/[1-9]/.test(id)) || id === "base_element";
+async function load() {
+  components = [];
+  ({ entries: components } = await page.json("GET", "/library"));
+  show();
+}
+/** A choice of the components of a kind, of which one takes the place of what a panel shows. */
+function exchange(kind, panel, label) {
+  if (!components) load();
+  const { make } = page;
+  const names = components.filter((it) => it.is_component && it.kind === kind);
+  return make("select", { className: "small", "aria-label": label, onchange: (event) => event.target.value && act({ act: "exchange", panel, name: event.target.value }) }, make("option", { value: "" }, "From the library…"), ...names.map((it) => make("option", { value: it.name }, it.title || it.name)));
+}
+/** Uses a component of the library in the rule. */
+export function use({ kind, name }) {
+  const panel = kind === "generator" ? scene()?.panels.find((it) => it.role === "generator")?.id ?? kind : kind;
+  return act({ act: "exchange", panel, name });
+}
+async function saveComponent(panel, name) {
+  try {
+    page.take(await page.json("POST", "/component", { tab: page.tab, panel, name }));
+    components = null;
+    page.forget();
+    show();
+    say(`Saved in your library as '${name}'.`);
+    return true;
+  } catch (error) {
+    say(error.message);
+    return false;
+  }
+}
+
 function fill(block, panel) {
   const isDraw = drawing?.panel === panel.id;
   const head = [page.make("h3", {}, panel.title)];
   const generator = panel.role === "generator" ? /^generators\/([^/]+)/.exec(panel.id)?.[1] ?? "generator" : null;
   if (panel.why?.startsWith("it is written in")) head.push(button("Make it mine", () => act({ act: "own", panel: panel.id }), { title: panel.why }));
   if (panel.role !== "maps") head.push(button(isDraw ? "Done" : "Draw", () => (isDraw ? finish() : begin(panel.id)), { title: "Draw a polyline (P, clicks, Enter)", "aria-pressed": String(isDraw) }));
+  if (isComponent(panel)) {
+    head.push(exchange(panel.role, panel.id, `${panel.title}: from the library`));
+    if (!panel.why) head.push(button("Save…", () => name("Save as a component", "mine", (to) => saveComponent(panel.id, to)), { title: "Save as a component, in your library" }));
+  }
   if (generator) {
     head.push(button("Copy", () => name("A further generator", generator === "generator" ? "second" : `${generator}-2`, (to) => act({ act: "add_generator", from: generator === "generator" ? "first" : generator, name: to })), { title: "Add a generator: a copy of this one" }));
     if (scene().generators.length > 1) head.push(
@@ -161,7 +201,7 @@ function fill(block, panel) {
   drawn.dataset.view = `${x0} ${y0} ${x1 - x0} ${y1 - y0}`;
   drawn.setAttribute("viewBox", `${x0} ${-y1} ${x1 - x0} ${y1 - y0}`);
   drawn.style.height = `${high}px`;
-  const count = panel.maps.length ? `${panel.maps.length} maps` : `${panel.points.length} points, ${panel.elements.length} elements`;
+  const count = panel.maps.length ? `${panel.maps.length} ${panel.maps[0].is_instance ? "instances" : "maps"}` : `${panel.points.length} points, ${panel.elements.length} elements`;
   drawn.setAttribute("aria-label", `${panel.title}: ${count}. Full stop and comma choose a handle, arrow keys move it.`);
   const pixel = Math.max((x1 - x0) / wide, (y1 - y0) / high);
   const parts = [...grid(panel, pixel, [x0, y0, x1, y1])];
@@ -239,9 +279,12 @@ function chosenBox() {
   } else {
     const it = panel.maps[index];
     const at = id + "/" + (Number.isNaN(+it.name) ? it.name : it.name - 1);
-    box.replaceChildren(make("b", {}, `Map ${it.name}`), make("span", { className: "quiet" }, it.form), field("weight", it.weight ?? "", (value) => act(value ? { act: "set", at: `${at}/weight`, value } : { act: "remove", at: `${at}/weight` })), button("Copy", () => act({ act: "add_map", map: index })), button("Delete", () => act({ act: "remove_map", map: index })));
+    const weight = it.is_instance ? [] : [field("weight", it.weight ?? "", (value) => act(value ? { act: "set", at: `${at}/weight`, value } : { act: "remove", at: `${at}/weight` }))];
+    const copies = id === "objects" ? [] : [button("Copy", () => act({ act: "add_map", panel: id, map: index })), button("Delete", () => act({ act: "remove_map", panel: id, map: index }))];
+    box.replaceChildren(make("b", {}, titled(it)), make("span", { className: "quiet" }, it.form), ...weight, ...copies);
   }
 }
+const titled = (map) => `${map.is_instance ? "Instance" : "Map"} ${map.name}`;
 const field = (label, value, act, more = {}) => page.make("label", {}, `${label} `, page.make("input", { type: "text", value, autocomplete: "off", spellcheck: false, onchange: (event) => { event.target.blur(); act(event.target.value.trim()); }, ...more }));
 function coordinates(id, it, index) {
   const write = (axis) => (value) => act({ act: "place", panel: id, point: index, x: axis ? it.text[0] : value, y: axis ? value : it.text[1] });
@@ -265,7 +308,7 @@ function table() {
     make("h3", {}, panel.title),
     ...panel.points.map((it, index) => make("div", { className: "row wrap" }, make("span", {}, `Point ${index}`), ...coordinates(panel.id, it, index))),
     ...(panel.role === "generator" || panel.role === "initiator" ? panel.elements.map((it, index) => make("div", { className: "row wrap" }, make("span", {}, `Element ${index + 1}`), ...elementFields(panel.id, it, index))) : []),
-    ...panel.maps.map((it) => make("div", { className: "row wrap" }, make("span", {}, `Map ${it.name}: ${it.form}`))),
+    ...panel.maps.map((it) => make("div", { className: "row wrap" }, make("span", {}, `${titled(it)}: ${it.form || "as it is"}`))),
   ]);
   $("design-rows").replaceChildren(...rows);
 }
@@ -297,6 +340,7 @@ function selection() {
     const write = { by_index: `{by_index: [${all.join(", ")}]}`, at_random: `{at_random: {${all.map((it) => `${it}: 1`).join(", ")}}}`, when: `[{when: odd(step), use: ${all[1]}}, {use: ${all[0]}}]` };
     parts.push(make("div", { className: "row wrap" }, ...[["by_index", "By index"], ["at_random", "At random"], ["when", "By condition"]].map(([kind, text]) => button(text, () => set("select", write[kind])))));
   }
+  if (!scene().panels.some((it) => it.role === "base_element")) parts.push(make("label", {}, "Base element ", exchange("base_element", "base_element", "Base element from the library")));
   parts.push(button("From here on another rule", () => name("From here on another rule", generators.length ? `rule-${generators.length + 1}` : "second", (to) => act({ act: "from_here", step: page.stepNow(), name: to })), { title: "Elements of later steps are replaced by a copy, which can be changed" }));
   box.replaceChildren(...parts);
 }
@@ -310,8 +354,8 @@ function name(title, value, act) {
 // Drawing.
 
 function begin(id) {
-  drawing = { panel: id, points: [], at: [], next: null };
-  say("Click the points one after the other; Enter ends, Esc cancels.");
+  drawing = { panel: id, points: [], at: [], next: null, cursor: [0, 0] };
+  say("Click the points one after the other, or move with the arrow keys and press Space; Enter ends, Esc cancels.");
   show();
   document.querySelector(`[data-panel="${CSS.escape(id)}"] svg`)?.focus();
 }
@@ -322,6 +366,7 @@ async function place(at) {
   if (!next?.place || drawing !== mine) return;
   mine.points.push(next.place.text);
   mine.at.push(next.place.at);
+  mine.cursor = next.place.at;
   show();
 }
 async function finish() {
@@ -345,16 +390,24 @@ async function keys(event) {
   const panel = panelOf(id);
   const own = chosen?.panel === id ? chosen : null;
   const stop = () => { event.preventDefault(); event.stopPropagation(); };
+  const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+  const by = (event.shiftKey ? 0.1 : 1) / Math.max(1, +$("design-parts").value || 12);
   if (drawing) {
     if (event.key === "Enter") return stop(), finish();
     if (event.key === "Escape") return stop(), (drawing = null), say(""), show();
     if (event.key === "Backspace") return stop(), drawing.points.pop(), drawing.at.pop(), show();
+    const [x, y] = drawing.cursor;
+    if (event.key === " ") return stop(), place({ panel: id, x, y, pixel: by / 100 });
+    if (step) {
+      stop();
+      drawing.cursor = drawing.next = [x + by * step[0], y + by * step[1]];
+      say(`Space draws a point at ${drawing.cursor.map((it) => +it.toFixed(4)).join(", ")}.`);
+      return show();
+    }
   }
-  const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
   if (step && own && own.what !== "element") {
     stop();
     const from = own.what === "point" ? [panel.points[own.index].x, panel.points[own.index].y] : panel.maps[own.index].frame[0];
-    const by = (event.shiftKey ? 0.1 : 1) / Math.max(1, +$("design-parts").value || 12);
     const at = (sign) => ({ panel: id, x: from[0] + sign * step[0] * by, y: from[1] + sign * step[1] * by, pixel: by / 100, alt: event.altKey });
     held = { panel: id, view: block.lastElementChild.dataset.view };
     await settled();
@@ -366,11 +419,11 @@ async function keys(event) {
   }
   const letter = event.key.toLowerCase();
   const handles = [...panel.points.map((_, index) => ({ panel: id, what: "point", index })), ...panel.elements.map((_, index) => ({ panel: id, what: "element", index })), ...panel.maps.map((_, index) => ({ panel: id, what: "map", index }))];
-  const by = { ".": 1, ",": -1 }[letter];
-  if (by && handles.length) {
+  const next = { ".": 1, ",": -1 }[letter];
+  if (next && handles.length) {
     stop();
     const now = handles.findIndex((it) => own && it.what === own.what && it.index === own.index);
-    chosen = handles[(now + by + handles.length) % handles.length];
+    chosen = handles[(now + next + handles.length) % handles.length];
     const it = { point: panel.points, element: panel.elements, map: panel.maps }[chosen.what][chosen.index];
     say(`${chosen.what} ${chosen.index + (chosen.what === "point" ? 0 : 1)}${it.text ? `: [${it.text.join(", ")}]` : ""}`);
     return show();
@@ -399,6 +452,6 @@ async function keys(event) {
     if (event.key === "Delete") return stop(), act({ act: "join", panel: id, point: it.to });
   } else if (event.key === "Delete") {
     stop();
-    await act(own.what === "map" ? { act: "remove_map", map: index } : { act: "join", panel: id, point: index });
+    await act(own.what === "map" ? { act: "remove_map", panel: id, map: index } : { act: "join", panel: id, point: index });
   }
 }

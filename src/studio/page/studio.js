@@ -823,12 +823,13 @@ function list() {
   const text = $("search").value.trim().toLowerCase();
   const fits = (it) => [it.name, it.title ?? "", ...it.tags].some((word) => word.toLowerCase().includes(text)) && it.id.startsWith($("shelf").value) && (!wantedTag || it.tags.includes(wantedTag));
   const found = entries.filter(fits);
+  const isRule = state.design?.panels.some((it) => it.role === "initiator");
   sight.disconnect();
   waiting.length = 0;
   $("entries").replaceChildren(...found.map((it) => {
     const image = make("img", { alt: "", "data-id": it.id });
     sight.observe(image);
-    return make("li", {}, make("button", { type: "button", title: [it.title, it.source].filter(Boolean).join("\n"), onclick: () => openEntry(it.id) }, image, make("span", {}, it.title || it.name), make("span", { className: "quiet" }, it.is_component ? `${it.kind.replace("_", " ")} ${it.name}` : it.name)));
+    return make("li", {}, make("button", { type: "button", title: [it.title, it.source].filter(Boolean).join("\n"), onclick: () => openEntry(it.id) }, image, make("span", {}, it.title || it.name), make("span", { className: "quiet" }, it.is_component ? `${it.kind.replace("_", " ")} ${it.name}` : it.name)), ...(it.is_component && isRule ? [make("button", { type: "button", className: "use", title: `Use this ${it.kind.replace("_", " ")} in the rule`, "aria-label": `Use ${it.title || it.name}`, onclick: () => loaded().then((design) => design.use(it)) }, "Use")] : []));
   }));
   if (!found.length) $("entries").append(make("li", { className: "quiet" }, "Nothing has this in its name, title or tags."));
 }
@@ -934,7 +935,7 @@ function exports(heading, formats, more, note = "") {
 $("export").onclick = () => exports("Export", state.isInSpace ? ["png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json"] : ["svg", "png", "pdf", "dxf", "csv", "json"], [[tick({ name: "plot" }), " Single strokes, for a plotter"]]);
 $("film-export").onclick = () => film.frames().then(({ command }) => exports("Export the film", ["gif", "apng", "y4m", "mp4", "webm"], [], command), (error) => say(error.message));
 $("help").onclick = () => {
-  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction; fertile, visible, connected, use, base element; split; remove"], ["P, G, Esc", "in a figure: draw; grid; cancel"], ["?", "these keys"]];
+  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction; fertile, visible, connected, use, base element; split; remove"], ["P, arrows, Space, Enter", "in a figure: draw, go to a point, place it, end"], ["G, Esc", "in a figure: grid; cancel"], ["?", "these keys"]];
   ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
 };
 $("copy").onclick = async () => {
@@ -958,7 +959,7 @@ $("redo").onclick = () => travel("/redo");
 let design = null;
 /** Returns the code of the figures of a design, which is loaded when they are seen first. */
 const loaded = () => (design ??= import("./design.js").then(
-  (it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state }), it),
+  (it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state, forget: () => (entries = null) }), it),
   (error) => { design = null; throw error; },
 ));
 /** Shows the figures of the design, if its tab is open. */

@@ -6,6 +6,8 @@ use axum::extract::{Query, State};
 use serde::Deserialize;
 use serde_json::json;
 
+use crate::catalogue::Shelf;
+
 use super::super::answer::Refusal;
 use super::super::{library, vary, write};
 use super::{Answer, Shared, Tab, apart};
@@ -173,7 +175,10 @@ pub(super) async fn save(State(app): Shared, Json(asked): Json<Save>) -> Answer 
         let path = match (library, path) {
             (false, path) => path,
             (true, Some(name)) => {
-                let path = session.roots.in_library(&name, session.kind())?;
+                let path = {
+                    let shelf = Shelf::Fractals(session.kind());
+                    session.roots.in_library(&name, shelf)?
+                };
                 Some(path.to_string_lossy().into_owned())
             }
             (true, None) => return Err(Refusal::wrong("a rule of the library has a name")),
@@ -181,4 +186,18 @@ pub(super) async fn save(State(app): Shared, Json(asked): Json<Save>) -> Answer 
         session.save(path.as_deref(), replace).map(|_| ())
     })
     .await
+}
+
+#[derive(Deserialize)]
+pub(super) struct SaveComponent {
+    #[serde(default)]
+    tab: String,
+    panel: String,
+    name: String,
+}
+
+pub(super) async fn component(State(app): Shared, Json(asked): Json<SaveComponent>) -> Answer {
+    let SaveComponent { tab, panel, name } = asked;
+    app.change(tab, move |session| session.save_component(&panel, &name))
+        .await
 }
