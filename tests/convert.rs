@@ -309,6 +309,7 @@ generator:
 ";
     let grows = "initiator: segment\ngenerator: [[0, 0], [1, 1], [1, 0]]\n";
     let forest = TREE.replace("[[1, 1], [1, 3]]", "[[1, 1], [1, 3], [2, 3]]");
+    let linked = format!("{KOCH}base_element: {{points: [[0, 0], [1/4, 0], [3/4, 1/4]]}}\n");
     let random = "initiator: segment\ngenerator:\n  random: {h: \"uniform(0, 1)\"}\n  elements: [[0, 0], [0.5, h/4], [1, 0]]\n";
     for (text, to, keeps, said) in [
         (
@@ -348,6 +349,13 @@ generator:
             "it is of the kind 'rule' already",
         ),
         (RECURRENT, Kind::Instancing, Keeps::Approximants, ""),
+        (
+            &linked,
+            Kind::Instancing,
+            Keeps::Approximants,
+            "lines join base elements in it that do not end where their frames do",
+        ),
+        (&linked, Kind::Instancing, Keeps::Limit, ""),
     ] {
         match converted(text, to, keeps) {
             Err(error) => assert!(!said.is_empty() && error.contains(said), "{error}"),

@@ -285,6 +285,41 @@ fn steps_grow_out_of_the_ones_before() {
     assert!(apart.unwrap() <= 8, "{apart:?}");
 }
 
+/// Between steps that fall, elements pass back into those that they replaced; steps that are left out are passed through.
+#[test]
+fn lists_of_steps_are_passed_through_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (list, moments) in [
+        ("2,1,0", [2.0, 1.5, 1.0, 0.5, 0.0]),
+        ("0,2", [0.0, 0.5, 1.0, 1.5, 2.0]),
+        ("1,2,1", [1.0, 1.5, 2.0, 1.5, 1.0]),
+    ] {
+        let common = ["--size", "80", "--view", "0,-0.2,1,0.8"];
+        let film = ["animate", "koch", "--steps", list, "--frames", "5"];
+        let more = ["--ease", "linear", "-o", "list-%d.png"];
+        succeeds(folder, &[&film[..], &common, &more].concat());
+        for (frame, moment) in moments.iter().enumerate() {
+            let (step, share) = (f64::ceil(*moment), moment.fract());
+            let steps = step.to_string();
+            let between = share.to_string();
+            let mut one = vec!["grow", "koch", "--steps", &steps, "-o", "one.png"];
+            if share > 0.0 {
+                one.extend(["--between", &between]);
+            }
+            succeeds(folder, &[&one[..], &common].concat());
+            let frame = folder.join(format!("list-{frame}.png"));
+            assert!(
+                pixels(&frame) == pixels(&folder.join("one.png")),
+                "{list}: {moment}"
+            );
+        }
+        fs::read_dir(folder)
+            .unwrap()
+            .for_each(|it| fs::remove_file(it.unwrap().path()).unwrap());
+    }
+}
+
 /// A film does not jump at a whole step: just behind it, the picture is about that of the step.
 #[test]
 fn whole_steps_pass_into_growth() {
@@ -435,8 +470,13 @@ fn finished_frames_in_space_are_kept() {
 
 #[test]
 fn impossible_films_are_refused_and_leave_nothing() {
-    let cases: [(&[&str], i32, &str); 14] = [
+    let cases: [(&[&str], i32, &str); 15] = [
         (&["pythagoras"], 2, "nothing changes in the film"),
+        (
+            &["koch", "--turn", "0..90", "--at", "0.5,0.1"],
+            2,
+            "--at is the centre of --zoom",
+        ),
         (
             &["pythagoras", "--set", "angle=20..70", "--size", "100mm"],
             2,

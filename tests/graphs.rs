@@ -150,32 +150,59 @@ fn forecasts_know_sheared_initiators() {
     }
 }
 
-/// Meshes and tables hold whole elements.
 #[test]
-fn cuts_are_for_pictures() {
+fn rules_have_no_maps_to_colour_by() {
     let folder = tempfile::tempdir().unwrap();
-    for (file, option) in [("a.stl", "--cut"), ("a.glb", "--cut"), ("a.csv", "--slice")] {
-        let given = [
-            "grow",
-            "menger",
-            "--steps",
-            "1",
-            option,
-            "1,0,0=0.5",
-            "-o",
-            file,
-        ];
+    for name in ["pythagoras", "hilbert-in-space"] {
+        let given = ["grow", name, "--steps", "1", "--color-by", "first-map"];
         let (status, said) = common::said(folder.path(), &given);
-        assert_ne!(status, Some(0));
-        assert!(
-            said.contains(&format!("{option} applies to pictures")),
-            "{said}"
-        );
+        assert_eq!(status, Some(1));
+        assert!(said.contains("is a rule and has no maps"), "{said}");
     }
-    let given = [
-        "grow", "menger", "--steps", "1", "--mesh", "shell", "-o", "a.png",
-    ];
-    let (status, said) = common::said(folder.path(), &given);
-    assert_ne!(status, Some(0));
-    assert!(said.contains("--mesh applies to meshes"), "{said}");
+}
+
+#[test]
+fn files_of_faces_are_not_written_without_any() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "kind: lsystem\nspace: 3\naxiom: F\nproductions: {F: F^F}\n";
+    for (tube, status) in [("", 1), ("style: {tube: 4}\n", 0)] {
+        fs::write(folder.path().join("lines.yaml"), text.to_owned() + tube).unwrap();
+        for file in ["a.stl", "a.ply", "a.obj", "a.glb", "a.3mf", "a.pov"] {
+            let given = ["grow", "lines.yaml", "--steps", "2", "-o", file];
+            let (code, said) = common::said(folder.path(), &given);
+            assert_eq!(code, Some(status), "{file}: {said}");
+            assert_eq!(said.contains("which have no faces"), status == 1, "{said}");
+            let path = folder.path().join(file);
+            assert_eq!(path.exists(), status == 0);
+            fs::remove_file(path).ok();
+        }
+    }
+}
+
+/// Meshes and tables hold whole elements, as seen from nowhere.
+#[test]
+fn options_of_pictures_are_refused_in_files_of_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |options: &str| {
+        let given = format!("grow menger --steps 1 {options}");
+        let given: Vec<&str> = given.split(' ').collect();
+        common::said(folder.path(), &given)
+    };
+    for (options, refusal) in [
+        ("--cut 1,0,0=0.5 -o a.stl", "--cut applies to pictures"),
+        ("--cut 1,0,0=0.5 -o a.glb", "--cut applies to pictures"),
+        ("--cut 1,0,0=0.5 -o a.pov", "--cut applies to pictures"),
+        ("--slice 1,0,0=0.5 -o a.csv", "--slice applies to pictures"),
+        ("--from 30,40 -o a.stl", "--from applies to pictures"),
+        ("--shade relief -o a.usda", "--shade applies to pictures"),
+        ("--light 30,40 -o a.csv", "--light applies to pictures"),
+        ("--view 0,0,1,1 -o a.obj", "--view "),
+        ("--mesh shell -o a.png", "--mesh applies to meshes"),
+    ] {
+        let (status, said) = said(options);
+        assert_ne!(status, Some(0), "{options}");
+        assert!(said.contains(refusal), "{said}");
+    }
+    let (status, said) = said("--from 30,40 --light 10,20 -o a.pov");
+    assert_eq!(status, Some(0), "{said}");
 }

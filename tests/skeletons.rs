@@ -278,6 +278,10 @@ fn mistakes_are_explained() {
         assert!(said.contains(message), "{arguments:?}: {said}");
         assert!(!folder.join("out.png").exists(), "{arguments:?}");
     }
+    let output = kfrac(folder, &["morph", "shape.pbm", "open:1", "-o", "out.svg"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("the result is a .png"), "{said}");
 }
 
 /// A full picture, one pixel and a line of one pixel have skeletons.

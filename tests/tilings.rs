@@ -175,6 +175,14 @@ fn mistakes_are_refused() {
         ),
         (&["menger", "--tile", "p1"], "space"),
         (&["koch", "--tile", "p1", "--view", "0,0,1e9,1e9"], "copies"),
+        (
+            &["koch", "--tile", "p4", "--view", "0,0,1,1", "--repeat", "3"],
+            "give only one of them",
+        ),
+        (
+            &["koch", "--view", "0,0,1,1", "-o", "x.csv"],
+            "a table holds all elements",
+        ),
     ] {
         let arguments = [&["grow"], arguments].concat();
         let (status, said) = said(folder.path(), &arguments);

@@ -86,20 +86,16 @@ impl SpaceArguments {
         given.chain(cuts).collect()
     }
 
-    /// Returns the name of an option that confines the set, if one is given.
-    fn confines(&self) -> Option<&'static str> {
-        let slice = self.slice.map(|_| "--slice");
-        slice.or_else(|| self.cut.first().map(|_| "--cut"))
-    }
-
-    /// Refuses options that confine the set, for a file that holds whole elements or points.
-    pub(super) fn refuse_cuts(&self) -> Result<(), Failure> {
-        let Some(option) = self.confines() else {
-            return Ok(());
-        };
-        let message =
-            format!("{option} applies to pictures, and this file holds whole elements or points");
-        Err(Failure::Usage(message))
+    /// Refuses options of pictures for a file that holds whole elements or points. Options of the camera and the light stand
+    /// where the file has them.
+    pub(super) fn refuse_for_elements(&self, has_camera: bool) -> Result<(), Failure> {
+        let is_seen = |name: &str| has_camera && !["slice", "cut"].contains(&name);
+        match self.options().iter().find(|(name, _)| !is_seen(name)) {
+            None => Ok(()),
+            Some((name, _)) => Err(Failure::Usage(format!(
+                "--{name} applies to pictures, and this file holds whole elements or points"
+            ))),
+        }
     }
 
     /// Returns whether occlusion is asked for.

@@ -95,7 +95,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     plot: Option<PathBuf>,
     /// Factor between the sizes of boxes [default: the least whole number that is a power of the ratio at
-    /// which a rule repeats itself, or that fits a picture, or 2]; a whole number for pictures and points
+    /// which a rule repeats itself, or that fits a picture, or 2]; a whole number for pictures and points. For D_q of
+    /// pictures, sizes are halved
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
     /// Number of grids

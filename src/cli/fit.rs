@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     /// Draws shape, skeleton, attractor, difference, copies and collage into a PNG file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     report: Option<PathBuf>,
-    /// Number of maps, or a range of numbers of which the least description length chooses
+    /// Number of maps, or a range of numbers of which the least description length chooses; by the skeleton, the largest
     #[arg(long, value_name = "N|LEAST..MOST", default_value = "2..8", value_parser = maps)]
     maps: RangeInclusive<usize>,
     /// How the system is found
@@ -57,13 +57,14 @@ pub(super) struct Arguments {
     /// Admits only similarities
     #[arg(long)]
     similar: bool,
-    /// Number of condensation disks; by the skeleton, the largest number [default there: as many as are needed]
+    /// Number of condensation disks; by the skeleton, the largest number, and with 0 as many as are needed
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = number::whole("a number of disks", 0..=32_usize))]
     disks: usize,
     /// Fits the weights of the maps to the darkness or opacity of the pixels, for random iteration
     #[arg(long, conflicts_with = "disks")]
     density: bool,
-    /// Number of systems that are evaluated for each number of maps, approximately
+    /// Number of systems that are evaluated for each number of maps, approximately; the skeleton's branch points decide
+    /// how many are there
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = number::whole("a number of evaluations", 100..=100_000_000_usize))]
     effort: usize,
     /// Seed of random numbers

@@ -357,7 +357,8 @@ impl Arguments {
                 return Err(scene::mesh_of_none());
             }
             if let Plan::Scene(_) | Plan::Table(_) | Plan::Chaos(Some(_)) | Plan::Cloud = plan {
-                self.space.refuse_cuts()?;
+                let has_camera = matches!(plan, Plan::Scene(format) if format.has_camera());
+                self.space.refuse_for_elements(has_camera)?;
             }
             return match *plan {
                 Plan::Scene(format) => scene::write(self, &loaded, format),

@@ -99,6 +99,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let threads = arguments.threads.unwrap_or_else(all_cores);
     let path = &arguments.output;
     let (operations, disk) = (&arguments.operations, arguments.disk);
+    let extension = path
+        .extension()
+        .filter(|_| path.as_path() != Path::new("-"));
+    if let Some(other) = extension.filter(|it| !it.eq_ignore_ascii_case("png")) {
+        let message = format!(
+            "a .{} is not written here: the result is a .png",
+            other.display()
+        );
+        return Err(Failure::Usage(message));
+    }
     let (result, bytes) = output::write(path, true, |mut out, _| {
         write(&set.bits, operations, disk, threads, path, &mut out)
     })?;

@@ -24,7 +24,8 @@ use super::{Failure, format, growth, help, morph, output, picture, text};
 /// disk in the picture about each of its pixels. It is a graph: branches between branch points and ends.
 ///
 /// With --disk, the result is the morphological skeleton instead: the centres of the maximal disks of a family by their
-/// size, the skeleton subsets. The union of the disks is the picture, exactly; the centres may be disconnected.
+/// size, the skeleton subsets. The union of the disks is the picture, exactly; the centres may be disconnected. Of euclid,
+/// size is the square of the distance to the nearest pixel outside, and a disk holds the pixels that are nearer.
 ///
 /// Coordinates are in pixels from the lower left corner of the picture, with y up; centres of pixels are at halves.
 #[derive(clap::Args)]

@@ -27,14 +27,14 @@ mod worn;
 
 pub(crate) use chords::Chords;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnostic::Diagnostic;
 use crate::geometry::{Affine as _, Bounds, Frame3, Outline as _};
 use crate::instancing::Thickness;
 use crate::lsystem::{
-    Drawn, GrowingTurtle, LSystem, LSystemInSpace, NoGrowth, Placed, RewriteError, TubePart,
-    Turtle, TurtleFrame,
+    Drawing, Drawn, GrowingTurtle, LSystem, LSystemInSpace, NoGrowth, Placed, RewriteError,
+    TubePart, Turtle, TurtleFrame,
 };
 use crate::rule::{GrowthStart, RuleFrame as _};
 use crate::style::Tube;
@@ -124,7 +124,10 @@ fn derived<F: TurtleFrame>(
         Some(growing) if growing.steps == steps && steps > 0 => {
             let mut turtle = GrowingTurtle::<F>::new(system, growing.share);
             turtle.read(system, (steps, seed, max_elements), place)?;
-            turtle.after.drawing.polygons
+            let Drawing {
+                polygons, empty, ..
+            } = turtle.after.drawing;
+            (polygons, empty)
         }
         _ => {
             let mut turtle = Turtle::<F>::new(system);
@@ -132,7 +135,10 @@ fn derived<F: TurtleFrame>(
                 turtle.read(symbol, arguments);
                 turtle.drawing.elements.drain(..).for_each(|it| place(&it));
             })?;
-            turtle.drawing.polygons
+            let Drawing {
+                polygons, empty, ..
+            } = turtle.drawing;
+            (polygons, empty)
         }
     };
     for (position, instance) in (0..).zip(&mut instances) {
@@ -385,7 +391,7 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
     fn base_elements(
         &mut self,
         stamps: &[F::BaseElement],
-        polygons: Vec<F::BaseElement>,
+        (polygons, empty): (Vec<F::BaseElement>, BTreeSet<usize>),
     ) -> Vec<F::BaseElement> {
         let mut all = vec![F::line()];
         all.extend_from_slice(stamps);
@@ -393,6 +399,7 @@ impl<'s, F: TurtleFrame> Strings<'s, F> {
         all.extend(polygons);
         let mut tubes = BTreeMap::new();
         for (object, shape) in self.objects.iter_mut().zip(&self.shapes) {
+            object.visible &= !matches!(shape, Shape::Polygon(number) if empty.contains(number));
             object.base_element = match (*shape, self.tube) {
                 (Shape::Stamp(number), _) => 1 + number,
                 (Shape::Polygon(number), _) => first_polygon + number,

@@ -61,6 +61,10 @@ impl<M: AffineMap> Structure<M> {
     {
         let alive = match keeps {
             Keeps::Limit => graph.alive(true),
+            Keeps::Approximants if graph.links() => {
+                let what = "lines join base elements in it that do not end where their frames do";
+                return Err(Refusal::Steps(what));
+            }
             Keeps::Approximants => vec![true; graph.objects().len()],
         };
         let placed = |instance: &Instance<M::Frame>| {

@@ -377,7 +377,8 @@ fn largest_of_cubic([p0, p1, p2, p3]: [f64; 4]) -> f64 {
 /// Returns cubic Bézier pieces along the circular arc from `from` through `through` to `to`, or `None` if
 /// the three points are collinear.
 ///
-/// Each piece spans at most 22.5°, which limits the deviation from the arc to 1e-7 of its radius.
+/// Each piece spans at most 22.5°, which limits the deviation from the arc to 1e-7 of its radius. Its sector has the area
+/// of that of the arc, to rounding.
 #[must_use]
 pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
     let (a, b) = (through - from, to - from);
@@ -396,7 +397,7 @@ pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
     let count = (whole.abs() / (std::f64::consts::PI / 8.0)).ceil().max(1.0);
     let step = whole / count;
     let (sine, cosine) = (libm::sin(step), libm::cos(step));
-    let handle = 4.0 / 3.0 * libm::tan(step / 4.0);
+    let handle = handle(step);
     let mut radius = from - centre;
     let mut pieces = Vec::new();
     let mut number = 1.0;
@@ -415,6 +416,20 @@ pub fn arc(from: DVec2, through: DVec2, to: DVec2) -> Option<Vec<Piece>> {
         number += 1.0;
     }
     Some(pieces)
+}
+
+/// Returns the length of the handles of a cubic piece that has the area of an arc by an angle, at the radius 1.
+fn handle(angle: f64) -> f64 {
+    /// Angle below which a piece with its middle on the arc has the same area, to rounding.
+    const SMALL: f64 = 0.02;
+    if angle.abs() < SMALL {
+        return 4.0 / 3.0 * libm::tan(angle / 4.0);
+    }
+    // Twice the area of the sector, which is the angle, is quadratic in the length.
+    let (sine, half) = (libm::sin(angle), libm::sin(angle / 2.0));
+    let drop = 12.0 * half * half;
+    let root = (drop * drop - 30.0 * sine * (angle - sine)).sqrt();
+    (drop - root) / (3.0 * sine)
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ use std::sync::Arc;
 
 use crate::expression::degrees;
 use crate::extent::NoLimit;
-use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame, Frame2, Homothety, Point};
+use crate::geometry::{Bounds, DAffine2, DMat2, DVec2, Frame, Frame2, Homothety, Outline, Point};
 use crate::instancing::Appearance;
 use crate::rule::Part;
 use crate::work;
@@ -364,6 +364,16 @@ impl<F: Frame> Graph<F> {
         let all = self.instances().map(|(_, instance)| instance);
         let all = all.chain(self.starts().flat_map(|start| &start.instances));
         !self.is_plain() || { all }.any(|instance| instance.joined)
+    }
+
+    /// Returns whether lines may join base elements that do not end where their frames do, so that what is drawn depends
+    /// on the order of elements.
+    pub(crate) fn links(&self) -> bool {
+        let mut drawn = self.objects().iter().filter(|object| object.visible);
+        drawn.any(|object| {
+            let base_element = &self.base_elements()[object.base_element];
+            !base_element.is_closed() && base_element.ends_meet_frame() != [true; 2]
+        }) && self.joins()
     }
 
     /// Returns the length of an element whose frame is the unit frame: 1 in rules, in systems the longer

@@ -1,6 +1,6 @@
 //! The turtle: interprets the modules of words as lines, polygons and stamps in the plane or in space.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::geometry::{Affine as _, Frame2, Point as _};
 
@@ -54,6 +54,9 @@ pub struct Drawing<F: TurtleFrame = Frame2> {
     pub elements: Vec<Placed<F>>,
     /// Distinct outlines of polygons.
     pub polygons: Vec<F::BaseElement>,
+    /// Indices of the polygons without extent, which are not visible: all vertices lie in one place or, in space, on one
+    /// line.
+    pub empty: BTreeSet<usize>,
 }
 
 impl<F: TurtleFrame> Default for Drawing<F> {
@@ -61,6 +64,7 @@ impl<F: TurtleFrame> Default for Drawing<F> {
         Self {
             elements: Vec::new(),
             polygons: Vec::new(),
+            empty: BTreeSet::new(),
         }
     }
 }
@@ -425,9 +429,11 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
             let inverse = frame.map().inverse();
             let vertices = open.vertices.iter().map(|v| inverse.apply(*v));
             let outline = F::polygon(&vertices.collect::<Vec<_>>());
-            // A polygon of no extent keeps its index and is drawn as a line.
-            let outline = outline.unwrap_or_else(F::line);
-            self.drawing.polygons.push(outline);
+            if outline.is_none() {
+                self.drawing.empty.insert(number);
+            }
+            // A polygon without extent keeps its index.
+            self.drawing.polygons.push(outline.unwrap_or_else(F::line));
         }
         self.closed += 1;
         self.put(frame, Drawn::Polygon(made), symbol, &open.state);

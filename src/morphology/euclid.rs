@@ -54,7 +54,7 @@ fn half_widths(radius: f64, height: usize) -> Vec<u32> {
     let half = |row| {
         let row = real(row);
         let half = whole((radius * radius - row * row).max(0.0).sqrt());
-        u32::try_from(half + 1).unwrap_or(u32::MAX)
+        u32::try_from(half.saturating_add(1)).unwrap_or(u32::MAX)
     };
     (0..=rows).map(half).collect()
 }

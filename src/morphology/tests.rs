@@ -142,6 +142,8 @@ proptest! {
             let [from, to] = branch.ends.map(|node| skeleton.nodes()[node].point);
             prop_assert_eq!(branch.points.first(), Some(&from));
             prop_assert_eq!(branch.points.last(), Some(&to));
+            // Branches do not jump, within their nodes either.
+            prop_assert!(branch.points.windows(2).all(|pair| pair[0].distance(&pair[1]) < 1.5));
         }
     }
 }
@@ -241,6 +243,39 @@ fn thin_sets_are_their_own_skeletons() {
         "{}",
         branch.length()
     );
+}
+
+/// Branch points that surround a hole are one node, from which a branch leads around it.
+#[test]
+fn holes_within_a_node_are_loops() {
+    let rows = [
+        "...#...", "...#...", "...#...", "###.###", "...#...", "...#...", "...#...",
+    ];
+    let cross = Bits::of(7, 7, |x, y| rows[y].as_bytes()[x] == b'#');
+    let skeleton = Skeleton::of(&cross, &SkeletonOptions::default()).unwrap();
+    let (nodes, branches) = (skeleton.nodes(), skeleton.branches());
+    assert_eq!(branches.len() + 1 - nodes.len(), 1);
+    let loops: Vec<_> = branches
+        .iter()
+        .filter(|it| it.ends[0] == it.ends[1])
+        .collect();
+    let [around] = loops[..] else {
+        panic!("there is one hole, and {} loops", loops.len())
+    };
+    assert!((around.length() - 4.0 * 2f64.sqrt()).abs() < 1e-12);
+    let listed = branches.iter().flat_map(|it| &it.points);
+    let listed: std::collections::BTreeSet<_> = listed.map(|it| (it.column, it.row)).collect();
+    assert_eq!(listed.len(), 12);
+}
+
+/// A disk larger than any picture leaves nothing.
+#[test]
+fn disks_of_any_size_erode() {
+    let bits = Bits::of(7, 7, |x, y| x > 0 && y > 0);
+    for size in ["3", "7.5", "1e9", "1.9e19", "1e300"] {
+        let eroded = applied(&format!("erode:{size}"), &bits, DiskFamily::Euclid);
+        assert!(eroded.is_empty(), "{size}");
+    }
 }
 
 #[test]

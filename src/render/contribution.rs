@@ -64,7 +64,7 @@ enum Contribution {
 
 impl ContributionMask {
     pub(super) fn of(scene: &Scene<'_>, pass: Pass) -> Self {
-        let stands_alone = scene.stands_alone();
+        let stands_alone = !scene.graph.links();
         let class = match pass {
             Pass::Class(class) if stands_alone => Some(class),
             _ => None,

@@ -17,6 +17,7 @@ use crate::style::{ColorBy, Named};
 use super::colours::Colours;
 use super::error::RenderError;
 use super::options::Options;
+use super::space::SpaceError;
 use encode::{Encoder, Pass, Shape};
 use shell::Shell;
 
@@ -83,8 +84,8 @@ const MANY: u64 = 1 << 10;
 ///
 /// # Errors
 ///
-/// If growing ends early, if coordinates exceed single precision, if there are more faces than the format can
-/// count, if colours depend on more than an element itself, or if `out` fails.
+/// If growing ends early, if no element has faces, if coordinates exceed single precision, if there are more faces than the
+/// format can count, if colours depend on more than an element itself, or if `out` fails.
 pub fn write_mesh(
     graph: &Graph<Frame3>,
     growth: &Growth<'_>,
@@ -100,6 +101,10 @@ pub fn write_mesh(
         Shape::new(&solid.into(), format)
     });
     let shapes: Vec<Shape> = shapes.collect();
+    let mut visible = graph.objects().iter().filter(|it| it.visible).peekable();
+    if visible.peek().is_some() && visible.all(|it| shapes[it.base_element].faces() == 0) {
+        return Err(SpaceError::NoFaces.into());
+    }
     let walk = Walk {
         graph,
         growth,

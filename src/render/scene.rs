@@ -110,16 +110,6 @@ impl<'a> Scene<'a> {
         matches!(self.style.width, Width::Pixels(_)) && self.graph.widest().is_none()
     }
 
-    /// Returns whether no line leads to the end of an element that a pass does not paint.
-    pub(super) fn stands_alone(&self) -> bool {
-        let mut drawn = self.graph.objects().iter().filter(|object| object.visible);
-        !self.graph.joins()
-            || drawn.all(|object| {
-                let base_element = self.base_element(object);
-                base_element.is_closed() || base_element.ends_meet_frame() == [true; 2]
-            })
-    }
-
     /// Returns the base element of an object.
     pub(super) fn base_element(&self, object: &Object) -> &'a BaseElement {
         &self.graph.base_elements()[object.base_element]

@@ -75,7 +75,23 @@ fn ellipses_have_half_axes_and_an_angle() {
     };
     let reach = outline.support(DVec2::splat(FRAC_1_SQRT_2));
     assert!((reach - (6.0 + 2f64.sqrt())).abs() < 6e-7);
+    assert!((outline.signed_area() - 12.0 * PI).abs() < 1e-13);
     assert_eq!(Shape::ellipse(DVec2::ZERO, DVec2::X, 0.0), None);
+}
+
+/// Arcs and their chords enclose segments of circles.
+#[test]
+fn arcs_have_the_areas_of_their_segments() {
+    for degrees in [0.01, 0.5, 1.5, 20.0, 90.0, 181.0, 300.0, 359.0] {
+        for way in [1.0, -1.0] {
+            let angle = f64::to_radians(degrees);
+            let at = |share: f64| DVec2::from_angle(way * angle * share);
+            let pieces = arc(at(0.0), at(0.5), at(1.0)).unwrap();
+            let segment = BaseElement::new(at(0.0), pieces, false).unwrap();
+            let area = way * (angle - angle.sin()) / 2.0;
+            assert!((segment.signed_area() - area).abs() < 2e-15, "{degrees}");
+        }
+    }
 }
 
 #[test]

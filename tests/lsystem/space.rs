@@ -320,8 +320,14 @@ fn systems_of_the_plane_are_the_same_in_space() {
             let word = system.word(steps, 0, 1_000_000).unwrap();
             let drawing = system.draw(&word);
             let frames = frames(&space, steps);
-            assert_eq!(frames.len(), drawing.elements.len(), "{}", entry.name);
-            for (own, plane) in frames.iter().zip(&drawing.elements) {
+            // In space, a polygon on a line has no extent, and is not visible.
+            let is_flat = |number: usize| drawing.polygons[number].signed_area().abs() < 1e-12;
+            let elements = drawing.elements.iter();
+            let elements: Vec<_> = elements
+                .filter(|it| !it.polygon().is_some_and(is_flat))
+                .collect();
+            assert_eq!(frames.len(), elements.len(), "{}", entry.name);
+            for (own, plane) in frames.iter().zip(elements) {
                 let (map, plane) = (own.map(), plane.frame.map());
                 let size = 1.0 + plane.translation.length();
                 let near = |a: DVec3, b: DVec2| (a - b.extend(0.0)).length() < 1e-9 * size;

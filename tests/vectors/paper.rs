@@ -63,7 +63,9 @@ fn a_pdf_has_colours_opacities_caps_and_joins() {
         (of("J"), of("j"), of("M")),
         (vec![vec![2.0]], vec![vec![0.0]], vec![vec![4.0]])
     );
-    assert_eq!((of("B").len(), of("gs").len()), (1, 1));
+    // The fills are those of the background and of the snowflake, whose outline is drawn upon the latter.
+    let count = |operator| of(operator).len();
+    assert_eq!(["B", "f", "S", "gs"].map(count), [0, 2, 1, 1]);
     let document = lopdf::Document::load_mem(&bytes).unwrap();
     let page = document
         .get_dictionary(document.page_iter().next().unwrap())
@@ -79,6 +81,29 @@ fn a_pdf_has_colours_opacities_caps_and_joins() {
         .as_float()
         .unwrap();
     assert!((opacity - 0.2).abs() < 1e-6);
+}
+
+#[test]
+fn a_translucent_outline_in_a_pdf_is_drawn_upon_its_fill() {
+    // The path is longer than what is compressed at once.
+    let (_, bytes) = draw(&library("koch-snowflake"), 8, |options| {
+        options.format = Format::Pdf;
+        options.style.stroke = Some(Colour::of_rgba([255, 0, 0, 51]));
+        options.style.fill = Some(Colour::of_rgba([0, 0, 255, 255]));
+    });
+    let all = operators(&bytes);
+    let ends = |it: &&(String, Vec<_>)| matches!(it.0.as_str(), "f" | "S" | "B");
+    let found: Vec<_> = all.iter().filter(ends).map(|it| it.0.as_str()).collect();
+    assert_eq!(found, ["f", "S"]);
+    let paths: Vec<_> = { all.split(|it| ends(&it)) }
+        .map(|path| {
+            let is_drawn = |it: &&(String, Vec<_>)| matches!(it.0.as_str(), "m" | "l" | "h");
+            path.iter().filter(is_drawn).collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(paths[0].len() > 3 * 4usize.pow(8) / 2);
+    assert_eq!(paths[0], paths[1]);
+    assert!(paths[2].is_empty());
 }
 
 #[test]

@@ -180,6 +180,9 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     if matches!(arguments.zoom, Some(Zooms::Loop)) && arguments.turn.is_some() {
         return wrong("--zoom loop turns the picture by itself: leave out --turn".into());
     }
+    if arguments.zoom.is_none() && arguments.others.gives("at") {
+        return wrong("--at is the centre of --zoom: --zoom 1 shows what lies about it".into());
+    }
     if arguments.zoom.is_some()
         && arguments
             .steps
@@ -337,10 +340,22 @@ fn steps(arguments: &Arguments, all: &[u32], moment: &Moment) -> Vec<String> {
     let before = index(at + 1e-9).min(last);
     let share = super::super::family::plain(at - keys[before]);
     let (from, to) = (all[before], all[(before + 1).min(last)]);
-    if share <= 1e-9 || to != from + 1 {
+    let (from, share) = match to == from + 1 {
+        true => (from, share),
+        // Steps between others are passed through, backwards if they fall.
+        false => {
+            let at = f64::from(from) + share * (f64::from(to) - f64::from(from));
+            let below = u32::try_from(index(at + 1e-9)).unwrap_or(from);
+            (below, super::super::family::plain(at - f64::from(below)))
+        }
+    };
+    if share <= 1e-9 {
         return vec![format!("--steps={from}")];
     }
-    vec![format!("--steps={to}"), format!("--between={share}")]
+    vec![
+        format!("--steps={}", from + 1),
+        format!("--between={share}"),
+    ]
 }
 
 #[expect(

@@ -56,6 +56,13 @@ pub(super) enum SceneFormat {
     Mesh(MeshFormat),
 }
 
+impl SceneFormat {
+    /// Returns whether the file holds a camera and a light.
+    pub(super) fn has_camera(self) -> bool {
+        self == Self::Nested(render::SceneFormat::Pov)
+    }
+}
+
 impl Format {
     /// Polygon File Format: a mesh, or the points of random iteration.
     pub(super) const PLY: Self = Self::Scene(SceneFormat::Mesh(MeshFormat::Ply));
@@ -285,6 +292,17 @@ impl Plan {
         refuse(
             zoom.is_asked() && arguments.tile.is_asked(),
             "--zoom draws the neighbourhood of a point, and --tile copies of the whole: give only one of them",
+        )?;
+        refuse(
+            picture.has_view()
+                && matches!(format, Format::Table(_))
+                && !is_chaos
+                && !arguments.tile.is_asked(),
+            "--view applies to pictures: a table holds all elements of a step",
+        )?;
+        refuse(
+            picture.has_view() && arguments.tile.has_periods(),
+            "--repeat and --view each select how much is shown: give only one of them",
         )?;
         refuse(
             zoom.is_asked() && is_table,

@@ -57,6 +57,10 @@ pub(super) fn write(
     let name = &loaded.name;
     let extension = Format::Scene(format).name();
     let metadata = loaded.model.metadata();
+    if picture.has_view() {
+        let message = format!("{name} lies in space, and --view is for the plane");
+        return Err(Failure::Usage(message));
+    }
     let Some(steps) = loaded.model.drawn_steps_in_space(arguments.steps(), false) else {
         let message = format!("a .{extension} holds the elements of a step: give --steps");
         return Err(Failure::Usage(message));

@@ -41,6 +41,11 @@ impl TileArguments {
         self.tile.is_some()
     }
 
+    /// Returns whether the number of periods is given.
+    pub(super) fn has_periods(&self) -> bool {
+        self.repeat.is_some()
+    }
+
     /// Refuses a tiling of a set in space.
     pub(super) fn refuse_in_space(&self, loaded: &Loaded) -> Result<(), Failure> {
         match self.tile {

@@ -14,7 +14,7 @@ pub(super) struct ZoomArguments {
     /// Magnifies the neighbourhood of the point given by --at, or in space by --look-at: 250, 1e1000, 3^5000
     ///
     /// In the plane, all visible elements are grown, as with --detail, which sets their smallest size (1 pixel by default).
-    /// A zoom of 1 shows the whole picture, or the window of the rule. The zoom is limited only by the time
+    /// A zoom of 1 has the scale of the whole picture, or of the window of the rule. The zoom is limited only by the time
     /// that it takes; in space, to 1e5 by the depths of the pixels.
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     zoom: Option<Factor>,

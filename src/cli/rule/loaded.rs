@@ -241,6 +241,7 @@ impl Loaded {
         steps: Option<u32>,
         color_by: ColorBy,
     ) -> Result<DrawnInSpace, Failure> {
+        self.check_maps(color_by)?;
         let (seed, max_elements) = self.growth;
         let growth = Growth {
             seed,
@@ -263,6 +264,20 @@ impl Loaded {
         })
     }
 
+    /// Refuses colours by maps of a rule, which has none.
+    fn check_maps(&self, color_by: ColorBy) -> Result<(), Failure> {
+        let is_rule = matches!(self.model, Model::Rule(_) | Model::RuleInSpace(_));
+        if is_rule && matches!(color_by, ColorBy::FirstMap | ColorBy::LastMap) {
+            let message = format!(
+                "{} is a rule and has no maps that --color-by {} could distinguish",
+                self.name,
+                color_by.name()
+            );
+            return Err(anyhow::anyhow!(message).into());
+        }
+        Ok(())
+    }
+
     /// Returns an error of compiling as a mistake in the file.
     pub(in crate::cli) fn failure(&self, error: &CompileError) -> Failure {
         let diagnostic = self.model.diagnostic(error);
@@ -282,14 +297,7 @@ impl Loaded {
         steps: u32,
         color_by: ColorBy,
     ) -> Result<Graph, Failure> {
-        if let (Model::Rule(_), ColorBy::FirstMap | ColorBy::LastMap) = (&self.model, color_by) {
-            let message = format!(
-                "{} is a rule and has no maps that --color-by {} could distinguish",
-                self.name,
-                color_by.name()
-            );
-            return Err(anyhow::anyhow!(message).into());
-        }
+        self.check_maps(color_by)?;
         if color_by == ColorBy::Normal {
             let message = format!(
                 "{} lies in the plane, where all normals are equal",

@@ -1,6 +1,6 @@
 //! Time-indexed graphs of L-systems: an object for every kind and number of steps that are left.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::draws::Path;
@@ -56,6 +56,8 @@ struct Leveller<'e, F: TurtleFrame> {
     tube: Option<Tube>,
     base_elements: Vec<F::BaseElement>,
     outlines: BTreeMap<Vec<[u64; 3]>, usize>,
+    /// Base elements of polygons without extent, which are not visible.
+    empty: BTreeSet<usize>,
     stamps: BTreeMap<usize, usize>,
     tubes: BTreeMap<TubePart, usize>,
     /// Numbers of the objects that are replaced, and of all others.
@@ -104,6 +106,7 @@ pub(super) fn levels<F: SummedFrame>(
         tube,
         base_elements: vec![F::line()],
         outlines: BTreeMap::new(),
+        empty: BTreeSet::new(),
         stamps: BTreeMap::new(),
         tubes: BTreeMap::new(),
         numbers: [const { BTreeMap::new() }; 2],
@@ -322,9 +325,11 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         let next = self.base_elements.len();
         let number = *self.outlines.entry(bits.collect()).or_insert(next);
         if number == next {
-            // A polygon without extent is drawn as a line.
-            let outline = F::polygon(vertices).unwrap_or_else(F::line);
-            self.base_elements.push(outline);
+            let outline = F::polygon(vertices);
+            if outline.is_none() {
+                self.empty.insert(number);
+            }
+            self.base_elements.push(outline.unwrap_or_else(F::line));
         }
         number
     }
@@ -399,10 +404,13 @@ impl<F: TurtleFrame> Leveller<'_, F> {
                 }
             };
             let next = behaviours.len();
+            let is_empty = matches!(key.of, Master::Body(number) if self.empty.contains(&number));
+            let object = key.paint.object(palette, base_element);
             objects.push(Object {
                 behaviour: *behaviours.entry(behaves).or_insert(next),
                 replacement,
-                ..key.paint.object(palette, base_element)
+                visible: object.visible && !is_empty,
+                ..object
             });
         }
         let mut graph = Graph {

@@ -210,6 +210,7 @@ impl<F: ShownFrame + TurtleFrame> Figure<'_, F> {
                         let ends = [F::Point::ZERO, F::Point::AXES[0]].map(image);
                         sketch.lines.push((ends, role, symbol.character));
                     }
+                    Drawn::Polygon(number) if turtle.drawing.empty.contains(&number) => {}
                     Drawn::Polygon(number) => {
                         let corners = F::corners(&turtle.drawing.polygons[number]);
                         let corners = corners.into_iter().map(image);

@@ -52,7 +52,10 @@ pub(in crate::import) fn write(entry: &Entry, found: &mut Diagnostics) -> Option
     rules.retain(|(symbol, _)| used.contains(symbol));
     if rules.is_empty() {
         // Without rules every word is the axiom: a symbol that replaces itself keeps it.
-        let kept = axiom.iter().find(|command| argument(**command).is_none());
+        let is_kept = |command: &&Command| {
+            argument(**command).is_none() && !matches!(command, Command::Push | Command::Pop)
+        };
+        let kept = axiom.iter().find(is_kept);
         rules.extend(kept.map(|kept| (symbol(*kept), vec![*kept])));
     }
     let writer = Writer::new(angle, &axiom, &rules);

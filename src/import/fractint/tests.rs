@@ -302,18 +302,18 @@ fn lsystem(text: &str) -> String {
 #[test]
 fn lsystems_are_read_line_by_line_or_word_by_word() {
     let dragon = "angle: 360/8\naxiom: FX\nproductions: {F: \"\", Y: +FX--FY+, X: -FX++FY-}\n";
-    assert_eq!(
-        lsystem("Dragon {\nAngle 8 ; 45 degrees\nAxiom FX\nF=\ny=+FX--FY+\nx = -FX++FY-\n}"),
-        dragon
-    );
-    assert_eq!(
-        lsystem("Dragon { angle 8 axiom fx F= Y=+fx--fy+ X =-fx++fy- }"),
-        dragon
-    );
+    for text in [
+        "Dragon {\nAngle 8 ; 45 degrees\nAxiom FX\nF=\ny=+FX--FY+\nx = -FX++FY-\n}",
+        "Dragon { angle 8 axiom fx F= Y=+fx--fy+ X =-fx++fy- }",
+    ] {
+        assert_eq!(lsystem(text), dragon);
+    }
     // Long rules are split into parts.
     let koch = "angle: 360/6\naxiom: F\nproductions: {F: F+F--F+F}\n";
     assert_eq!(lsystem("Koch { axiom F F=F+F F=--F+F\n angle 6 }"), koch);
     assert_eq!(lsystem("Koch { axiom F\n F F+F--F+F\n angle = 6 }"), koch);
+    let kept = "angle: 360/6\naxiom: \"[F]\"\nproductions: {F: F}\n";
+    assert_eq!(lsystem("Kept { angle 6 axiom [F] X=F+ }"), kept);
 }
 
 #[test]

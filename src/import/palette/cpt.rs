@@ -5,12 +5,14 @@ use crate::style::Colour;
 
 /// Reads the colours of a table, from its least to its largest value.
 pub(super) fn read(text: &str) -> Result<Vec<Colour>, PaletteError> {
-    let is_hsv = text.lines().any(|line| {
-        let model = line.trim_start().strip_prefix('#');
-        let model = model.and_then(|it| it.trim_start().strip_prefix("COLOR_MODEL"));
-        let model = model.map(|it| it.trim_start_matches([' ', '=', '+']).trim_end());
-        model.is_some_and(|it| it.eq_ignore_ascii_case("hsv"))
+    let mut models = text.lines().filter_map(|line| {
+        let model = line.trim_start().strip_prefix('#')?.trim_start();
+        let model = model.strip_prefix("COLOR_MODEL")?;
+        Some(model.trim_start_matches([' ', '=']).trim_end())
     });
+    // With a plus, colours between the ends of an interval are interpolated in HSV, too.
+    let model = models.find(|it| it.trim_start_matches('+').eq_ignore_ascii_case("hsv"));
+    let (is_hsv, is_between) = (model.is_some(), model.is_some_and(|it| it.starts_with('+')));
     let mut stops: Vec<(f64, [f64; 3])> = Vec::new();
     for (number, line) in coloured_lines(text) {
         let words: Vec<_> = line.split_whitespace().collect();
@@ -40,7 +42,21 @@ pub(super) fn read(text: &str) -> Result<Vec<Colour>, PaletteError> {
             let message = "an interval ends after it begins, and begins where the one before ends";
             return Err(wrong(number, message));
         }
-        stops.extend(ends);
+        match is_between
+            .then(|| between(&words[..half], &words[half..]))
+            .flatten()
+        {
+            Some(colours) => {
+                let (from, to) = (ends[0].0, ends[1].0);
+                let shares = (0..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+                stops.extend(
+                    shares
+                        .zip(colours)
+                        .map(|(share, it)| (from + share * (to - from), it)),
+                );
+            }
+            None => stops.extend(ends),
+        }
         check(number, stops.len())?;
     }
     Ok(sampled(&some(stops)?))
@@ -52,6 +68,28 @@ fn coloured_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let all = (1..).zip(text.lines());
     let all = all.filter(move |(number, _)| is_table.contains(number));
     all.map(|(number, line)| (number, line.split(';').next().unwrap_or("").trim()))
+}
+
+/// Number of parts of an interval whose colours are interpolated in HSV.
+const PARTS: u32 = 24;
+
+/// Returns the colours of the parts of an interval, whose ends are in HSV.
+fn between(from: &[&str], to: &[&str]) -> Option<Vec<[f64; 3]>> {
+    let [from, to] = [from, to].map(|words| {
+        let words: Vec<&str> = match words[1..] {
+            [word] => word.split(['/', '-']).collect(),
+            _ => words[1..].to_vec(),
+        };
+        let [hue, saturation, value] = words[..] else {
+            return None;
+        };
+        let parts = [hue, saturation, value].map(|it| it.parse::<f64>().ok());
+        Some([parts[0]?, parts[1]?, parts[2]?])
+    });
+    let (from, to) = (from?, to?);
+    let shares = (0..=PARTS).map(|part| f64::from(part) / f64::from(PARTS));
+    let mixed = |share: f64| [0, 1, 2].map(|at| from[at] + share * (to[at] - from[at]));
+    shares.map(|share| of_hsv(mixed(share))).collect()
 }
 
 /// Returns a colour of one word or of three numbers, from 0 to 255.
@@ -103,6 +141,24 @@ fn of_hsv([hue, saturation, value]: [f64; 3]) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::of_hsv;
+
+    #[test]
+    fn colours_between_the_ends_are_those_of_the_model() {
+        let hues = |model: &str| {
+            let text = format!("# COLOR_MODEL = {model}\n0 300 1 1 1 0 1 1\n");
+            let colours = super::read(&text).unwrap();
+            [1, 2, 3, 4].map(|fifth| colours[fifth * (colours.len() - 1) / 5].rgba())
+        };
+        for (found, [red, green, blue]) in
+            hues("+HSV")
+                .iter()
+                .zip([[0, 0, 255], [0, 255, 255], [0, 255, 0], [255, 255, 0]])
+        {
+            let near = |at: usize, value: u8| found[at].abs_diff(value) < 16;
+            assert!(near(0, red) && near(1, green) && near(2, blue), "{found:?}");
+        }
+        assert!(hues("HSV").iter().all(|it| it[0] == 255 && it[1] == 0));
+    }
 
     #[test]
     fn hues_are_colours() {

@@ -22,7 +22,7 @@ pub(super) fn prune(interior: &Interior, traced: &Traced, pixels: &mut Vec<usize
         let away = junction.point.distance(&end.point);
         if end.is_end() && away + end.point.radius - junction.point.radius <= LEAST {
             let points = branch.points.iter();
-            let points = points.filter(|&point| *point != junction.point);
+            let points = points.filter(|&point| !junction.points.contains(point));
             removed.extend(points.map(|point| (point.row + 1) * width + point.column + 1));
         }
     }

@@ -1,5 +1,7 @@
 //! The graph of a skeleton of pixels.
 
+use std::collections::VecDeque;
+
 use super::super::interior::{Interior, around};
 use super::{SkeletonBranch, SkeletonNode, SkeletonPoint};
 
@@ -13,6 +15,7 @@ pub(super) fn traced(interior: &Interior, pixels: &[usize]) -> Traced {
         pixels,
         links: links(interior, pixels),
         owners: vec![NONE; pixels.len()],
+        towards: vec![NONE; pixels.len()],
         nodes: Vec::new(),
         branches: Vec::new(),
     };
@@ -48,6 +51,8 @@ struct Tracer<'a> {
     links: Vec<Vec<usize>>,
     /// The node of each pixel, [`BRANCH`] or [`NONE`].
     owners: Vec<usize>,
+    /// The next pixel on the way to the point of its node, of each pixel of a node but that point.
+    towards: Vec<usize>,
     nodes: Vec<SkeletonNode>,
     branches: Vec<SkeletonBranch>,
 }
@@ -64,29 +69,75 @@ impl Tracer<'_> {
     /// Adds a node of a pixel and, if it is a branch point, of the branch points beside it.
     fn node(&mut self, pixel: usize) {
         let number = self.nodes.len();
-        let mut found = vec![pixel];
-        let mut best = self.point(pixel);
-        let mut points = Vec::new();
+        let mut members = vec![pixel];
         self.owners[pixel] = number;
-        while let Some(pixel) = found.pop() {
-            let point = self.point(pixel);
-            points.push(point);
-            if point.radius > best.radius {
-                best = point;
-            }
+        let mut at = 0;
+        while let Some(&pixel) = members.get(at) {
+            at += 1;
             for &next in &self.links[pixel] {
                 let both = [pixel, next].iter().all(|&it| self.links[it].len() > 2);
                 if both && self.owners[next] == NONE {
                     self.owners[next] = number;
-                    found.push(next);
+                    members.push(next);
                 }
             }
         }
+        let points: Vec<_> = members.iter().map(|&pixel| self.point(pixel)).collect();
+        let largest = |best: usize, at: usize| match points[at].radius > points[best].radius {
+            true => at,
+            false => best,
+        };
+        let best = (0..points.len()).fold(0, largest);
         self.nodes.push(SkeletonNode {
-            point: best,
+            point: points[best],
             points,
             branches: Vec::new(),
         });
+        self.connect(number, members[best]);
+        // Branch points around a hole.
+        for &pixel in &members {
+            for next in self.links[pixel].clone() {
+                let is_way = self.towards[pixel] == next || self.towards[next] == pixel;
+                let is_own = pixel < next && self.owners[next] == number;
+                if is_own && !is_way && !self.is_filled(pixel, next) {
+                    self.join(pixel, next, Vec::new());
+                }
+            }
+        }
+    }
+
+    /// Finds the ways of the pixels of a node to one of them.
+    fn connect(&mut self, node: usize, root: usize) {
+        let mut found = VecDeque::from([root]);
+        while let Some(pixel) = found.pop_front() {
+            for &next in &self.links[pixel] {
+                if next != root && self.owners[next] == node && self.towards[next] == NONE {
+                    self.towards[next] = pixel;
+                    found.push_back(next);
+                }
+            }
+        }
+    }
+
+    /// Returns whether two linked pixels are a side of a square of four.
+    fn is_filled(&self, pixel: usize, next: usize) -> bool {
+        let width = self.interior.map.width();
+        let [pixel, next] = [pixel, next].map(|it| self.pixels[it]);
+        let holds = |place: usize| self.pixels.binary_search(&place).is_ok();
+        let across = match next.abs_diff(pixel) {
+            1 => width,
+            apart if apart == width => 1,
+            _ => return false,
+        };
+        holds(pixel + across) && holds(next + across)
+            || holds(pixel - across) && holds(next - across)
+    }
+
+    /// Returns the points on the way from a pixel of a node to the node's point.
+    fn way(&self, pixel: usize) -> Vec<SkeletonPoint> {
+        let next = |pixel: &usize| Some(self.towards[*pixel]).filter(|it| *it != NONE);
+        let way = std::iter::successors(Some(pixel), next);
+        way.map(|pixel| self.point(pixel)).collect()
     }
 
     /// Follows the branches that begin at a pixel of a node.
@@ -96,7 +147,7 @@ impl Tracer<'_> {
             match self.owners[next] {
                 NONE => self.follow(pixel, next),
                 BRANCH => {}
-                other if other > node => self.join(node, other, Vec::new()),
+                other if other > node => self.join(pixel, next, Vec::new()),
                 _ => {}
             }
         }
@@ -113,15 +164,18 @@ impl Tracer<'_> {
             let Some(ahead) = ahead else { return };
             (before, here) = (here, ahead);
         }
-        self.join(self.owners[from], self.owners[here], line);
+        self.join(from, here, line);
     }
 
+    /// Adds a branch over a line of pixels, from a pixel of a node to one of a node.
     fn join(&mut self, from: usize, to: usize, line: Vec<SkeletonPoint>) {
         let number = self.branches.len();
-        let mut points = vec![self.nodes[from].point];
+        let mut points = self.way(from);
+        points.reverse();
         points.extend(line);
-        points.push(self.nodes[to].point);
+        points.extend(self.way(to));
         points.dedup();
+        let [from, to] = [from, to].map(|pixel| self.owners[pixel]);
         self.nodes[from].branches.push(number);
         self.nodes[to].branches.push(number);
         self.branches.push(SkeletonBranch {

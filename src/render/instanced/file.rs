@@ -55,8 +55,8 @@ impl SceneFormat {
 ///
 /// # Errors
 ///
-/// If instances cannot represent the approximant or its colours, if meshes are too large, if it is cancelled, or if
-/// `out` fails.
+/// If instances cannot represent the approximant or its colours, if the format holds faces and no element has any, if
+/// meshes are too large, if it is cancelled, or if `out` fails.
 pub fn write_scene(
     graph: &Graph<Frame3>,
     steps: u32,
@@ -72,19 +72,19 @@ pub fn write_scene(
         #[cfg(feature = "threemf")]
         SceneFormat::ThreeMf => {
             let bounds = graph.bounds(steps);
-            threemf::write(&nested.with_faces(), bounds.as_ref(), options, out)?;
+            threemf::write(&nested.with_faces()?, bounds.as_ref(), options, out)?;
         }
         SceneFormat::Pov => {
             let eye = Eye::of(graph, steps, options, space)?;
             pov::write(
-                &nested.with_faces(),
+                &nested.with_faces()?,
                 &eye,
                 space.light.ambient,
                 options,
                 out,
             )?;
         }
-        SceneFormat::Glb => glb::write(&nested.with_faces(), &options.labels, out)?,
+        SceneFormat::Glb => glb::write(&nested.with_faces()?, &options.labels, out)?,
     }
     Ok(Instanced {
         symbols: nested.nests.len() as u64 - 1,

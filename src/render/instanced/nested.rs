@@ -172,7 +172,11 @@ impl<'g> Nested<'g> {
     }
 
     /// Returns the nests without shapes that have no faces: segments and points.
-    pub(super) fn with_faces(&self) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// If there are shapes, and none of them has faces.
+    pub(super) fn with_faces(&self) -> Result<Self, SpaceError> {
         let shapes = 0..self.shapes.len();
         let has_faces = |shape: usize| !Mesh::from(self.solid(shape)).faces.is_empty();
         let has_faces: Vec<bool> = shapes.map(has_faces).collect();
@@ -185,11 +189,15 @@ impl<'g> Nested<'g> {
             let instances = kept.copied().collect();
             nests.push(Nest { instances, ..*nest });
         }
-        Self {
+        let is_empty = |nests: &[Nest]| nests.last().is_none_or(|it| it.instances.is_empty());
+        if is_empty(&nests) && !is_empty(&self.nests) {
+            return Err(SpaceError::NoFaces);
+        }
+        Ok(Self {
             graph: self.graph,
             shapes: self.shapes.clone(),
             nests,
-        }
+        })
     }
 
     /// Returns the mesh of a shape.

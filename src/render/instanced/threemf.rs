@@ -3,7 +3,7 @@
 //! Components may have any map that is not singular; copies under other maps, and surfaces of elements, are meshes of
 //! their own. z points up, and the object stands on z = 0 in the corner of the positive axes.
 
-use std::io::{Cursor, Write};
+use std::io::{BufWriter, Cursor, Write};
 
 use zip::write::{SimpleFileOptions, ZipWriter};
 use zip::{CompressionMethod, DateTime};
@@ -29,6 +29,9 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
+/// Bytes of the model that are compressed at once.
+const CHUNK: usize = 1 << 16;
+
 /// Number of the resource that lists the colours.
 const COLOURS: usize = 1;
 
@@ -52,16 +55,20 @@ pub(super) fn write(
     package
         .start_file("3D/3dmodel.model", compressed)
         .map_err(failed)?;
+    // The compressor takes as long for a few bytes as for many.
+    let mut text = BufWriter::with_capacity(CHUNK, &mut package);
     let model = Model {
         nested,
         colours: nested.colours(),
         is_flat: { 0..nested.shapes.len() }
             .map(|it| nested.is_flat(it))
             .collect(),
-        out: &mut package,
+        out: &mut text,
         objects: COLOURS,
     };
     model.write(&upright(bounds, options), options)?;
+    text.flush()?;
+    drop(text);
     let package = package.finish().map_err(failed)?;
     out.write_all(package.get_ref())?;
     Ok(())

@@ -23,6 +23,9 @@ const LONGEST: f64 = 14_400.0;
 /// Points per millimetre: the default unit of a page is a point.
 const POINTS: f64 = 72.0 / 25.4;
 
+/// Operators that fill a path and stroke it again. `B` alone would let the stroke replace the fill below it.
+const TWICE: &str = "f S";
+
 /// Opacity of fills or strokes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Opacity {
@@ -54,6 +57,10 @@ pub(super) struct Pdf<'t, 'w, W> {
     opacities: BTreeSet<Opacity>,
     /// Operator that paints the current path.
     operator: &'static str,
+    /// Place in the piece where the current path begins.
+    path: usize,
+    /// Parts of the current path that have been handed on, if it is drawn twice.
+    handed_on: Vec<u8>,
     labels: Labels,
     /// Blend mode of all paths, unless it is the normal one.
     blend: Option<&'static str>,
@@ -83,6 +90,8 @@ impl<'t, 'w, W: Write> Pdf<'t, 'w, W> {
             outer: Vec::new(),
             opacities: BTreeSet::new(),
             operator: "n",
+            path: 0,
+            handed_on: Vec::new(),
             labels: labels.clone(),
             blend: match blend {
                 Blend::Joined | Blend::Normal => None,
@@ -210,7 +219,11 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
         let stroke = paint.stroke.filter(|stroke| stroke.pen.width > 0.0);
         let paint = Paint { stroke, ..*paint };
         self.paint(&paint);
+        self.path = self.piece.text.len();
         self.operator = match (paint.fill, paint.stroke) {
+            (Some(_), Some(stroke)) if stroke.colour.rgba()[3] < 255 && self.blend.is_none() => {
+                TWICE
+            }
             (Some(_), Some(_)) => "B",
             (Some(_), None) => "f",
             (None, Some(_)) => "S",
@@ -240,13 +253,32 @@ impl<W: Write> Surface for Pdf<'_, '_, W> {
     #[inline]
     fn hand_on(&mut self) -> io::Result<()> {
         if self.piece.is_full() {
+            if self.operator == TWICE {
+                self.handed_on
+                    .extend_from_slice(&self.piece.text[self.path..]);
+                self.path = 0;
+            }
             return self.next_piece();
         }
         Ok(())
     }
 
     fn end(&mut self) -> io::Result<()> {
-        let operator = self.operator;
+        let mut operator = self.operator;
+        if operator == TWICE {
+            self.operator = "S";
+            let mut path = std::mem::take(&mut self.handed_on);
+            path.extend_from_slice(&self.piece.text[self.path..]);
+            self.text("f\n");
+            // Pieces end between commands.
+            for command in path.split_inclusive(|byte| *byte == b'\n') {
+                self.hand_on()?;
+                self.piece.text.extend_from_slice(command);
+            }
+            path.clear();
+            self.handed_on = path;
+            operator = "S";
+        }
         self.text(&format!("{operator}\n"));
         self.hand_on()
     }

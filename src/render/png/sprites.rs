@@ -188,7 +188,7 @@ impl<'a> Sprites<'a> {
             ColorBy::Tint => graph.tints(),
             _ => scene.frames.is_some(),
         };
-        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && scene.stands_alone()
+        pass != Pass::Areas && !numbers_change && !scene.fills_strokes && !graph.links()
     }
 
     /// Creates the sprites of a scene if many of its runs, or of its seeded fractals, are congruent.

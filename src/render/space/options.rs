@@ -33,6 +33,11 @@ pub enum SpaceError {
     /// The graph does not determine the extent of the set.
     #[error("the extent of the set is not known: no bound is found by which its maps contract")]
     NoBounds,
+    /// All elements are points or lines, and the file holds faces.
+    #[error(
+        "it consists of points and lines, which have no faces, and the file holds faces: tubes along lines have some"
+    )]
+    NoFaces,
     /// There are more faces than a format can count, or than are held in memory.
     #[error("there are more than {limit} {what}")]
     TooManyFaces {
