@@ -8,7 +8,8 @@
 //!
 //! Every cell that is met holds a point of the set, or lies between cells that do. A point of the set is no
 //! farther than d / (1 − c) from one that is met, where d is the diagonal of a cell and c the contraction
-//! factor of the maps, and rarely farther than d.
+//! factor of the maps, and rarely farther than d. Squares of maps that hardly contract are maps as well, since
+//! the one point of a cell may stay in it.
 //!
 //! Cells are found in waves, which are divided between threads; the results are merged in the order of one
 //! thread.
@@ -32,7 +33,7 @@ use crate::geometry::{Bounds, DVec2};
 use crate::graph::Graph;
 use crate::parallel::{for_each, is_cancelled};
 
-use self::field::TooFar;
+use self::field::NoRoom;
 use self::net::{Edge, LimitNode, Net};
 use self::shown::LayerCells;
 use self::waves::Waves;
@@ -64,6 +65,8 @@ pub(crate) enum Stopped {
 pub(crate) struct LimitCells<'g> {
     graph: &'g Graph,
     net: Net,
+    /// Sets with the squares of maps that hardly contract.
+    squared: Net,
     layers: usize,
 }
 
@@ -94,16 +97,18 @@ pub(crate) struct FoundCells {
     pub(crate) fields: Vec<Field>,
     /// Number of images of points that were computed.
     pub(crate) images: u64,
-    /// Maximum number of maps that were applied to one point.
+    /// Maximum number of maps that were applied to one point, where squares of maps count as one.
     pub(crate) steps: u32,
 }
 
 impl<'g> LimitCells<'g> {
     /// Creates the limit set of a plain contractive graph, by the layers of a picture.
     pub(crate) fn new(graph: &'g Graph, layers: &[Layer]) -> Self {
+        let net = Net::of(graph, layers);
         Self {
             graph,
-            net: Net::of(graph, layers),
+            squared: net.clone().with_squares(),
+            net,
             layers: layers.len(),
         }
     }
@@ -264,25 +269,25 @@ impl<'a> Orbit<'a> {
     ) -> Self {
         let sets = set.net.nodes.len() - set.layers;
         Self {
-            net: &set.net,
+            net: &set.squared,
             search,
             fields: scales.clone().take(sets).map(Field::new).collect(),
             shown: LayerCells::new(scales.skip(sets), search.threads.get()),
-            waves: Waves::of(&set.net),
+            waves: Waves::of(&set.squared),
             left,
             without,
         }
     }
 
     /// Returns the cells of all sets, followed by those of every layer.
-    fn into_fields(self) -> Result<Vec<Field>, TooFar> {
+    fn into_fields(self) -> Result<Vec<Field>, NoRoom> {
         let mut fields = self.fields;
         fields.extend(self.shown.into_fields()?);
         Ok(fields)
     }
 
     /// Adds a point to which `maps` maps lead from a point of the last wave.
-    fn add(&mut self, node: usize, point: DVec2, maps: usize) -> Result<(), TooFar> {
+    fn add(&mut self, node: usize, point: DVec2, maps: usize) -> Result<(), NoRoom> {
         if self.leaves_out(node, point) {
             return Ok(());
         }

@@ -1,7 +1,7 @@
 //! Limit set of a graph, as sets that consist of images of each other.
 
 use crate::digraph::on_infinite_paths;
-use crate::geometry::{DAffine2, DVec2, stretch};
+use crate::geometry::{DAffine2, DVec2, Linear as _, stretch};
 use crate::graph::{Graph, Instance, Object};
 
 /// Maximum length of the addresses of points.
@@ -12,6 +12,15 @@ const NEGLIGIBLE: f64 = 1e-18;
 
 /// Maximum number of maps that are composed in one edge.
 const MAX_MAPS: usize = 16;
+
+/// Spectral radius above which a map moves many points by less than a cell.
+const HARDLY_CONTRACTS: f64 = 0.95;
+
+/// Spectral radius up to which a map needs no square.
+const ENOUGH: f64 = 0.5;
+
+/// Maximum number of squares of a map, each of the one before.
+const MAX_SQUARES: usize = 32;
 
 /// Way in which a set is part of another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -215,9 +224,36 @@ impl Net {
         }
     }
 
+    /// Adds squares of the maps of sets to themselves that hardly contract, of their squares, and of these in
+    /// turn. Such a map may move the one point of a cell by less than a cell, or in a round through cells that
+    /// are met, where its orbit would end. With the squares, few maps lead from a point to any of its iterates.
+    pub(super) fn with_squares(mut self) -> Self {
+        for (number, node) in self.nodes.iter_mut().enumerate() {
+            let own = node.images.iter().filter(|image| image.whole == number);
+            let squares: Vec<Edge> = own.flat_map(squares).collect();
+            node.images.extend(squares);
+        }
+        self
+    }
+
     /// Returns the largest number of maps that are composed in one edge.
     pub(super) fn max_maps(&self) -> usize {
         let images = self.nodes.iter().flat_map(|node| &node.images);
         images.map(|image| image.maps).max().unwrap_or(1)
     }
+}
+
+/// Returns the squares of a map that hardly contracts, until they do.
+fn squares(edge: &Edge) -> impl Iterator<Item = Edge> {
+    let radius = edge.map.matrix2.spectral_radius();
+    let hardly = (HARDLY_CONTRACTS..1.0).contains(&radius);
+    let first = hardly.then_some((*edge, radius));
+    let all = std::iter::successors(first, |(edge, radius)| {
+        let square = Edge {
+            map: edge.map * edge.map,
+            ..*edge
+        };
+        (*radius > ENOUGH).then_some((square, radius * radius))
+    });
+    all.skip(1).take(MAX_SQUARES).map(|(edge, _)| edge)
 }

@@ -1,6 +1,6 @@
 //! Points of layers, from which none are derived.
 
-use super::field::{Field, TooFar};
+use super::field::{Field, NoRoom};
 use crate::geometry::DVec2;
 use crate::parallel::for_each;
 
@@ -13,13 +13,13 @@ const WORTH_THREADS: usize = 1 << 14;
 /// Data of a point that is put into its cell.
 pub(super) trait Mark: Copy + Send + Sync {
     /// Puts a point into its cell.
-    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar>;
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), NoRoom>;
 }
 
 /// Without data, the first point of a cell is kept.
 impl Mark for () {
     #[inline]
-    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), NoRoom> {
         field.add(point).map(drop)
     }
 }
@@ -27,7 +27,7 @@ impl Mark for () {
 /// The greatest label of a cell is kept.
 impl Mark for u16 {
     #[inline]
-    fn put(self, field: &mut Field, point: DVec2) -> Result<(), TooFar> {
+    fn put(self, field: &mut Field, point: DVec2) -> Result<(), NoRoom> {
         field.label(point, self)
     }
 }
@@ -61,7 +61,7 @@ impl<M: Mark> LayerCells<M> {
 
     /// Adds a point of a layer.
     #[inline]
-    pub(super) fn push(&mut self, layer: usize, point: DVec2, mark: M) -> Result<(), TooFar> {
+    pub(super) fn push(&mut self, layer: usize, point: DVec2, mark: M) -> Result<(), NoRoom> {
         if let [only] = &mut self.parts[..] {
             return mark.put(&mut only[layer], point);
         }
@@ -73,7 +73,7 @@ impl<M: Mark> LayerCells<M> {
     }
 
     /// Puts all points into their cells.
-    fn put_open(&mut self) -> Result<(), TooFar> {
+    fn put_open(&mut self) -> Result<(), NoRoom> {
         let Self { parts, open } = self;
         let count = parts.len();
         let put_part = |number: usize, layers: &mut Vec<Field>| {
@@ -96,7 +96,7 @@ impl<M: Mark> LayerCells<M> {
     }
 
     /// Returns the cells of every layer.
-    pub(super) fn into_fields(mut self) -> Result<Vec<Field>, TooFar> {
+    pub(super) fn into_fields(mut self) -> Result<Vec<Field>, NoRoom> {
         self.put_open()?;
         let mut parts = self.parts.into_iter();
         let mut fields = parts.next().unwrap_or_default();

@@ -12,7 +12,7 @@
 
 use std::collections::VecDeque;
 
-use super::field::{Field, TooFar};
+use super::field::{Field, NoRoom};
 use super::net::Edge;
 use super::shown::LayerCells;
 use super::waves::Waves;
@@ -191,7 +191,7 @@ impl Steps<'_> {
     /// Continues from an image, unless its cell already holds a point of its wave. Returns whether it does
     /// continue.
     #[inline]
-    fn follow(&mut self, image: &Image<'_>) -> Result<bool, TooFar> {
+    fn follow(&mut self, image: &Image<'_>) -> Result<bool, NoRoom> {
         let Edge { whole, maps, .. } = *image.edge;
         let sizes = &mut self.met[maps - 1][whole];
         let last = sizes.len() - 1;
@@ -384,8 +384,8 @@ fn size_of(ratio: f64) -> usize {
     size
 }
 
-impl From<TooFar> for Stopped {
-    fn from(_: TooFar) -> Self {
+impl From<NoRoom> for Stopped {
+    fn from(_: NoRoom) -> Self {
         Self::TooMany
     }
 }

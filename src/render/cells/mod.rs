@@ -205,7 +205,7 @@ impl<'a> DrawingMethod<'a> {
             || shows_all && {
                 let scale = plan.canvas(graph, options)?.map(|canvas| canvas.scale());
                 let most = max_elements(graph, options, detail.pixels);
-                scale.is_some_and(|scale| {
+                scale.is_none_or(|scale| {
                     exceeds(graph, detail.pixels / (scale * graph.unit()), most)
                 })
             };

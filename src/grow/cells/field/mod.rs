@@ -21,7 +21,10 @@ const NONE: u32 = u32::MAX;
 const FARTHEST: i64 = 1 << 40;
 
 /// Maximum number of tiles in a directory.
-const MAX_ROOM: i64 = 1 << 27;
+const MAX_ROOM: i64 = 1 << 25;
+
+/// Maximum number of tiles of a field, about 570 MB.
+const MAX_TILES: usize = 1 << 16;
 
 /// Square cells, some of which hold a point.
 ///
@@ -49,9 +52,9 @@ struct Tile {
     places: Box<[[u8; 2]]>,
 }
 
-/// Error that a point is too far from the origin for the numbers of its cell.
+/// Error that a field has no room for a point: it is too far from the origin, or needs one tile too many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TooFar;
+pub(crate) struct NoRoom;
 
 impl Field {
     /// Creates a field without points, with `scale` cells per unit of length.
@@ -103,7 +106,7 @@ impl Field {
 
     /// Adds a point, unless its cell holds one already. Returns whether it was added.
     #[inline]
-    pub(super) fn add(&mut self, point: DVec2) -> Result<bool, TooFar> {
+    pub(super) fn add(&mut self, point: DVec2) -> Result<bool, NoRoom> {
         let scaled = point * self.scale;
         let cell = cell_of(scaled);
         let [column, row] = within(cell);
@@ -119,7 +122,7 @@ impl Field {
 
     /// Adds a point with a label for its cell, unless the cell has a greater label.
     #[inline]
-    pub(super) fn label(&mut self, point: DVec2, label: u16) -> Result<(), TooFar> {
+    pub(super) fn label(&mut self, point: DVec2, label: u16) -> Result<(), NoRoom> {
         let cell = cell_of(point * self.scale);
         let [column, row] = within(cell);
         let tile = self.make_tile(tile_of(cell))?;
@@ -137,13 +140,14 @@ impl Field {
 
     /// Returns a tile, which is created if it does not exist yet.
     #[inline]
-    fn make_tile(&mut self, tile: [i64; 2]) -> Result<&mut Tile, TooFar> {
+    fn make_tile(&mut self, tile: [i64; 2]) -> Result<&mut Tile, NoRoom> {
         let slot = match self.slot(tile) {
             Some(slot) => slot,
             None => self.make_room(tile)?,
         };
         if self.directory[slot] == NONE {
-            self.directory[slot] = u32::try_from(self.tiles.len()).map_err(|_| TooFar)?;
+            let number = Some(self.tiles.len()).filter(|&number| number < MAX_TILES);
+            self.directory[slot] = number.and_then(|it| it.try_into().ok()).ok_or(NoRoom)?;
             self.tiles.push(Tile::default());
         }
         Ok(&mut self.tiles[self.directory[slot] as usize])
@@ -167,7 +171,7 @@ impl Field {
     }
 
     /// Moves the tiles of another field of the same scale to this one, which has none of them.
-    pub(super) fn take_over(&mut self, other: Self) -> Result<(), TooFar> {
+    pub(super) fn take_over(&mut self, other: Self) -> Result<(), NoRoom> {
         let corners: Vec<[i64; 2]> = (0..other.directory.len())
             .map(|slot| other.corner_of(slot))
             .collect();
@@ -192,9 +196,9 @@ impl Field {
     }
 
     /// Enlarges the directory by more than a tile requires, and returns the index of the tile.
-    fn make_room(&mut self, tile: [i64; 2]) -> Result<usize, TooFar> {
+    fn make_room(&mut self, tile: [i64; 2]) -> Result<usize, NoRoom> {
         if tile.iter().any(|at| at.abs() > FARTHEST) {
-            return Err(TooFar);
+            return Err(NoRoom);
         }
         let (mut low, mut room) = (self.low, self.room);
         for axis in 0..2 {
@@ -214,12 +218,12 @@ impl Field {
             (low[axis], room[axis]) = (from, to - from);
         }
         if room[0].saturating_mul(room[1]) > MAX_ROOM {
-            return Err(TooFar);
+            return Err(NoRoom);
         }
         let mut larger = Self {
             low,
             room,
-            directory: vec![NONE; usize::try_from(room[0] * room[1]).map_err(|_| TooFar)?],
+            directory: vec![NONE; usize::try_from(room[0] * room[1]).map_err(|_| NoRoom)?],
             ..Self::new(self.scale)
         };
         let columns = self.room[0].max(1);
@@ -230,7 +234,7 @@ impl Field {
             }
         }
         (self.low, self.room, self.directory) = (low, room, larger.directory);
-        self.slot(tile).ok_or(TooFar)
+        self.slot(tile).ok_or(NoRoom)
     }
 
     /// Returns the points of all cells, except of those in which another field of the same scale holds one.

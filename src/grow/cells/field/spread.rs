@@ -1,11 +1,11 @@
 //! Propagation of labels to neighbouring cells.
 
-use super::{Field, SIDE, TooFar, WIDTH, bits, corner, tile_of, within};
+use super::{Field, NoRoom, SIDE, WIDTH, bits, corner, tile_of, within};
 
 impl Field {
     /// Adds the cells of another field of the same scale, each with the greatest label of the cells around
     /// it.
-    pub(in crate::grow::cells) fn spread_to(&mut self, other: &Self) -> Result<(), TooFar> {
+    pub(in crate::grow::cells) fn spread_to(&mut self, other: &Self) -> Result<(), NoRoom> {
         // Words with cells that have no label yet.
         let mut open = Vec::new();
         for row in other.low[1] * SIDE..(other.low[1] + other.room[1]) * SIDE {
