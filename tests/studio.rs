@@ -698,6 +698,50 @@ fn changes_of_the_file_arrive() {
     fs::write(page.folder.path().join("mine.yaml"), [0xff, 0xfe, 0]).unwrap();
     thread::sleep(Duration::from_millis(200));
     assert_eq!(page.state()["text"], TREE, "what is no text is left alone");
+    assert_eq!(page.put(KOCH).status, 200);
+    assert_eq!(page.call("POST", "/save", &json!({})).status, 409);
+    let kept = fs::read(page.folder.path().join("mine.yaml")).unwrap();
+    assert_eq!(kept, [0xff, 0xfe, 0], "and not replaced");
+}
+
+/// A text that was typed before another program saved the file is in conflict with it.
+#[test]
+fn what_was_typed_upon_an_older_file_replaces_nothing() {
+    let page = Page::of(KOCH);
+    let revision = page.state()["revision"].as_u64().unwrap();
+    let path = page.folder.path().join("rule.yaml");
+    until("the change", || {
+        fs::write(&path, TREE).unwrap();
+        thread::sleep(Duration::from_millis(150));
+        page.state()["text"] == TREE
+    });
+    let mine = KOCH.replace("1/3", "0.3");
+    let typed = || {
+        let place = format!("/text?revision={revision}&tab=one");
+        page.call("PUT", &place, &mine.as_str().into())
+    };
+    let state = typed().json();
+    assert_eq!(
+        (&state["text"], &state["theirs"]),
+        (&json!(mine), &json!(TREE))
+    );
+    assert_eq!(page.call("POST", "/save", &json!({})).status, 409);
+    assert_eq!(page.read("rule.yaml"), TREE);
+    let settled = page
+        .call("POST", "/settle", &json!({ "theirs": true }))
+        .json();
+    assert_eq!(
+        (&settled["text"], &settled["isSaved"]),
+        (&json!(TREE), &json!(true))
+    );
+    // The own text, once that is decided.
+    assert_eq!(typed().status, 200);
+    let settled = page
+        .call("POST", "/settle", &json!({ "theirs": false }))
+        .json();
+    assert_eq!(settled["text"], json!(mine));
+    assert_eq!(page.call("POST", "/save", &json!({})).status, 200);
+    assert_eq!(page.read("rule.yaml"), mine);
 }
 
 #[test]

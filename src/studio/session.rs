@@ -222,9 +222,16 @@ impl Session {
     }
 
     /// Replaces the text; `revision` is the one on which the change is based.
+    ///
+    /// A text that another program has saved in the meantime is in conflict with it. Any other change is an error.
     pub(super) fn set_text(&mut self, checked: Checked, revision: u64) -> Result<(), Refusal> {
         if revision != self.revision {
-            return Err(Refusal::conflict("the text has changed in the meantime"));
+            if !self.is_saved() {
+                return Err(Refusal::conflict("the text has changed in the meantime"));
+            }
+            if self.saved.as_ref() != Some(&checked.text) {
+                self.theirs = self.saved.take();
+            }
         }
         self.drop_draft();
         if self.history.push(Arc::clone(&checked.text)) {
@@ -324,12 +331,18 @@ impl Session {
         };
         let path = self.roots.allowed(&full)?;
         let is_own = own.is_some_and(|own| is_same(&own, &path));
-        let on_disk = read_text(&path).ok();
-        if is_own && !replaces && on_disk.is_some() && on_disk != self.saved {
-            self.theirs = on_disk;
-            return Err(Refusal::conflict(
-                "another program has changed the file: take its text, or save this one under another name",
-            ));
+        if is_own && !replaces && path.exists() {
+            let Ok(on_disk) = read_text(&path) else {
+                return Err(Refusal::conflict(
+                    "another program has changed the file, which is no text of a rule now: save this one under another name",
+                ));
+            };
+            if self.saved.as_ref() != Some(&on_disk) {
+                self.theirs = Some(on_disk);
+                return Err(Refusal::conflict(
+                    "another program has changed the file: take its text, or save this one under another name",
+                ));
+            }
         }
         if !is_own && !replaces && path.exists() {
             return Err(Refusal::conflict(format!("'{}' exists", path.display())));

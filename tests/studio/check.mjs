@@ -209,6 +209,35 @@ try {
   writeFileSync(join(folder, "tree.yaml"), TREE.replace("angle: {value: 38", "angle: {value: 70"));
   await browser.until("document.querySelector('#code').value.includes('value: 70')");
   checks += 1;
+  // While one types: both texts are kept.
+  const theirs = TREE.replace("angle: {value: 38", "angle: {value: 55");
+  await browser.value("void (window.typist = setInterval(() => { const code = document.querySelector('#code'); code.value += '#'; code.dispatchEvent(new InputEvent('input')); }, 90))");
+  writeFileSync(join(folder, "tree.yaml"), theirs);
+  await new Promise((resolve) => setTimeout(resolve, 1200));
+  await browser.value("clearInterval(window.typist)");
+  await browser.until("!document.querySelector('#conflict').hidden");
+  check((await browser.value("document.querySelector('#code').value")).includes("value: 70"), "the typed text stays");
+  await browser.click("#save");
+  await settled();
+  check(readFileSync(join(folder, "tree.yaml"), "utf8") === theirs, "the other text stays in the file");
+  await browser.click("[data-settle=theirs]");
+  await browser.until("document.querySelector('#code').value.includes('value: 55')");
+
+  // Ends of lines that differ are kept, but for those of what is typed.
+  const file = TREE.split("\n").map((line, at) => line + (at % 3 ? "\r\n" : "\n")).join("");
+  writeFileSync(join(folder, "ends.yaml"), file);
+  const mixed = await serve("ends.yaml");
+  studios.push(mixed);
+  await open(mixed.url);
+  await browser.click("#tab-text");
+  await browser.click("#save");
+  await browser.until("document.querySelector('#status').textContent.startsWith('Saved')");
+  check(readFileSync(join(folder, "ends.yaml"), "utf8") === file, "nothing is written but what was changed");
+  await type("angle: {value: 38", "angle: {value: 39");
+  await browser.until("document.querySelector('#file').className === 'quiet unsaved'");
+  await browser.click("#save");
+  await browser.until("document.querySelector('#file').className === 'quiet'");
+  check(readFileSync(join(folder, "ends.yaml"), "utf8") === file.replace("angle: {value: 38", "angle: {value: 39"), "the ends of other lines stay");
 
   // Random trees: six seeds. Vary.
   const random = await serve("random-tree");

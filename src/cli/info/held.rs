@@ -47,8 +47,15 @@ pub(crate) fn hold(
     let loaded = rule.load_from(source, catalogue, true)?;
     if let Some(graph) = loaded.in_space(None)? {
         let proposed = steps::choose_in_space(None, &loaded, &graph);
-        let last = last(&graph, proposed, most);
-        let graph = loaded.in_space(Some(last))?.unwrap_or(graph);
+        // Elements that depend on draws are counted one by one.
+        let last = match graph.draws() {
+            true => proposed + BEYOND,
+            false => last(&graph, proposed, most),
+        };
+        let (graph, last) = match loaded.in_space(Some(last)) {
+            Ok(Some(further)) => (further, last),
+            _ => (graph, proposed),
+        };
         let bounds = graph.bounds(last);
         let limit = loaded.other_limit_in_space(&graph)?;
         let graphs = [&graph, limit.as_ref().unwrap_or(&graph)];
@@ -65,16 +72,16 @@ pub(crate) fn hold(
 /// Returns the graph of the last step of the forecast, and that step.
 fn graph(loaded: &Loaded, proposed: u32, most: u64) -> Result<(Graph, u32), Failure> {
     // Each step of such a system has words of its own, which may be long.
-    if loaded.model.as_kind().starts_anew() {
-        let further = loaded.compile(proposed + BEYOND);
-        return match further {
-            Ok(graph) => Ok((graph, proposed + BEYOND)),
-            Err(_) => Ok((loaded.compile(proposed)?, proposed)),
-        };
+    if !loaded.model.as_kind().starts_anew()
+        && let Ok(graph) = loaded.compile(proposed.max(MOST))
+    {
+        let last = last(&graph, proposed, most);
+        return Ok((loaded.compile(last)?, last));
     }
-    let graph = loaded.compile(proposed.max(MOST))?;
-    let last = last(&graph, proposed, most);
-    Ok((loaded.compile(last)?, last))
+    match loaded.compile(proposed + BEYOND) {
+        Ok(graph) => Ok((graph, proposed + BEYOND)),
+        Err(_) => Ok((loaded.compile(proposed)?, proposed)),
+    }
 }
 
 /// Returns the last step of a forecast.

@@ -39,6 +39,8 @@ pub(crate) struct Pointer {
     /// Whether the ends of generators may be moved.
     #[serde(default)]
     unlocked: bool,
+    /// Map that is taken hold of at its corner, whatever lies nearer.
+    map: Option<usize>,
 }
 
 fn parts() -> u32 {
@@ -175,14 +177,29 @@ fn hit_element(panel: &Panel, event: &Pointer) -> Option<usize> {
 }
 
 fn hit_map(panel: &Panel, event: &Pointer) -> Option<(usize, Grip, [f64; 2])> {
-    let reach = REACH * event.pixel;
-    for (index, map) in panel.maps.iter().enumerate().rev() {
-        let [o, x, y] = map.frame;
-        for (grip, place) in [(Grip::X, x), (Grip::Y, y), (Grip::Body, o)] {
-            if distance(place, event.place()) <= reach {
-                return Some((index, grip, place));
-            }
-        }
+    if let Some(index) = event.map {
+        return Some((index, Grip::Body, panel.maps.get(index)?.frame[0]));
+    }
+    let handles = panel
+        .maps
+        .iter()
+        .enumerate()
+        .rev()
+        .flat_map(|(index, map)| {
+            let [o, x, y] = map.frame;
+            [(Grip::Body, o), (Grip::X, x), (Grip::Y, y)].map(|(grip, place)| (index, grip, place))
+        });
+    let far = |&(_, _, place): &(usize, Grip, [f64; 2])| distance(place, event.place());
+    // Of handles in one place, a corner of a map that is drawn above others comes first.
+    let order = |it: &(usize, Grip, [f64; 2])| (far(it), !matches!(it.1, Grip::Body));
+    let nearest = handles
+        .filter(|handle| far(handle) <= REACH * event.pixel)
+        .min_by(|a, b| {
+            let ((a, x), (b, y)) = (order(a), order(b));
+            a.total_cmp(&b).then(x.cmp(&y))
+        });
+    if nearest.is_some() {
+        return nearest;
     }
     let inside = |map: &maps::MapHandle| {
         let [o, x, y] = map.frame;
@@ -205,7 +222,7 @@ fn down(session: &mut Session, event: &Pointer) -> Result<(), Refusal> {
     let near = |place: [f64; 2]| distance(place, event.place());
     let point = (0..panel.points.len())
         .map(|index| (near(panel.place(index)), index))
-        .filter(|(far, _)| *far <= REACH * event.pixel)
+        .filter(|(far, _)| *far <= REACH * event.pixel && event.map.is_none())
         .min_by(|a, b| a.0.total_cmp(&b.0));
     let (what, at) = match (point, hit_element(panel, event), hit_map(panel, event)) {
         (Some((_, index)), _, _) => (What::Point(index), panel.place(index)),

@@ -84,11 +84,8 @@ fn parts<'n>(node: &'n Node, names: &Names) -> Option<(Vec<Part<'n>>, Basis)> {
                 (DAffine2::from_mat2(linear), basis)
             }
             _ if TRANSLATIONS.contains(&key) => {
-                let (by, basis) = match names.value(node) {
-                    Some((x, basis)) => (DVec2::new(x, 0.0), basis),
-                    None => names.point(node).map(|(by, basis)| (by.into(), basis))?,
-                };
-                (DAffine2::from_translation(by), basis)
+                let (by, basis) = names.point(node)?;
+                (DAffine2::from_translation(by.into()), basis)
             }
             _ if OTHERS.contains(&key) => return None,
             _ => continue,

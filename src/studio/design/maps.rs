@@ -173,7 +173,10 @@ fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
     let mut take = |key: &str| match node.get(key) {
         None => Some(None),
         Some(node) => {
-            let (value, own) = pair(node, names)?;
+            let (value, own) = match key {
+                "scale" | "rotate" => pair(node, names)?,
+                _ => names.point(node).map(|(at, own)| (at.into(), own))?,
+            };
             basis = basis.max(own);
             Some(Some(value))
         }

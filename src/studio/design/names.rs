@@ -96,18 +96,22 @@ impl Names {
     }
 
     fn basis(&self, expression: &Expression) -> Basis {
+        let is_parameter = |name: &str| {
+            let has = |end: &str| self.values.contains_key(&format!("{name}{end}"));
+            has("") || has(PARTS[0])
+        };
         let names = expression.names();
         let bases = names
             .iter()
             .map(|(name, _)| match self.drawn.contains(*name) {
                 true => Basis::Drawn,
-                false if self.values.contains_key(*name) => Basis::Parameters,
+                false if is_parameter(name) => Basis::Parameters,
                 false => Basis::Numbers,
             });
         bases.max().unwrap_or(Basis::Numbers)
     }
 
-    /// Returns the value of a point: a list of two numbers, or the name of a complex parameter.
+    /// Returns the value of a point: a list of two numbers, or a real or complex number.
     pub(super) fn point(&self, node: &Node) -> Option<([f64; 2], Basis)> {
         match &node.value {
             Value::Sequence(parts) => {
@@ -117,9 +121,12 @@ impl Names {
                 let ((x, one), (y, other)) = (self.value(x)?, self.value(y)?);
                 Some(([x, y], one.max(other)))
             }
-            Value::Text(name) => {
-                let [x, y] = PARTS.map(|part| self.values.get(&format!("{name}{part}")).copied());
-                Some(([x?, y?], Basis::Parameters))
+            Value::Number(value) => Some(([*value, 0.0], Basis::Numbers)),
+            Value::Text(text) => {
+                let formula = Expression::parse(text).ok()?;
+                let [x, y] = formula.complex_parts(&mut 0).ok()?;
+                let value = [self.evaluate(&x)?, self.evaluate(&y)?];
+                Some((value, self.basis(&formula)))
             }
             _ => None,
         }

@@ -411,7 +411,7 @@ async function keys(event) {
     const at = (sign) => ({ panel: id, x: from[0] + sign * step[0] * by, y: from[1] + sign * step[1] * by, pixel: by / 100, alt: event.altKey });
     held = { panel: id, view: block.lastElementChild.dataset.view };
     await settled();
-    await send({ ...at(0), phase: "down" });
+    await send({ ...at(0), phase: "down", map: own.what === "map" ? own.index : null });
     await send({ ...at(1), phase: "move" });
     held = null;
     await send({ ...at(1), phase: "up" });

@@ -676,15 +676,27 @@ function hex(text) {
 // Text: the editor, its mistakes and completions.
 
 const code = $("code");
-let hasReturns = false; // whether lines end with \r\n, which pages do not keep
 let typing = 0;
-const toPage = (text) => text.replaceAll("\r\n", "\n");
-const toFile = (text) => (hasReturns ? text.replaceAll("\n", "\r\n") : text);
+let base = null; // the text that is typed upon, with its revision
+const toPage = (text) => text.replace(/\r\n?/g, "\n");
 /** Returns a position of the page's text for one of the file's. */
-const inPage = (at) => at - (hasReturns ? (state.text.slice(0, at).match(/\r\n/g) ?? []).length : 0);
+const inPage = (at) => at - (state.text.slice(0, at).match(/\r\n/g) ?? []).length;
+/** Returns the file's text for one of the page, which keeps no returns: what is not changed keeps the ends of its lines. */
+function toFile(text, file) {
+  const before = toPage(file);
+  const least = Math.min(before.length, text.length);
+  let [from, back] = [0, 0];
+  while (from < least && before[from] === text[from]) from += 1;
+  while (back < least - from && before.at(-1 - back) === text.at(-1 - back)) back += 1;
+  const ends = /\r\n/.test(file) && !/[^\r]\n/.test(file) ? "\r\n" : "\n";
+  const places = [];
+  for (let at = 0; at < file.length; at += file.startsWith("\r\n", at) ? 2 : 1) places.push(at);
+  places.push(file.length);
+  const added = text.slice(from, text.length - back).replaceAll("\n", ends);
+  return file.slice(0, places[from]) + added + file.slice(places[before.length - back]);
+}
 
 function showText() {
-  hasReturns = /\r\n/.test(state.text) && !/[^\r]\n/.test(state.text);
   const text = toPage(state.text);
   if (code.value !== text && !typing) {
     const at = code.selectionStart;
@@ -726,21 +738,26 @@ function goToPlace({ range }) {
 code.onscroll = () => ([$("marks").scrollTop, $("marks").scrollLeft] = [code.scrollTop, code.scrollLeft]);
 code.oninput = (event) => {
   clearTimeout(typing);
+  base ??= state;
   typing = setTimeout(sendText, 220);
   mark();
   if (event.inputType === "insertText") suggest();
   else hideWords();
 };
 async function sendText() {
-  const text = toFile(code.value);
-  typing = 0;
+  const on = base;
+  [typing, base] = [0, null];
+  if (!on) return;
+  const text = toFile(code.value, on.text);
   if (text === state.text) return;
   try {
-    take(await json("PUT", `/text?revision=${state.revision}&tab=${tab}`, text, "text/plain"));
+    take(await json("PUT", `/text?revision=${on.revision}&tab=${tab}`, text, "text/plain"));
   } catch (error) {
     say(error.message);
     await refresh();
   }
+  // More may have been typed in the meantime.
+  if (base) base = state;
 }
 let suggested = [];
 async function suggest() {
@@ -971,6 +988,16 @@ async function figures() {
     say(error.message);
   }
 }
+/** Asks for the figures of the values that are set. */
+async function redesign() {
+  try {
+    const { design } = await json("GET", "/state");
+    state.design = design;
+    figures();
+  } catch (error) {
+    say(error.message);
+  }
+}
 const tabs = [...document.querySelectorAll("[role=tab]")];
 function openTab(button, focuses = false) {
   tabs.forEach((it) => {
@@ -982,6 +1009,7 @@ function openTab(button, focuses = false) {
   sessionStorage.setItem("tab", button.id);
   if (button.id === "tab-library") library().catch((error) => say(error.message));
   if (button.id === "tab-text") mark();
+  if (button.id === "tab-design" && state.design !== undefined) redesign();
   document.body.classList.toggle("designs", button.id === "tab-design");
   if (state.design !== undefined) figures();
 }
