@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, HalfSpace};
+use crate::geometry::{Bounds, DAffine3, DMat3, DVec3, HalfSpace, Outline as _, Solid};
 
 use super::scene::{Child, Part};
 
@@ -23,10 +23,18 @@ const FINEST: f64 = 1.0 / 4096.0;
 /// of the boxes that were reached.
 const MAX_VISITED: usize = 1 << 17;
 
+/// Number of rounds over all half-spaces in which the bound of a solid is lowered.
+const ROUNDS: usize = 8;
+
+/// Number of steps in which the multiple of a half-space's normal is enclosed, and then narrowed.
+const STEPS: usize = 40;
+
 /// Instance in the search for an extent.
 struct Candidate {
     /// No point of it is farther.
     bound: f64,
+    /// Whether the bound is that of a solid, not of a box about it.
+    is_of_solid: bool,
     level: u32,
     map: DAffine3,
     object: usize,
@@ -87,6 +95,7 @@ impl Search<'_> {
             let (middle, half) = self.parts[object].hull.image(&map.matrix3);
             Some(Candidate {
                 bound: bound(middle + map.translation, half, within, axis)?,
+                is_of_solid: false,
                 level,
                 map,
                 object,
@@ -103,9 +112,17 @@ impl Search<'_> {
             let part = &self.parts[found.object];
             visited += 1;
             if !part.is_replaced || Some(found.level) == self.steps {
-                if part.solid.is_some() {
+                let Some(solid) = &part.solid else { continue };
+                if found.is_of_solid {
                     return Some(found.bound);
                 }
+                heap.extend(
+                    bound_of_solid(solid, &found.map, within, axis).map(|bound| Candidate {
+                        bound: bound.min(found.bound),
+                        is_of_solid: true,
+                        ..found
+                    }),
+                );
                 continue;
             }
             if found.size <= finest || visited > MAX_VISITED {
@@ -144,4 +161,81 @@ fn bound(middle: DVec3, half: DVec3, within: &[HalfSpace], axis: DVec3) -> Optio
         }
     }
     Some(least)
+}
+
+/// Returns an upper bound of an axis on the part of a convex solid in half-spaces, exact for a single one and for a
+/// slab; `None` if nothing is left of the solid.
+///
+/// By duality, the greatest axis · x is the least value of h(axis − Σ λᵢ nᵢ) + Σ λᵢ dᵢ for multiples λᵢ ≥ 0, where h
+/// is the support function of the solid (Rockafellar 1970, § 28).
+fn bound_of_solid(solid: &Solid, map: &DAffine3, within: &[HalfSpace], axis: DVec3) -> Option<f64> {
+    let inverse = map.matrix3.transpose();
+    let support =
+        |direction: DVec3| map.translation.dot(direction) + solid.support(inverse * direction);
+    let mut cutting = Vec::new();
+    for space in within {
+        let nearest = -support(-space.normal);
+        let farthest = support(space.normal);
+        let tolerance = 1e-12 * (farthest - nearest + space.distance.abs());
+        if nearest > space.distance + tolerance {
+            return None;
+        }
+        if farthest > space.distance {
+            cutting.push((space, 0.0));
+        }
+    }
+    let mut least = support(axis);
+    let mut rest = axis;
+    let mut paid = 0.0;
+    for _ in 0..ROUNDS {
+        let before = least;
+        for (space, multiple) in &mut cutting {
+            let HalfSpace { normal, distance } = **space;
+            rest += normal * *multiple;
+            paid -= distance * *multiple;
+            let value =
+                |multiple: f64| paid + multiple * distance + support(rest - normal * multiple);
+            (*multiple, least) = lowest(value, rest, normal);
+            rest -= normal * *multiple;
+            paid += distance * *multiple;
+        }
+        if before - least <= 1e-12 * before.abs() {
+            break;
+        }
+    }
+    // Lower than the solid, if the half-spaces together leave nothing of it.
+    let lowest = -support(-axis);
+    (least >= lowest - 1e-9 * (support(axis) - lowest)).then_some(least)
+}
+
+/// Returns the multiple of a normal, from 0 on, at which a convex function is lowest, and its value there.
+fn lowest(value: impl Fn(f64) -> f64, axis: DVec3, normal: DVec3) -> (f64, f64) {
+    let mut best = (0.0, value(0.0));
+    let mut at = |multiple: f64| {
+        let found = value(multiple);
+        if found < best.1 {
+            best = (multiple, found);
+        }
+        found
+    };
+    // Here nothing of the axis is left along the normal: the exact place where both are parallel.
+    let along = (axis.dot(normal) / normal.length_squared()).max(0.0);
+    at(along);
+    let mut high = along.max(axis.length() / normal.length());
+    for _ in 0..STEPS {
+        if at(2.0 * high) >= at(high) {
+            break;
+        }
+        high *= 2.0;
+    }
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let (mut low, mut high) = (0.0, 2.0 * high);
+    for _ in 0..STEPS {
+        let [left, right] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        match at(left) <= at(right) {
+            true => high = right,
+            false => low = left,
+        }
+    }
+    best
 }

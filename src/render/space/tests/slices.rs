@@ -131,6 +131,44 @@ fn a_cut_shows_what_lies_behind_its_plane() {
     assert!(seen.pixels().iter().all(|pixel| *pixel == nearest));
 }
 
+/// Turned and sheared solids are cut themselves, not boxes about them.
+#[test]
+fn pictures_fit_what_is_left_of_solids() {
+    let ellipsoid = graph_of(
+        "{kind: instancing, space: 3, objects: {b: [{sphere: {radius: 0.5}}]}, \
+         scene: [{object: b, scale: [3, 1, 1], rotate: {z: 30}}]}",
+    );
+    let options = Options::default().size(Size::Long(200));
+    let draw = |space: &SpaceOptions| {
+        draw(&ellipsoid, None, &options, space, None)
+            .unwrap()
+            .pixmap
+    };
+    let half = |normal: DVec3, distance: f64| HalfSpace { normal, distance };
+    let view =
+        |azimuth: f64| SpaceOptions::default().camera(Camera::default().from([azimuth, 0.0]));
+    let whole = draw(&view(20.0));
+    // Nothing is cut off.
+    let cuts = vec![half(DVec3::X, 5.0), half(DVec3::new(-1.0, 0.2, 0.3), 4.0)];
+    assert_eq!(draw(&view(20.0).cuts(cuts)).data(), whole.data());
+    // With [[1.75, √0.75], [√0.75, 0.75]] as its squares and products along x and y, what is left, x ≤ 0, reaches
+    // from −√1.75 to 0 and from −√0.75 to √(0.75 − 0.75 / 1.75).
+    let seen = draw(&view(0.0).cuts(vec![half(DVec3::X, 0.0)]));
+    let tall = 0.75_f64.sqrt() + (0.75_f64 - 0.75 / 1.75).sqrt();
+    let expected = 200.0 * 1.75_f64.sqrt() / tall;
+    assert_eq!(seen.height(), 200);
+    assert!(
+        (f64::from(seen.width()) - expected).abs() <= 1.0,
+        "{} {expected}",
+        seen.width()
+    );
+    // Between two parallel planes, seen along the axis of rotation, a disk is left.
+    let slab = Slice::new(DVec3::new(0.75_f64.sqrt(), 0.5, 0.0), 0.9).thickness(Some(1e-6));
+    let camera = Camera::default().from(slab.from());
+    let seen = draw(&SpaceOptions::default().camera(camera).slice(Some(slab)));
+    assert_eq!([seen.width(), seen.height()], [200, 200]);
+}
+
 /// A gap of the set that is finer than the boxes by which the extent of a slice is found.
 #[test]
 fn a_slice_in_a_fine_gap_is_an_error() {
