@@ -1,7 +1,7 @@
 //! Numbers and points as written in files, with their places.
 
 use crate::diagnostic::Place;
-use crate::expression::{Expression, PARTS};
+use crate::expression::Expression;
 
 /// A value with its source span.
 #[derive(Clone, Debug)]
@@ -41,30 +41,6 @@ impl WrittenPoint {
             z: None,
             place: place.clone(),
         }
-    }
-
-    /// Returns a complex parameter of the given name as a point.
-    pub(crate) fn named(name: &str, place: &Place) -> Self {
-        let part = |part: &str| Written {
-            value: Expression::parse(&format!("{name}{part}"))
-                .unwrap_or_else(|_| Expression::unknown()),
-            place: place.clone(),
-        };
-        let [x, y] = PARTS.map(part);
-        Self {
-            x,
-            y,
-            z: None,
-            place: place.clone(),
-        }
-    }
-
-    /// Returns the name of the complex parameter if the point is written as one.
-    pub(crate) fn name(&self) -> Option<&str> {
-        let names = self.x.value.names();
-        let (name, _) = names.first()?;
-        let name = name.strip_suffix(PARTS[0])?;
-        (self.place.text() == name).then(|| self.place.text())
     }
 
     /// Returns whether the expressions of all coordinates are written alike; a third one that is left out is 0.

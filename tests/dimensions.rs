@@ -137,17 +137,27 @@ fn exact_dimensions_alone_are_those_beside_measurements() {
     }
 }
 
+/// Options that have no effect on an input are refused.
 #[test]
-fn exact_dimensions_are_those_of_rules() {
-    let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+fn options_have_inputs_on_which_they_have_an_effect() {
     let points = "x,y\n0,0\n1,1\n2,0\n";
-    let run = command
-        .args(["dim", "-", "--exact"])
-        .write_stdin(points)
-        .assert()
-        .code(2);
-    let messages = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
-    assert!(messages.contains("--exact is for rules"), "{messages}");
+    let picture = "P1\n3 2\n1 0 1\n0 1 0\n";
+    let rule = "kind: ifs\nmaps: [{scale: 1/2}, {scale: 1/2, translate: [1, 0]}]\n";
+    let cases: [(&str, &[&str], &str); 6] = [
+        (points, &["--exact"], "--exact is for rules"),
+        (points, &["--threshold", "9"], "--threshold is for pictures"),
+        (picture, &["--steps", "3"], "--steps is for rules"),
+        (picture, &["--columns", "x,y"], "--columns is for tables"),
+        (rule, &["--invert"], "and for rules with --steps"),
+        (rule, &["--columns", "x,y"], "--columns is for tables"),
+    ];
+    for (input, options, message) in cases {
+        let mut command = assert_cmd::Command::cargo_bin("kfrac").unwrap();
+        command.args(["dim", "-"]).args(options);
+        let run = command.write_stdin(input).assert().code(2);
+        let messages = String::from_utf8_lossy(&run.get_output().stderr).into_owned();
+        assert!(messages.contains(message), "{options:?}: {messages}");
+    }
 }
 
 /// Approximants as they are drawn have the dimension of their limit within three standard errors, where copies do not

@@ -118,7 +118,7 @@ pub(super) struct Arguments {
     /// The second half of the film goes back
     #[arg(long)]
     bounce: bool,
-    /// Number of further frames for which the first and the last one are kept, each
+    /// Number of further frames for which the first and the last one, with --bounce the one at the turn, are kept, each
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = number::whole("a number of frames", 0..=10_000_u32))]
     hold: u32,
     /// Course of time between key frames [default: in-out, or linear with --loop, --zoom and --seed]

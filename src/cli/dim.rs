@@ -19,6 +19,7 @@ use crate::measure::{BoxCounting, Generalised, Lacunarity, exact};
 use crate::parallel::all_cores;
 use crate::render::{self, Labels};
 
+use self::kind::InputKind;
 pub(in crate::cli) use self::report::hausdorff;
 use self::series::Series;
 use super::exchanged::ExchangedComponents;
@@ -235,16 +236,31 @@ impl Arguments {
         }
     }
 
-    /// Returns an option that is given and has a meaning for rules alone.
-    fn of_rules(&self) -> Option<&'static str> {
-        let given = [
+    /// Returns the reason for which an option that is given has no meaning for a kind of input.
+    fn without_meaning(&self, kind: InputKind) -> Option<String> {
+        let is_rule = kind == InputKind::Rule;
+        let of_rules = [
             ("--exact", self.exact),
             ("--steps", self.steps.is_some()),
             ("--seeds", self.seeds.is_some()),
         ];
-        given
+        let of_rules = of_rules
             .into_iter()
-            .find_map(|(option, is_given)| is_given.then_some(option))
+            .find(|(_, is_given)| *is_given && !is_rule);
+        if let Some((option, _)) = of_rules {
+            return Some(format!(
+                "{option} is for rules: pictures and points are measured as they are"
+            ));
+        }
+        let has_pixels = kind == InputKind::Picture || self.steps.is_some();
+        if let Some(option) = self.pixels.given().filter(|_| !has_pixels) {
+            return Some(match is_rule {
+                true => format!("{option} is for pictures, and for rules with --steps"),
+                false => format!("{option} is for pictures: all points are measured"),
+            });
+        }
+        let has_columns = kind == InputKind::Table || self.columns.is_none();
+        (!has_columns).then(|| "--columns is for tables in CSV".into())
     }
 
     fn threads(&self) -> NonZero<usize> {

@@ -99,8 +99,9 @@ struct Info<'a> {
     fractals: Option<Vec<Count>>,
     length: Option<Vec<Option<f64>>>,
     area: Option<Vec<Option<f64>>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    volume: Option<Vec<Option<f64>>>,
+    /// Volumes of sets in space.
+    #[serde(flatten)]
+    volume: Option<VolumeInfo>,
     #[serde(serialize_with = "numbers::rounded")]
     svg_bytes: Option<Vec<Option<f64>>>,
     #[serde(serialize_with = "numbers::rounded")]
@@ -116,6 +117,11 @@ struct Info<'a> {
     structure: Option<StructureInfo>,
     #[serde(flatten)]
     turtle: Option<TurtleInfo>,
+}
+
+#[derive(Serialize)]
+struct VolumeInfo {
+    volume: Option<Vec<Option<f64>>>,
 }
 
 #[derive(Serialize)]
@@ -210,7 +216,9 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             area: { graph.is_similar() }
                 .then(|| measures(surfaces, |level| level.area))
                 .flatten(),
-            volume: measures(surfaces, |level| level.volume),
+            volume: Some(VolumeInfo {
+                volume: measures(surfaces, |level| level.volume),
+            }),
             turtle: TurtleInfo::of(&loaded.model, &graph),
             ..own
         };

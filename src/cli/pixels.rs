@@ -21,9 +21,9 @@ pub(super) struct PixelArguments {
     #[arg(long, value_parser = channel())]
     pub(super) channel: Option<Channel>,
     /// Least darkness or opacity, from 1 to 255, of a pixel of the set; or otsu, for the best separation of the pixels
-    /// (Otsu 1979)
-    #[arg(long, value_name = "T", default_value = "otsu", value_parser = threshold)]
-    pub(super) threshold: Threshold,
+    /// (Otsu 1979) [default: otsu]
+    #[arg(long, value_name = "T", value_parser = threshold)]
+    pub(super) threshold: Option<Threshold>,
     /// Takes the light or transparent pixels instead
     #[arg(long)]
     pub(super) invert: bool,
@@ -76,6 +76,18 @@ pub(super) struct PixelSet {
 }
 
 impl PixelArguments {
+    /// Returns an option that is given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let given = [
+            ("--channel", self.channel.is_some()),
+            ("--threshold", self.threshold.is_some()),
+            ("--invert", self.invert),
+        ];
+        given
+            .into_iter()
+            .find_map(|(option, is_given)| is_given.then_some(option))
+    }
+
     /// Reads the set of pixels of a picture file, or of standard input for `-`.
     pub(super) fn read(&self, path: &Path) -> Result<PixelSet, Failure> {
         let is_standard = path == Path::new("-");
@@ -102,7 +114,8 @@ impl PixelArguments {
             true => picture.inverted(),
             false => picture,
         };
-        let threshold = match self.threshold {
+        let asked = self.threshold.unwrap_or_default();
+        let threshold = match asked {
             Threshold::Otsu => picture.otsu(),
             Threshold::Value(value) => value,
         };
@@ -121,7 +134,7 @@ impl PixelArguments {
             );
             return Err(anyhow!(message).into());
         }
-        let is_most = set > all / 2 && self.threshold == Threshold::Otsu;
+        let is_most = set > all / 2 && asked == Threshold::Otsu;
         let warning = is_most.then(|| {
             format!(
                 "{:.0} % of all pixels are {quality}: with --invert, the others are taken",

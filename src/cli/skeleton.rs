@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = picture::named::<Format>())]
     format: Option<Format>,
     /// Computes the centres of the maximal disks of a family
-    #[arg(long, value_parser = morph::disk())]
+    #[arg(long, value_parser = morph::disk(), conflicts_with = "angle")]
     disk: Option<DiskFamily>,
     /// Least angle in degrees at which the nearest points outside are seen from the end of a branch; larger ones leave
     /// fewer branches

@@ -109,14 +109,18 @@ impl Listed for Frame3 {
     type Coordinates = [f64; 9];
     type Entries = [f64; 12];
 
-    /// Graphs in space have the coordinates of their files. The vector upwards is H × L, the direction of the x axis
-    /// times that of the y axis: the normal of the element's surface. It is zero where the map takes both to one line.
+    /// Graphs in space have the coordinates of their files. The vector upwards is the normal of the element's surface:
+    /// H × L, the direction of the x axis times that of the y axis, or the opposite where the map mirrors. It is zero
+    /// where the map takes both to one line.
     fn listed(self, _place: &Homothety<DVec3>, _moves_map: bool) -> Option<([f64; 9], [f64; 12])> {
         let [from, to] = self.ends();
         let linear = &self.map().matrix3;
         let heading = linear.x_axis.normalize_or_zero();
         let up = heading.cross(linear.y_axis.normalize_or_zero());
-        let up = up.normalize_or_zero();
+        let up = match linear.determinant() < 0.0 {
+            true => -up.normalize_or_zero(),
+            false => up.normalize_or_zero(),
+        };
         let coordinates = [from.x, from.y, from.z, to.x, to.y, to.z, up.x, up.y, up.z];
         let is_finite = self.is_in_range() && from.is_finite() && to.is_finite();
         is_finite.then(|| (coordinates, self.map().to_cols_array()))

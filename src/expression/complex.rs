@@ -7,7 +7,7 @@ use super::operator::{One, Two};
 use super::{Expression, ExpressionError, Node, functions::Function, scope};
 
 /// Name of the imaginary unit.
-pub(crate) const UNIT: &str = "i";
+const UNIT: &str = "i";
 
 /// Largest number of parts of an expression.
 const MOST: usize = 1 << 12;
@@ -19,13 +19,13 @@ const MAX_POWER: u32 = 64;
 type Parts = [Expression; 2];
 
 impl Expression {
-    /// Returns whether the imaginary unit occurs, other than in functions and exponents.
-    pub(crate) fn has_imaginary_unit(&self) -> bool {
+    /// Returns whether the imaginary unit or the name of another complex number occurs, other than in functions and exponents.
+    pub(crate) fn is_complex(&self, is_complex: &dyn Fn(&str) -> bool) -> bool {
         match &self.node {
-            Node::Name(name) => name == UNIT,
-            Node::Prefix(_, operand) => operand.has_imaginary_unit(),
-            Node::Infix(Two::Power, operands) => operands[0].has_imaginary_unit(),
-            Node::Infix(_, operands) => operands.iter().any(Self::has_imaginary_unit),
+            Node::Name(name) => name == UNIT || is_complex(name),
+            Node::Prefix(_, operand) => operand.is_complex(is_complex),
+            Node::Infix(Two::Power, operands) => operands[0].is_complex(is_complex),
+            Node::Infix(_, operands) => operands.iter().any(|it| it.is_complex(is_complex)),
             _ => false,
         }
     }

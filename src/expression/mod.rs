@@ -37,7 +37,6 @@ mod tests;
 use std::ops::Range;
 
 pub use affine::AffineOf;
-pub(crate) use complex::UNIT;
 pub use interval::Interval;
 pub(crate) use lex::{PARTS, is_name};
 pub(crate) use precise::{Precise, Precision, leading};

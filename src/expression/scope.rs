@@ -150,11 +150,6 @@ impl Scope {
         self.get(&format!("{name}{}", PARTS[part])).or_else(whole)
     }
 
-    /// Returns whether the name has a meaning, or may have one.
-    pub(crate) fn knows(&self, name: &str) -> bool {
-        self.get(name).is_some()
-    }
-
     /// Returns the error of an unknown name. A similar name is searched if `suggests`.
     pub(super) fn unknown(
         &self,

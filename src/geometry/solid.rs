@@ -30,9 +30,9 @@ pub struct HalfSpace {
 /// The front of a flat solid that is a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// Vector of length 1 across the surface, to its front; it may be given other than it is, for shading.
+    /// Vector of length 1 to the front of the surface; it may be given other than across it.
     pub normal: DVec3,
-    /// Whether the back is a surface too; if not, no light falls on it.
+    /// Whether the back is a surface, too: scenes of meshes show it. Pictures show and light the side that is seen.
     pub is_double: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Place;
 use crate::document::{WrittenNumber, WrittenPoint};
-use crate::expression::{Expression, ExpressionError, PARTS, Program, Scope, Type};
+use crate::expression::{Expression, ExpressionError, Program, Scope, Type};
 use crate::geometry::DVec2;
 use crate::rule::ElementContext;
 
@@ -108,22 +108,6 @@ impl<K> Resolver<K> {
 
     /// Compiles a point in the scope of parameters. Returns `None` if a coordinate is unknown.
     pub(super) fn point(&mut self, point: &WrittenPoint) -> Option<[Program; 2]> {
-        if let Some(name) = point.name()
-            && !PARTS
-                .iter()
-                .all(|part| self.constants.knows(&format!("{name}{part}")))
-        {
-            let (message, hint) = if self.constants.knows(name) {
-                let message = format!("'{name}' is a real number, and a point is needed here");
-                (message, format!("write [{name}, 0]"))
-            } else {
-                let hint =
-                    "write [x, y], or the name of a parameter that is [real part, imaginary part]";
-                (format!("unknown name '{name}'"), hint.into())
-            };
-            self.error_with_hint(&point.place, message, hint);
-            return None;
-        }
         self.numbers([&point.x, &point.y])
     }
 

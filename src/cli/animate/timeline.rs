@@ -50,7 +50,7 @@ pub(super) struct Timeline {
     pub(super) is_loop: bool,
     /// Whether the second half goes back.
     pub(super) bounces: bool,
-    /// Number of frames for which the first and the last one are kept, each.
+    /// Number of frames for which those at both ends of the way are kept, each.
     pub(super) hold: u32,
     pub(super) ease: Ease,
     pub(super) is_smooth: bool,
@@ -81,19 +81,21 @@ impl Timeline {
             ease,
             is_smooth,
         } = *self;
-        let moving = frame.saturating_sub(hold).min(frames - 1);
-        // A film that returns to its start does not show it twice.
-        let last = match is_loop || bounces {
-            true => frames,
-            false => (frames - 1).max(1),
-        };
-        let time = f64::from(moving) / f64::from(last);
+        // The end of the way, from which a film may go back.
+        let end = if bounces { frames / 2 } else { frames - 1 };
+        let begun = frame.saturating_sub(hold);
+        let number = begun
+            .min(end.max(begun.saturating_sub(hold)))
+            .min(frames - 1);
+        let share = |way: u32, whole: u32| f64::from(way) / f64::from(whole.max(1));
         Moment {
+            // A film that returns to its start does not show it twice.
             time: match bounces {
-                true => 1.0 - (1.0 - 2.0 * time).abs(),
-                false => time,
+                true if number > end => share(frames - number, frames - end),
+                _ if is_loop => share(number, frames),
+                _ => share(number, end),
             },
-            number: moving,
+            number,
             closes: is_loop && !bounces,
             ease,
             is_smooth,
@@ -278,6 +280,12 @@ mod tests {
             ..LINE
         };
         assert_eq!(values(bouncing, "0..8"), [0.0, 4.0, 8.0, 4.0]);
+        let odd = Timeline {
+            frames: 5,
+            hold: 1,
+            ..bouncing
+        };
+        assert_eq!(values(odd, "0..6"), [0.0, 0.0, 3.0, 6.0, 6.0, 4.0, 2.0]);
         let one = Timeline { frames: 1, ..LINE };
         assert_eq!(values(one, "3..8"), [3.0]);
     }

@@ -54,12 +54,21 @@ pub(super) fn exact(loaded: &Loaded) -> Result<GraphDimensions, Failure> {
     })
 }
 
+/// Refuses options without a meaning for a kind of input.
+fn check(arguments: &Arguments, kind: InputKind) -> Result<(), Failure> {
+    match arguments.without_meaning(kind) {
+        Some(reason) => Err(Failure::Usage(reason)),
+        None => Ok(()),
+    }
+}
+
 pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Measured, Failure> {
     let path = &arguments.rule;
     let rules = || arguments.rules();
     let is_standard = path == Path::new("-");
     if !is_standard && !path.metadata().is_ok_and(|metadata| !metadata.is_dir()) {
         // The argument may be a name in the library, or nothing.
+        check(arguments, InputKind::Rule)?;
         return of_rule(arguments, rules().load(catalogue, arguments.json)?);
     }
     let name = if is_standard {
@@ -84,13 +93,7 @@ pub(super) fn measure(arguments: &Arguments, catalogue: &Catalogue) -> Result<Me
     };
     let head = read(&mut input, 1 << 12)?;
     let kind = InputKind::of(path, &head);
-    if kind != InputKind::Rule
-        && let Some(option) = arguments.of_rules()
-    {
-        let message =
-            format!("{option} is for rules: pictures and points are measured as they are");
-        return Err(Failure::Usage(message));
-    }
+    check(arguments, kind)?;
     let mut whole = Cursor::new(head).chain(input);
     match kind {
         InputKind::Picture => {

@@ -33,7 +33,7 @@ fn formulas(name: &str, written: &str) -> Result<Vec<ParameterPart>, String> {
         (Err(_), Err(error)) if !is_range => return Err(described(error)),
         (Err(error), _) => return Err(described(error)),
     };
-    if !formulas.iter().any(Expression::has_imaginary_unit) {
+    if !formulas.iter().any(|it| it.is_complex(&|_| false)) {
         return Ok(vec![part(name.to_owned(), formulas, is_range)?]);
     }
     let mut sides = [Vec::new(), Vec::new()];

@@ -115,6 +115,7 @@ fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
         true => ["surface", "volume"],
         false => ["SVG (about)", "time (about)"],
     };
+    let volume = { info.volume.as_ref() }.map_or(&None, |it| &it.volume);
     let head = ["step", "elements", "fertile", "fractals", "length"];
     let head = head.into_iter().chain(last).map(String::from);
     let mut rows: Vec<Vec<String>> = vec![head.collect()];
@@ -129,7 +130,7 @@ fn table(info: &Info<'_>, elements: &[Count], unit: f64) -> String {
             |value: Option<f64>, wording: fn(f64) -> String| value.map_or("-".into(), wording);
         let measured = |column| of(column).map_or("-".into(), |it| readable::measure(it, unit));
         let last = match is_in_space {
-            true => [measured(&info.area), measured(&info.volume)],
+            true => [measured(&info.area), measured(volume)],
             false => [
                 estimated(of(&info.svg_bytes), readable::rough_bytes),
                 estimated(of(&info.seconds), readable::duration),

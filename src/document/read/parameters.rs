@@ -1,5 +1,7 @@
 //! Reading of parameters.
 
+use std::collections::BTreeSet;
+
 use crate::document::metadata::ParameterDocument;
 use crate::document::node::{Key, Node, Value};
 use crate::document::reader::Reader;
@@ -15,7 +17,7 @@ pub(in crate::document) const PARAMETER: Shape = Shape {
     keys: &[&keys![
         alone value: NUMBER,
             "Its value, where nothing else is set. It may use the parameters above it. A list of two \
-             is a complex number, as are its limits then: [real part, imaginary part]; so is a formula with i, 1/(2 - i).";
+             is a complex number, as are its limits then: [real part, imaginary part]; so is a formula with i or another complex parameter, 1/(2 - i).";
         min: NUMBER, "The least value that it may be set to.";
         max: NUMBER, "The largest value that it may be set to.";
         about: Form::Text, "What it means.";
@@ -38,23 +40,35 @@ pub(in crate::document) const PARAMS: Member = key(
 pub(super) fn read_params(reader: &mut Reader, node: Option<&Node>) -> Vec<ParameterDocument> {
     let Some(node) = node else { return Vec::new() };
     let entries = reader.names(node, "a mapping of parameters", "params: {angle: 45}");
-    entries
-        .iter()
-        .flat_map(|(key, node)| read_param(reader, key, node))
-        .collect()
+    let mut complex = BTreeSet::new();
+    let mut params = Vec::new();
+    for (key, node) in entries {
+        let read = read_param(reader, key, node, &|name| complex.contains(name));
+        if read.iter().any(|it| it.whole.is_some()) {
+            complex.insert(key.name.clone());
+        }
+        params.extend(read);
+    }
+    params
 }
 
-/// Returns whether a value is a complex number: a list, or a formula with the imaginary unit.
-pub(super) fn is_complex(node: &Node) -> bool {
+/// Returns whether a value is a complex number: a list, or a formula with the imaginary unit or with a complex parameter.
+pub(super) fn is_complex(node: &Node, is_known: &dyn Fn(&str) -> bool) -> bool {
     match &node.value {
         Value::Sequence(_) => true,
-        Value::Text(text) => Expression::parse(text).is_ok_and(|it| it.has_imaginary_unit()),
+        Value::Text(text) => Expression::parse(text).is_ok_and(|it| it.is_complex(is_known)),
         _ => false,
     }
 }
 
-/// Reads a parameter, or the two parts of a complex parameter.
-fn read_param(reader: &mut Reader, key: &Key, node: &Node) -> Vec<ParameterDocument> {
+/// Reads a parameter, or the two parts of a complex parameter; `is_known` returns whether a name is that of one above it.
+fn read_param(
+    reader: &mut Reader,
+    key: &Key,
+    node: &Node,
+    is_known: &dyn Fn(&str) -> bool,
+) -> Vec<ParameterDocument> {
+    let is_complex = |node: &Node| is_complex(node, is_known);
     let mut parameter = ParameterDocument {
         name: written(key),
         whole: None,

@@ -344,7 +344,7 @@ fn read_value(
     name: Written<String>,
     node: &Node,
 ) -> Vec<(Written<String>, WrittenNumber)> {
-    if !is_complex(node) {
+    if !is_complex(node, &|_| false) {
         return vec![(name, reader.number(node))];
     }
     let WrittenPoint { x, y, .. } = reader.point(node);

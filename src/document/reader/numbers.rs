@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::document::node::{Node, Value};
 use crate::document::yaml::MAX_VALUES;
 use crate::document::{Written, WrittenNumber, WrittenPoint};
-use crate::expression::{Expression, ExpressionError, UNIT, is_name};
+use crate::expression::{Expression, ExpressionError};
 
 use super::Reader;
 
@@ -140,9 +140,6 @@ impl Reader {
         };
         if self.is_in_space {
             return Some(self.no_coordinates(node, text));
-        }
-        if is_name(text) && text != UNIT {
-            return Some(WrittenPoint::named(text, &node.place));
         }
         /// Number of parts of formulas that are copied in the time in which an operation is read.
         const COPIES: usize = 8;

@@ -127,7 +127,7 @@ fn polyhedron(solid: &Solid) -> String {
             format!(
                 "def Mesh \"shape\"\n{{\nuniform bool doubleSided={}\nint[] faceVertexCounts=[{}]\n\
                  int[] faceVertexIndices=[{}]\nuniform token subdivisionScheme=\"none\"\n",
-                u8::from(faces.len() == 1),
+                u8::from(solid.side().map_or(faces.len() == 1, |side| side.is_double)),
                 counts.join(","),
                 indices.join(","),
             )

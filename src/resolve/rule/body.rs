@@ -195,7 +195,7 @@ impl<K> Resolver<K> {
             self.error_with_hint(
                 &number.place,
                 message,
-                "sides: 2 lets light fall on its back, too",
+                "sides: 2 lets meshes show its back, too",
             );
         }
         let (Some(corners), Some(sides)) = (corners, sides) else {
