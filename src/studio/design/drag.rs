@@ -7,7 +7,7 @@ use crate::edit::Edit;
 use super::super::answer::Refusal;
 use super::super::session::Session;
 use super::act::{Act, Design};
-use super::maps::{self, Grip};
+use super::maps::{self, Grip, Pull};
 use super::names::{Basis, Names};
 use super::scene::{Panel, Role, Scene};
 use super::snap::{Grid, Snapped, Snapping};
@@ -424,7 +424,13 @@ impl Drag {
             true => event.snapping().snap(&self.panel, None, None, to).place,
             false => to,
         };
-        let edits = handle.edits(names, grip, snapped, event.shift, event.pixel);
+        let pull = Pull {
+            grip,
+            to: snapped.into(),
+            similar: event.shift,
+            pixel: event.pixel,
+        };
+        let edits = handle.edits(names, &pull);
         let Some(edits) = edits else {
             let why = format!(
                 "{} is written by {}: in this order, they have no map that lies there",

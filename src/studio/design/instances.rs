@@ -6,7 +6,7 @@ use crate::geometry::{DAffine2, DMat2, DVec2};
 use crate::ifs;
 
 use super::act::below;
-use super::maps::{Grip, MapHandle, dragged, forms, number, pair, rows, two};
+use super::maps::{Grip, MapHandle, Pull, dragged, forms, number, pair, rows, two};
 use super::names::{Basis, Names};
 use super::nice;
 
@@ -110,19 +110,12 @@ pub(super) fn placed(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
 
 /// Returns the edits that write the transforms of an instance of which a grip has been dragged to a place, in the keys in
 /// which they are written; `None` where these keys, in their order, cannot express it.
-pub(super) fn edits(
-    handle: &MapHandle,
-    names: &Names,
-    grip: Grip,
-    to: [f64; 2],
-    similar: bool,
-    pixel: f64,
-) -> Option<Vec<Edit>> {
+pub(super) fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
     let (parts, _) = parts(&handle.node, names)?;
     let (old, _) = placed(&handle.node, names)?;
-    let changes = match grip {
-        Grip::Body => vec![shifted(&parts, DVec2::from(to) - old.translation, pixel)?],
-        Grip::X | Grip::Y => turned(&parts, names, grip, old, to.into(), similar, pixel)?,
+    let changes = match pull.grip {
+        Grip::Body => vec![shifted(&parts, pull.to - old.translation, pull.pixel)?],
+        Grip::X | Grip::Y => turned(&parts, names, old, pull)?,
     };
     let Value::Mapping(entries) = &handle.node.value else {
         let all = changes.iter().map(|(key, value)| format!("{key}: {value}"));
@@ -170,15 +163,13 @@ fn shifted(parts: &[Part<'_>], by: DVec2, pixel: f64) -> Option<Change> {
 }
 
 /// Returns the matrix, or factors and angle, of an instance of which the image of a unit vector has been dragged to a place.
-fn turned(
-    parts: &[Part<'_>],
-    names: &Names,
-    grip: Grip,
-    old: DAffine2,
-    to: DVec2,
-    similar: bool,
-    pixel: f64,
-) -> Option<Vec<Change>> {
+fn turned(parts: &[Part<'_>], names: &Names, old: DAffine2, pull: &Pull) -> Option<Vec<Change>> {
+    let Pull {
+        grip,
+        to,
+        similar,
+        pixel,
+    } = *pull;
     let moves = |part: &&Part<'_>| TRANSLATIONS.contains(&part.key);
     let linear: Vec<_> = parts.iter().filter(|part| !moves(part)).collect();
     // A linear map behind a translation moves it, too.

@@ -70,19 +70,12 @@ impl MapHandle {
         }
     }
 
-    /// Returns the edits that write the map of which a grip has been dragged to a place, in the keys in which it is written;
-    /// `similar` keeps its angles. `None` if no map of that form lies there.
-    pub(super) fn edits(
-        &self,
-        names: &Names,
-        grip: Grip,
-        to: [f64; 2],
-        similar: bool,
-        pixel: f64,
-    ) -> Option<Vec<Edit>> {
+    /// Returns the edits that write the map after a grip has been dragged, in the keys in which it is written. `None` if
+    /// no map of that form lies there.
+    pub(super) fn edits(&self, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
         match self.is_instance {
-            true => instances::edits(self, names, grip, to, similar, pixel),
-            false => edits(self, names, grip, to, similar, pixel),
+            true => instances::edits(self, names, pull),
+            false => edits(self, names, pull),
         }
     }
 
@@ -218,6 +211,18 @@ pub(super) enum Grip {
     Y,
 }
 
+/// Movement of a grip.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pull {
+    pub(super) grip: Grip,
+    /// Place to which it has been dragged.
+    pub(super) to: DVec2,
+    /// Whether the angles of the map stay.
+    pub(super) similar: bool,
+    /// Length of a pixel.
+    pub(super) pixel: f64,
+}
+
 /// Returns the map of which a grip has been dragged to a place; `similar` keeps its angles.
 pub(super) fn dragged(old: DAffine2, grip: Grip, to: DVec2, similar: bool) -> DAffine2 {
     let mut new = old;
@@ -244,19 +249,18 @@ pub(super) fn dragged(old: DAffine2, grip: Grip, to: DVec2, similar: bool) -> DA
 /// Returns the edits that write a dragged map in the keys in which it is written.
 ///
 /// A map with one factor, or one complex factor, stays a similarity.
-fn edits(
-    handle: &MapHandle,
-    names: &Names,
-    grip: Grip,
-    to: [f64; 2],
-    similar: bool,
-    pixel: f64,
-) -> Option<Vec<Edit>> {
+fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
+    let Pull {
+        grip,
+        to,
+        similar,
+        pixel,
+    } = *pull;
     let (old, _) = affine(&handle.node, names)?;
     let node = &handle.node;
     let is_one = |key: &str| node.get(key).is_none_or(|node| names.value(node).is_some());
     let keeps = similar || node.get("matrix").is_none() && is_one("scale");
-    let new = dragged(old, grip, to.into(), keeps);
+    let new = dragged(old, grip, to, keeps);
     let step =
         |key: &str| -> Vec<PathStep> { handle.at.iter().cloned().chain([key.into()]).collect() };
     let number = |value: f64| number(value, pixel);

@@ -101,14 +101,8 @@ pub(super) fn acted(
     text: &str,
     act: &Act,
 ) -> Result<Checked, Refusal> {
-    let scene = scene(good, look);
-    let raw = raw(good)?;
-    let design = act::Design {
-        scene: &scene,
-        root: &good.node,
-        raw: &raw,
-    };
-    edited(reader, text, &design.edits(act)?)
+    let edits = with_design(good, look, |design| design.edits(act))?;
+    edited(reader, text, &edits)
 }
 
 /// Returns the file of a component, with a title. It depends on nothing else in the rule.
@@ -119,16 +113,22 @@ pub(super) fn component(
     panel: &str,
     title: &str,
 ) -> Result<NewComponent, Refusal> {
-    let scene = scene(good, look);
-    let raw = raw(good)?;
-    let design = act::Design {
-        scene: &scene,
-        root: &good.node,
-        raw: &raw,
-    };
-    let new = design.saved(panel, title)?;
+    let new = with_design(good, look, |design| design.saved(panel, title))?;
     checked(reader, new.rule.clone())?;
     Ok(new)
+}
+
+/// Calls `act` with what is designed in a file.
+fn with_design<T>(
+    good: &Good,
+    look: &Look,
+    act: impl FnOnce(&act::Design<'_>) -> Result<T, Refusal>,
+) -> Result<T, Refusal> {
+    act(&act::Design {
+        scene: &scene(good, look),
+        root: &good.node,
+        raw: &raw(good)?,
+    })
 }
 
 /// Returns the values of the file alone.
