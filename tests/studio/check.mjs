@@ -211,7 +211,7 @@ try {
   checks += 1;
   // While one types: both texts are kept.
   const theirs = TREE.replace("angle: {value: 38", "angle: {value: 55");
-  await browser.value("void (window.typist = setInterval(() => { const code = document.querySelector('#code'); code.value += '#'; code.dispatchEvent(new InputEvent('input')); }, 90))");
+  await browser.value("(() => { const add = () => { const code = document.querySelector('#code'); code.value += '#'; code.dispatchEvent(new InputEvent('input')); }; window.typist = setInterval(add, 90); add(); })()");
   writeFileSync(join(folder, "tree.yaml"), theirs);
   await new Promise((resolve) => setTimeout(resolve, 1200));
   await browser.value("clearInterval(window.typist)");
