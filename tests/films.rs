@@ -871,3 +871,191 @@ fn films_of_every_kind_are_forecast() {
         assert!(note.is_some_and(|it| it.ends_with(", 1.4 MB")), "{said}");
     }
 }
+
+/// Draws a film of frames in files, and returns the pixels of its frames.
+fn frames(folder: &Path, film: &[&str], count: usize) -> Vec<Vec<u8>> {
+    succeeds(folder, &[&["animate"], film, &["-o", "of-%d.png"]].concat());
+    let frame = |number: usize| pixels(&folder.join(format!("of-{number}.png")));
+    (0..count).map(frame).collect()
+}
+
+#[test]
+fn colours_that_are_not_by_steps_keep_their_range() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let look = ["--size=200x60", "--background=white", "--palette=sinebow"];
+    for color_by in ["angle", "x", "length", "step"] {
+        let color_by = format!("--color-by={color_by}");
+        let look = [&look[..], &[&color_by]].concat();
+        let film = [
+            "koch",
+            "--steps=2..4",
+            "--frames=3",
+            "--fit=each",
+            "--ease=linear",
+        ];
+        let all = frames(folder, &[&film[..], &look].concat(), 3);
+        succeeds(
+            folder,
+            &[&["grow", "koch", "--steps=4", "-o", "one.png"], &look[..]].concat(),
+        );
+        assert!(all[2] == pixels(&folder.join("one.png")), "{color_by}");
+    }
+}
+
+#[test]
+fn films_in_space_show_all_of_every_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let films: [&[&str]; 3] = [
+        &[
+            "menger",
+            "--from=0..360,20..80",
+            "--perspective=80",
+            "--steps=1",
+            "--frames=6",
+        ],
+        &[
+            "ternary-tree-in-space",
+            "--steps=1..4",
+            "--cuts",
+            "--frames=4",
+        ],
+        &[
+            "hilbert-lsystem-in-space",
+            "--steps=1..3",
+            "--cuts",
+            "--ease=linear",
+            "--frames=4",
+        ],
+    ];
+    const SIZE: [usize; 2] = [128, 96];
+    for film in films {
+        let film = [film, &["--size=128x96", "--margin=2", "--background=white"]].concat();
+        let count = if film[0] == "menger" { 6 } else { 4 };
+        let mut widest = 0;
+        for (number, frame) in frames(folder, &film, count).iter().enumerate() {
+            let pixels = frame.as_chunks::<4>().0;
+            let inked = (0..pixels.len()).filter(|at| pixels[*at][..3].iter().any(|it| *it < 200));
+            let places: Vec<[usize; 2]> = inked.map(|at| [at % SIZE[0], at / SIZE[0]]).collect();
+            let mut sides = [0; 2];
+            for axis in [0, 1] {
+                let least = places.iter().map(|it| it[axis]).min().unwrap();
+                let most = places.iter().map(|it| it[axis]).max().unwrap();
+                assert!(
+                    least > 0 && most < SIZE[axis] - 1,
+                    "{film:?}, frame {number}: {least} to {most}"
+                );
+                sides[axis] = most - least;
+            }
+            widest = widest
+                .max(100 * sides[0] / SIZE[0])
+                .max(100 * sides[1] / SIZE[1]);
+        }
+        assert!(widest > 65, "{film:?} fills {widest} % of its frames");
+    }
+}
+
+#[test]
+fn elements_that_cover_the_first_frame_leave_later_ones_transparent() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let square = "params: {x: 0}\ninitiator: [[0, 0], [1, 0]]\ngenerator: [[0, 0], [1/2, 0], [1, 0]]\nsteps: 0\nstyle: {fill: teal}\nbase_element: {closed: true, points: [[x, -1], [x + 1, -1], [x + 1, 1], [x, 1]]}\n";
+    fs::write(folder.join("square.yaml"), square).unwrap();
+    let film = [
+        "animate",
+        "square.yaml",
+        "--set=x=0..3",
+        "--frames=2",
+        "--background=none",
+        "--view=0.2,-0.5,0.6,0.6",
+        "--size=16",
+    ];
+    succeeds(folder, &[&film[..], &["-o", "film.png"]].concat());
+    let file = std::io::BufReader::new(fs::File::open(folder.join("film.png")).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; 4 * 16 * 16];
+    reader.next_frame(&mut pixels).unwrap();
+    assert!(pixels.as_chunks::<4>().0.iter().all(|it| it[3] == 255));
+    reader.next_frame(&mut pixels).unwrap();
+    assert!(pixels.as_chunks::<4>().0.iter().all(|it| it[3] == 0));
+}
+
+#[test]
+fn lists_of_steps_and_seeds_go_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let look = ["--size=90x40", "--background=white"];
+    let film = [
+        "koch",
+        "--steps=0,4,2",
+        "--loop",
+        "--frames=6",
+        "--fit=each",
+    ];
+    let all = frames(folder, &[&film[..], &look].concat(), 6);
+    for (frame, step) in [(0, "0"), (2, "4"), (3, "3"), (4, "2"), (5, "1")] {
+        succeeds(
+            folder,
+            &[
+                &["grow", "koch", "--steps", step, "-o", "one.png"],
+                &look[..],
+            ]
+            .concat(),
+        );
+        assert!(
+            all[frame] == pixels(&folder.join("one.png")),
+            "frame {frame}"
+        );
+    }
+    let film = [
+        "random-tree",
+        "--seed=1..3",
+        "--bounce",
+        "--frames=6",
+        "--steps=4",
+    ];
+    let all = frames(folder, &[&film[..], &look].concat(), 6);
+    assert!(all[4] == all[2] && all[5] == all[0] && all[3] != all[2] && all[2] != all[0]);
+}
+
+#[test]
+fn films_of_svg_are_white_on_dark_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let roof = "params: {h: 0.3}\ninitiator: segment\ngenerator: [[0, 0], [1/2, h], [1, 0]]\n";
+    fs::write(folder.join("roof.yaml"), roof).unwrap();
+    for change in ["--set=h=0.1..0.4", "--draw"] {
+        let film = [
+            "animate",
+            "roof.yaml",
+            change,
+            "--steps=3",
+            "--frames=3",
+            "-o",
+            "film.svg",
+        ];
+        succeeds(folder, &film);
+        let written = fs::read_to_string(folder.join("film.svg")).unwrap();
+        assert!(
+            written.contains("@media(prefers-color-scheme:dark)"),
+            "{film:?}"
+        );
+    }
+    // Plots are no films.
+    let (status, said) = said(
+        folder,
+        &[
+            "animate",
+            "koch",
+            "--steps=0..2",
+            "--hatch=45deg",
+            "-o",
+            "x.gif",
+        ],
+    );
+    assert!(
+        status == Some(2) && said.contains("unexpected argument"),
+        "{said}"
+    );
+}

@@ -47,6 +47,14 @@ impl<T> Several<T> {
     }
 }
 
+impl<T: Copy + Into<u64>> Several<T> {
+    /// Returns whether the numbers do not all follow each other.
+    pub(super) fn is_list(&self) -> bool {
+        let follow = |pair: &[T]| pair[0].into().checked_add(1) == Some(pair[1].into());
+        !self.0.windows(2).all(follow)
+    }
+}
+
 impl<T: Copy + Ord + Default> Several<T> {
     pub(super) fn first(&self) -> T {
         self.0.first().copied().unwrap_or_default()
@@ -68,9 +76,8 @@ impl<T: TryFrom<u64> + Into<u64>> Several<T> {
 /// Formats the numbers in the notation of the command line.
 impl<T: Copy + Display + Into<u64>> Display for Several<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let follow = |pair: &[T]| pair[0].into().checked_add(1) == Some(pair[1].into());
         if let [first, .., last] = self.0[..]
-            && self.0.windows(2).all(follow)
+            && !self.is_list()
         {
             return write!(f, "{first}..{last}");
         }

@@ -16,14 +16,21 @@ struct Tag<'t> {
     attributes: Vec<(&'t str, &'t str)>,
     /// Whether the tag has no content.
     is_empty: bool,
+    /// Rules of a style sheet; empty in other tags.
+    sheet: &'t str,
 }
 
 impl<'t> Tag<'t> {
-    /// Reads the tags of a document of kfrac, from its root. Texts are left out.
+    /// Reads the tags of a document of kfrac, from its root. Texts but style sheets are left out.
     fn read_all(document: &'t str) -> Vec<Self> {
         let parts = document.split('<').skip(1);
         let inside = parts.filter_map(|part| part.split_once('>'));
-        inside.map(|(inside, _)| Self::read(inside)).collect()
+        let tag = |(inside, text)| {
+            let tag = Self::read(inside);
+            let sheet = if tag.name == "style" { text } else { "" };
+            Self { sheet, ..tag }
+        };
+        inside.map(tag).collect()
     }
 
     fn read(inside: &'t str) -> Self {
@@ -42,6 +49,7 @@ impl<'t> Tag<'t> {
             name,
             attributes,
             is_empty,
+            sheet: "",
         }
     }
 
@@ -82,6 +90,7 @@ impl<'t> Tag<'t> {
         }
         out.push_str(style);
         out.push_str(if self.is_empty { "/>\n" } else { ">\n" });
+        out.push_str(self.sheet);
     }
 }
 

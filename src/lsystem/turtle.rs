@@ -358,6 +358,7 @@ impl<'s, F: TurtleFrame> Turtle<'s, F> {
         let is_bent = bent != start.heading;
         self.state.heading = bent;
         if !self.open.is_empty() {
+            self.is_down = false;
             return self.vertex();
         }
         let length = (steps * start.step).abs();

@@ -50,7 +50,8 @@ pub(super) fn write(
         pen_up,
         pen_down,
     } = machine;
-    writeln!(out, "G21\nG90\n{pen_up}")?;
+    // A machine that has no feed rate refuses to move the pen down.
+    writeln!(out, "G21\nG90\nF{feed}\n{pen_up}")?;
     let colours: Vec<_> = plot.colours().collect();
     let mut pen = None;
     plot.each(|layer, vertices, closed| {

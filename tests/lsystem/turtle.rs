@@ -199,3 +199,29 @@ fn polygons_of_one_symbol_are_told_apart() {
     assert_eq!(numbers.collect::<Vec<_>>(), [Some(0), Some(1), Some(0)]);
     assert_eq!(drawing.polygons.len(), 2);
 }
+
+/// A polygon of fewer than three vertices is ignored, and the lines before and after it do not meet.
+#[test]
+fn ignored_polygons_lift_the_pen() {
+    for (text, steps) in [
+        ("axiom: \"F{+F-}F\"\nproductions: [\"A -> B\"]", 0),
+        (
+            "axiom: \"AF{+F-}F\"\nproductions: [\"F < A -> B\", \"A -> A\"]",
+            1,
+        ),
+        ("axiom: \"A{+A-}A\"\nproductions: [\"A -> F\"]", 1),
+    ] {
+        let text = format!("kind: lsystem\nangle: 90\n{text}\n");
+        let svg = kfrac::Fractal::parse(&text)
+            .unwrap()
+            .steps(steps)
+            .svg()
+            .unwrap();
+        let paths = svg
+            .split(" d=\"")
+            .skip(1)
+            .map(|it| it.split('"').next().unwrap());
+        let lines: usize = paths.map(|path| path.matches(['M', 'm']).count()).sum();
+        assert_eq!(lines, 2, "{svg}");
+    }
+}

@@ -223,6 +223,7 @@ pub(crate) fn gcode(bytes: &[u8]) -> Vec<Read> {
         let words: std::collections::BTreeMap<_, _> = words.collect();
         match command {
             ("G", 21.0 | 90.0) | ("M", 0.0) => assert!(!is_down),
+            ("F", feed) => assert!(feed > 0.0 && !is_down),
             ("M", 2.0) => break,
             ("G", 0.0 | 1.0) => {
                 if let Some(z) = words.get("Z") {

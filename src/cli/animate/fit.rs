@@ -113,6 +113,12 @@ fn fit_in_space(frames: &mut Frames<'_>, [width, height]: [u32; 2]) -> Result<()
         [width, height].map(|side| (f64::from(side) * shrink).ceil().max(1.0) as u32);
     let small = format!("--size={across}x{down}");
     let numbers = 0..frames.arguments.len();
+    // Margins in pixels are larger shares of small pictures.
+    let own = frames.arguments.clone();
+    for frame in &mut frames.arguments {
+        frame.retain(|it| !it.starts_with("--margin="));
+        frame.push("--margin=0".into());
+    }
     // Frames in which nothing is visible have no middle.
     let mut middles = Vec::new();
     frames.draw(
@@ -131,18 +137,26 @@ fn fit_in_space(frames: &mut Frames<'_>, [width, height]: [u32; 2]) -> Result<()
     };
     let middle = middle.to_array().map(|it| it.to_string()).join(",");
     let middle = format!("--look-at={middle}");
-    let mut widths = Vec::new();
-    frames.draw(
-        numbers,
-        Purpose::Survey,
-        &[small, middle.clone()],
-        |number, done| {
+    let widths = |zoom: &[String]| -> Result<Vec<f64>, Failure> {
+        let mut widths = Vec::new();
+        let numbers = numbers.clone();
+        let own = [
+            std::slice::from_ref(&small),
+            std::slice::from_ref(&middle),
+            zoom,
+        ]
+        .concat();
+        frames.draw(numbers, Purpose::Survey, &own, |number, done| {
             let sight = done.sight.as_ref().filter(|_| middles[number].is_some());
             widths.push(sight.map_or(0.0, |sight| sight.across[0].length()));
             Ok(())
-        },
-    )?;
-    let most = widths.iter().copied().fold(0.0, f64::max);
+        })?;
+        Ok(widths)
+    };
+    // Without a magnification, everything about the middle is seen; magnifications are relative to the own picture of a frame.
+    let most = widths(&[])?.into_iter().fold(0.0, f64::max);
+    let widths = widths(&["--zoom=1".into()])?;
+    frames.arguments = own;
     for (frame, width) in frames.arguments.iter_mut().zip(widths) {
         frame.push(middle.clone());
         if width > 0.0 {

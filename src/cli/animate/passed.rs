@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches};
 use super::super::grow;
 
 /// Options of `kfrac grow` that a film has in a form of its own, or that do not apply to its frames.
-const OTHERS: [&str; 34] = [
+const OTHERS: [&str; 40] = [
     "rule",
     "set",
     "steps",
@@ -25,6 +25,12 @@ const OTHERS: [&str; 34] = [
     "depth",
     "plot",
     "pens",
+    "occlude",
+    "hatch",
+    "hatch_spacing",
+    "feed",
+    "pen_up",
+    "pen_down",
     "mesh",
     "size",
     "morph",

@@ -9,7 +9,7 @@ use crate::fractal::Goal;
 use crate::model::Model;
 use crate::parallel::all_cores;
 use crate::render::Spares;
-use crate::style::Named;
+use crate::style::{ColorBy, Named};
 use crate::tween::TweenBy;
 use crate::zoom::Factor;
 
@@ -18,7 +18,7 @@ use super::super::rule::Loaded;
 use super::super::{Failure, grow, tween};
 use super::frames::Frames;
 use super::timeline::{Ease, Keys, Moment, Timeline};
-use super::{Arguments, endless, fit};
+use super::{Arguments, Several, endless, fit};
 
 /// Film whose frames are known.
 pub(super) struct Film<'a> {
@@ -126,7 +126,7 @@ pub(super) fn film<'a>(
     let ranges = color_ranges(arguments, loaded, course.as_ref());
     let frame = |number: u32| {
         let moment = timeline.moment(number);
-        let mut own = at(arguments, &moment, &timeline, course.as_ref());
+        let mut own = at(arguments, &moment, course.as_ref());
         let range = ranges.as_ref().map(|range| range.at(&moment));
         own.extend(range);
         [common.as_slice(), &own].concat()
@@ -194,7 +194,7 @@ fn check(arguments: &Arguments, loaded: &Loaded) -> Result<(), Failure> {
     let swept = { arguments.set.iter() }
         .flat_map(Assignment::tracks)
         .any(|it| it.changes());
-    let several = |it: &super::Several| it.as_slice().len() > 1;
+    let several = |it: &Several| it.as_slice().len() > 1;
     let changes = [
         swept,
         arguments.steps.as_ref().is_some_and(several),
@@ -247,7 +247,11 @@ fn color_ranges(
     course: Option<&Course>,
 ) -> Option<ColorRanges> {
     let style = &loaded.model.metadata().style;
-    if arguments.others.gives("color-range") || style.color_range.is_some() {
+    let given = arguments.others.value("color-by");
+    let color_by = given.and_then(ColorBy::from_name).unwrap_or(style.color_by);
+    let is_by_steps = matches!(color_by, ColorBy::Step | ColorBy::Age);
+    let has_range = arguments.others.gives("color-range") || style.color_range.is_some();
+    if has_range || !is_by_steps {
         return None;
     }
     if let Some((steps, [first, last])) = course.and_then(|it| Some((it.steps?, it.digits))) {
@@ -285,20 +289,13 @@ impl ColorRanges {
 }
 
 /// Returns the arguments of one frame.
-fn at(
-    arguments: &Arguments,
-    moment: &Moment,
-    timeline: &Timeline,
-    course: Option<&Course>,
-) -> Vec<String> {
+fn at(arguments: &Arguments, moment: &Moment, course: Option<&Course>) -> Vec<String> {
     let mut own = Vec::new();
     let tracks = arguments.set.iter().flat_map(Assignment::tracks);
     own.extend(tracks.map(|track| format!("--set={}", track.at(moment))));
     // Each seed has an equal part of the film.
-    let seeds = arguments.seed.as_slice();
-    let seed = moment.number as usize * seeds.len() / timeline.frames as usize;
-    own.push(format!("--seed={}", seeds[seed]));
-    own.extend({ arguments.steps.iter() }.flat_map(|it| steps(arguments, it.as_slice(), moment)));
+    own.push(format!("--seed={}", moment.part(arguments.seed.as_slice())));
+    own.extend({ arguments.steps.iter() }.flat_map(|it| steps(arguments, it, moment)));
     let share = super::super::family::plain(moment.share());
     if let Some(to) = &arguments.to {
         own.extend([format!("--to={}", to.display()), format!("--share={share}")]);
@@ -326,7 +323,12 @@ fn at(
 }
 
 /// Returns the options of the number of steps at a moment.
-fn steps(arguments: &Arguments, all: &[u32], moment: &Moment) -> Vec<String> {
+fn steps(arguments: &Arguments, several: &Several, moment: &Moment) -> Vec<String> {
+    let mut all = several.as_slice().to_vec();
+    // After the last one of a list, a film without end goes to the first, but not in cuts.
+    if moment.closes && several.is_list() && !arguments.cuts {
+        all.push(several.first());
+    }
     let last = all.len() - 1;
     let keys: Vec<f64> = (0..all.len())
         .map(|at| f64::from(u32::try_from(at).unwrap_or(u32::MAX)))

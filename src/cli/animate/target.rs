@@ -100,6 +100,8 @@ pub(super) fn write(
         is_opaque: true,
         labels: described(arguments, loaded, frames),
     };
+    // Elements alone, which cover the first frame, may leave later ones.
+    let has_background = arguments.others.value("background") != Some("none");
     let explain = |error: io::Error| output::failed(error, path);
     let ((), bytes) = output::write(path, true, |out, _| {
         if format == Format::Svg {
@@ -111,8 +113,8 @@ pub(super) fn write(
             film.frames
                 .draw(0..count, Purpose::Pixels, &[], |_, done| {
                     if let Some(out) = out.take() {
-                        options.is_opaque =
-                            done.bytes.as_chunks::<4>().0.iter().all(|it| it[3] == 255);
+                        options.is_opaque = has_background
+                            && done.bytes.as_chunks::<4>().0.iter().all(|it| it[3] == 255);
                         encoder = Some(format.begin(out, &options).map_err(explain)?);
                     }
                     if let Some(held) = &arguments.held

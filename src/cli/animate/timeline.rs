@@ -95,7 +95,11 @@ impl Timeline {
                 _ if is_loop => share(number, frames),
                 _ => share(number, end),
             },
-            number,
+            way: match bounces {
+                true if number > end => [frames - number, frames - end],
+                true => [number, end],
+                false => [number, frames - 1],
+            },
             closes: is_loop && !bounces,
             ease,
             is_smooth,
@@ -108,15 +112,21 @@ impl Timeline {
 pub(in crate::cli) struct Moment {
     /// Share of the time, from 0 to 1.
     time: f64,
-    /// Number of the frame, without those that are kept.
-    pub(super) number: u32,
+    /// Number of the frame on the way, without those that are kept, and of all frames of the way.
+    way: [u32; 2],
     /// Whether lists of key frames return to the first one.
-    closes: bool,
+    pub(super) closes: bool,
     ease: Ease,
     is_smooth: bool,
 }
 
 impl Moment {
+    /// Returns the one of some values of which each has an equal part of the way.
+    pub(super) fn part<'v, T>(&self, values: &'v [T]) -> &'v T {
+        let [number, last] = self.way.map(|it| it as usize);
+        &values[(number * values.len() / (last + 1)).min(values.len() - 1)]
+    }
+
     /// Returns the share of the whole way.
     pub(in crate::cli) fn share(&self) -> f64 {
         self.ease.at(self.time)

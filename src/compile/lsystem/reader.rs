@@ -299,6 +299,7 @@ impl<'e, F: TurtleFrame> Reader<'e, F> {
                 self.state.pose.go(compass, steps);
                 if !self.open.is_empty() {
                     self.state.joint.tip = Tip::Free;
+                    self.down = false;
                     return self.vertex();
                 }
                 state.pose.scale *= steps;
