@@ -1053,3 +1053,44 @@ fn a_picture_and_its_depths_are_written_together_or_not_at_all() {
     let plane = run(folder.path(), &["grow", "koch", "--depth", "b.png"]).failure();
     assert!(stderr(&plane).contains("--depth applies to sets in space"));
 }
+
+#[test]
+fn options_without_bounds_or_effect_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = (0..20).map(|row| {
+        if row < 10 {
+            "1".repeat(8) + "0000"
+        } else {
+            "0".repeat(12)
+        }
+    });
+    let picture = format!("P1\n12 20\n{}\n", rows.collect::<Vec<_>>().join("\n"));
+    fs::write(folder.path().join("a.pbm"), picture).unwrap();
+    fs::write(folder.path().join("a.csv"), "x,y\n1,2\n3,4\n5,7\n").unwrap();
+    let cases: [(&[&str], &str); 5] = [
+        (
+            &["dim", "koch", "--grids", "1000000000000000000"],
+            "from 1 to 1000",
+        ),
+        (
+            &["dim", "a.csv", "--columns", "1,1"],
+            "a column is given twice",
+        ),
+        (
+            &["fit", "a.pbm", "--branch", "5,5", "--method", "collage"],
+            "--branch is for --method skeleton, not collage",
+        ),
+        (
+            &["fit", "a.pbm", "--centre", "5,5", "--method", "moments"],
+            "--centre is for --method skeleton",
+        ),
+        (
+            &["fit", "a.pbm", "--branch", "5,50"],
+            "--branch 5,50 lies outside of the picture of 12 x 20 pixels",
+        ),
+    ];
+    for (arguments, said) in cases {
+        let refused = run(folder.path(), arguments).failure();
+        assert!(stderr(&refused).contains(said), "{}", stderr(&refused));
+    }
+}

@@ -1,6 +1,8 @@
 //! The studio: its server in this process, with requests as a page sends them, and as an attacker would.
 
 mod design;
+mod space;
+mod underlay;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -901,7 +903,30 @@ fn a_value_is_written_into_the_text() {
     assert_eq!(state["text"], TREE.replace("value: 40", "value: 25.5"));
     assert_eq!(state["look"]["set"], json!({}));
     assert_eq!(write("angle").status, 422, "nothing is set");
-    assert_eq!(page.call("POST", "/undo", &json!({})).json()["text"], TREE);
+    let state = page.call("POST", "/undo", &json!({})).json();
+    assert_eq!(state["text"], TREE);
+    assert_eq!(state["look"]["set"], json!({ "angle": "25.5" }));
+    let state = page.call("POST", "/redo", &json!({})).json();
+    assert_eq!(state["look"]["set"], json!({}));
+}
+
+#[test]
+fn whole_numbers_are_known() {
+    let are_integers = |text: &str| {
+        let parameters = Page::of(text).state()["parameters"].clone();
+        let all = parameters.as_array().unwrap().clone();
+        let all = all.iter().map(|it| it["is_integer"].as_bool().unwrap());
+        all.collect::<Vec<_>>()
+    };
+    let ring = "kind: ifs\nparams: {n: {value: 5, min: 3, max: 9}, r: {value: 1, min: 0, max: 2}}\nmaps:\n  - {for: {k: 1..n}, scale: 1/n, shift: [r*k, 0]}\n";
+    assert_eq!(are_integers(ring), [true, false]);
+    let levels = "params:\n  levels: {value: 4, min: 1, max: 9}\n";
+    let steps = format!("{}steps: levels\n", TREE.replace("params:\n", levels));
+    assert_eq!(are_integers(&steps), [true, false]);
+    assert_eq!(
+        are_integers(include_str!("../library/instancing/poppies.yaml")),
+        [false, true]
+    );
 }
 
 #[test]

@@ -101,7 +101,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "B", value_parser = base)]
     base: Option<f64>,
     /// Number of grids
-    #[arg(long, value_name = "N", default_value = "8")]
+    #[arg(long, value_name = "N", default_value = "8", value_parser = grids)]
     grids: NonZero<usize>,
     /// Orders q of the spectrum of dimensions D_q; 1 is the information dimension, 2 the correlation
     /// dimension
@@ -282,13 +282,20 @@ fn order(text: &str) -> Result<f64, String> {
     }
 }
 
+fn grids(text: &str) -> Result<NonZero<usize>, String> {
+    let grids = number::whole("a number of grids", 1..=1000_usize)(text)?;
+    NonZero::new(grids).ok_or_else(|| "there is one grid at least".into())
+}
+
 /// Names or numbers of the columns of coordinates.
 #[derive(Clone)]
 struct Columns(Vec<String>);
 
 fn columns(text: &str) -> Result<Columns, String> {
     let columns: Vec<String> = text.split(',').map(|name| name.trim().into()).collect();
+    let is_twice = |at: usize| columns[..at].contains(&columns[at]);
     match columns.len() {
+        count if (0..count).any(is_twice) => Err("a column is given twice".into()),
         2 | 3 => Ok(Columns(columns)),
         _ => Err("write the names or numbers of two or three columns: X,Y or X,Y,Z".into()),
     }

@@ -14,6 +14,7 @@ use clap::builder::PossibleValue;
 
 use crate::fit::{BranchPoints, FitError, FitOptions, FitProgress, Method, Silhouette};
 use crate::geometry::DVec2;
+use crate::saturating::real;
 
 use self::report::Report;
 use super::pixels::PixelArguments;
@@ -136,6 +137,7 @@ fn method() -> impl clap::builder::TypedValueParser<Value = Method> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let set = arguments.pixels.read(&arguments.picture)?;
+    arguments.check([set.bits.width(), set.bits.height()])?;
     let explain = |error: FitError| anyhow!("{}: {error} ({})", set.name, set.description);
     let mut shape = Silhouette::new(set.bits.clone()).map_err(explain)?;
     if arguments.density {
@@ -193,6 +195,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    /// Refuses branch points that have no effect, and those outside a picture of a size.
+    fn check(&self, [width, height]: [usize; 2]) -> Result<(), Failure> {
+        let centre = self.centre.map(|point| ("--centre", point));
+        let branches = self.branch.iter().map(|&point| ("--branch", point));
+        for (option, point) in centre.into_iter().chain(branches) {
+            if !matches!(self.method, Method::Auto | Method::Skeleton) {
+                let name = self.method.name();
+                let message = format!("{option} is for --method skeleton, not {name}");
+                return Err(Failure::Usage(message));
+            }
+            let size = DVec2::new(real(width), real(height));
+            if point.clamp(DVec2::ZERO, size) != point {
+                let message = format!(
+                    "{option} {},{} lies outside of the picture of {width} x {height} pixels; it is counted from the lower left corner",
+                    point.x, point.y
+                );
+                return Err(Failure::Usage(message));
+            }
+        }
+        Ok(())
+    }
+
     fn options(&self) -> FitOptions {
         let options = FitOptions::default()
             .method(self.method)

@@ -110,7 +110,7 @@ impl GrowthArguments {
 
     /// Returns the flag that cancels a command within the program.
     pub(super) fn cancel(&self) -> Option<&AtomicBool> {
-        self.held.as_ref().map(|held| &held.cancel)
+        self.held.as_ref().map(|held| &*held.cancel)
     }
 
     /// Returns the encoding of PNGs.

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::estimate::SizeEstimate;
 use crate::geometry::Homothety;
@@ -16,7 +16,7 @@ use super::Failure;
 #[derive(Debug, Default)]
 pub(crate) struct Held {
     /// Flag that ends the command soon after it is set.
-    pub(crate) cancel: AtomicBool,
+    pub(crate) cancel: Arc<AtomicBool>,
     /// Encoding of PNGs.
     pub(crate) png: PngEncoding,
     /// Largest number of bytes of standard output.

@@ -15,7 +15,7 @@ use super::{Failure, input};
 /// Options for pictures.
 #[derive(clap::Args, Clone, Copy, Default)]
 #[command(next_help_heading = "Pictures")]
-pub(super) struct PixelArguments {
+pub(crate) struct PixelArguments {
     /// Property of a pixel that decides whether it belongs to the set [default: opacity, if any pixel is
     /// transparent, or else darkness]
     #[arg(long, value_parser = channel())]
@@ -31,7 +31,7 @@ pub(super) struct PixelArguments {
 
 /// The least value of a pixel of the set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Threshold {
+pub(crate) enum Threshold {
     #[default]
     Otsu,
     Value(u8),
@@ -61,16 +61,16 @@ fn channel() -> impl clap::builder::TypedValueParser<Value = Channel> {
 pub(super) const MAX_BYTES: u64 = 1 << 31;
 
 /// A set of pixels.
-pub(super) struct PixelSet {
+pub(crate) struct PixelSet {
     /// The name of the picture.
     pub(super) name: String,
-    pub(super) bits: Bits,
+    pub(crate) bits: Bits,
     /// Darkness or opacity of every pixel, in rows from the top.
     pub(super) values: Vec<u8>,
     /// Least value of a pixel of the set.
     pub(super) threshold: u8,
     /// Number, quality and threshold of the pixels.
-    pub(super) description: String,
+    pub(crate) description: String,
     /// A remark if most of the picture belongs to the set.
     pub(super) warning: Option<String>,
 }
@@ -109,7 +109,7 @@ impl PixelArguments {
     }
 
     /// Decides which pixels belong to the set. A set without pixels is an error.
-    pub(super) fn decide(&self, name: String, picture: Raster) -> Result<PixelSet, Failure> {
+    pub(crate) fn decide(&self, name: String, picture: Raster) -> Result<PixelSet, Failure> {
         let picture = match self.invert {
             true => picture.inverted(),
             false => picture,

@@ -2,11 +2,13 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::ValueHint;
 
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
+use crate::diagnostic::Source;
 use crate::figure::rule::{self, Topology};
 use crate::model::Kind;
 use crate::render::space::Camera;
@@ -14,6 +16,7 @@ use crate::render::{self, Size};
 use crate::style::{ColorBy, Named};
 
 use super::component::Component;
+use super::held::{self, Held, Memory};
 use super::labels::labels;
 use super::picture;
 use super::rule::{Loaded, RuleArguments};
@@ -133,6 +136,24 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
             readable::bytes(bytes),
         ));
     }
+    Ok(())
+}
+
+/// Draws the figure of a rule in memory, with the arguments of `kfrac show`.
+pub(crate) fn hold(
+    arguments: &[String],
+    source: &Arc<Source>,
+    catalogue: &Catalogue,
+    held: &Held,
+) -> Result<(), Failure> {
+    let arguments: Arguments = held::parsed("show", arguments)?;
+    let format = format::choose(arguments.format, arguments.output.as_deref())?;
+    let loaded = arguments.rule.load_from(source, catalogue, true)?;
+    let options = arguments.options(&loaded, None, format);
+    let mut out = Memory::new(Vec::new(), held.most);
+    rule::write(&loaded.model, &loaded.document, None, &options, &mut out)
+        .map_err(|error| output::explain(error, Path::new("-")))?;
+    held.done().bytes = out.bytes;
     Ok(())
 }
 

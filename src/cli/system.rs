@@ -141,7 +141,7 @@ impl SystemInfo {
         let weights_by = if system.is_interpolation() {
             Some(Weights::Widths)
         } else {
-            ifs.has_default_weights().then_some(Weights::Determinants)
+            (!ifs.has_weights()).then_some(Weights::Determinants)
         };
         Self {
             maps: maps.collect(),

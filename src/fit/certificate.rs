@@ -29,7 +29,7 @@ impl Certificate {
     /// Computes the certificate of a candidate.
     #[must_use]
     pub fn new(shape: &Silhouette, candidate: &Candidate) -> Self {
-        let collage = collage(shape, candidate);
+        let collage = distance(shape, candidate);
         let linear: Vec<_> = candidate.maps.iter().map(|map| map.matrix2).collect();
         let euclidean = linear.iter().map(stretch).fold(0.0, f64::max);
         let metric = candidate.metric();
@@ -48,7 +48,7 @@ impl Certificate {
 }
 
 /// Returns the Hausdorff distance of a shape's collage from the shape, of images of centres from centres.
-fn collage(shape: &Silhouette, candidate: &Candidate) -> f64 {
+pub(super) fn distance(shape: &Silhouette, candidate: &Candidate) -> f64 {
     let [width, height] = shape.size();
     let Some(own) = distances(shape.bits()) else {
         return f64::INFINITY;

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::geometry::DAffine2;
+use crate::geometry::{DAffine2, DVec2};
+use crate::saturating::{real, whole};
 
 use super::attractor::Attractor;
 use super::collage::{Collage, Form};
@@ -23,22 +24,48 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Measures the result at another place.
+    /// Measures the result at another place; returns it, and whether its picture is the shape's.
     pub(super) fn measured(
         self,
         shape: &Silhouette,
         there: &DAffine2,
         cancel: Option<&AtomicBool>,
-    ) -> Result<Rival, FitError> {
+    ) -> Result<(Rival, bool), FitError> {
         let candidate = self.candidate.moved(there);
         let drawn = candidate.attractor(shape.size(), cancel)?;
-        Ok(Rival {
+        let rival = Rival {
             method: self.method,
-            score: Score::new(shape.bits(), &drawn.pixels),
+            score: match drawn.leaves {
+                true => score_around(shape, &candidate, cancel)?,
+                false => Score::new(shape.bits(), &drawn.pixels),
+            },
             candidate,
             description: self.description,
-        })
+        };
+        Ok((rival, drawn.is(shape.bits())))
     }
+}
+
+/// Compares a shape with an attractor that leaves its picture: in a picture that holds both, or all of the attractor within
+/// twice the long side of the shape's picture.
+fn score_around(
+    shape: &Silhouette,
+    candidate: &Candidate,
+    cancel: Option<&AtomicBool>,
+) -> Result<Score, FitError> {
+    let [width, height] = shape.size();
+    let size = DVec2::new(real(width), real(height));
+    let [middle, half] = candidate.bounds().ok_or(FitError::DoesNotContract)?;
+    let most = DVec2::splat(2.0 * size.max_element());
+    let outside = |by: DVec2| by.ceil().clamp(DVec2::ZERO, most);
+    let [low, high] = [outside(half - middle), outside(middle + half - size)];
+    let [left, bottom, right, top] = [low.x, low.y, high.x, high.y].map(whole);
+    let [wide, high] = [left + width + right, bottom + height + top];
+    let corner = [left, top].map(|it| -it.cast_signed());
+    let around = shape.bits().window(corner, wide, high);
+    let candidate = candidate.moved(&DAffine2::from_translation(low));
+    let drawn = candidate.attractor([wide, high], cancel)?;
+    Ok(Score::new(&around, &drawn.pixels))
 }
 
 /// Returns the results of the methods that are asked for, the one with the least description length first, and the number
@@ -143,4 +170,32 @@ fn simplest(
         exact = other.or(exact);
     }
     Ok(exact.unwrap_or((best, attractor)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Bits;
+    use crate::geometry::DMat2;
+    use crate::ifs::about;
+
+    #[test]
+    fn the_part_of_an_attractor_outside_the_picture_counts() {
+        let shape = Silhouette::new(Bits::of(40, 40, |column, _| column < 20)).unwrap();
+        // A square of which half lies left of the picture.
+        let half = DMat2::from_diagonal(DVec2::splat(0.5));
+        let corners = [(-20.0, 0.0), (20.0, 0.0), (-20.0, 40.0), (20.0, 40.0)];
+        let maps = corners.map(|(x, y)| about(half, DVec2::new(x, y)));
+        let candidate = Candidate::of_maps(maps.into());
+        let score = score_around(&shape, &candidate, None).unwrap();
+        assert!((score.iou - 0.5).abs() < 0.03, "{score:?}");
+        assert!((score.hausdorff - 20.0).abs() <= 1.0, "{score:?}");
+        let found = Found {
+            candidate,
+            method: Method::Collage,
+            description: 0.0,
+        };
+        let (rival, is_exact) = found.measured(&shape, &DAffine2::IDENTITY, None).unwrap();
+        assert_eq!((rival.score, is_exact), (score, false));
+    }
 }

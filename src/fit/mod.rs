@@ -22,6 +22,7 @@ mod collage;
 mod density;
 mod error;
 mod file;
+mod image;
 mod methods;
 mod moments;
 mod options;
@@ -40,6 +41,7 @@ pub use candidate::{Candidate, Disk};
 pub use certificate::Certificate;
 pub use density::FittedWeights;
 pub use error::FitError;
+pub use image::CollageError;
 pub use options::{FitOptions, Method};
 pub use progress::{BestSoFar, FitProgress};
 pub use report::ReportError;
@@ -50,15 +52,13 @@ pub use skeleton::BranchPoints;
 use crate::geometry::DAffine2;
 use crate::measure::exact::{Effort, GraphDirectedSystem, Hausdorff, dimensions_within};
 
-use methods::Found;
-
 /// A system that was fitted to a shape, with its measures.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Fit {
     /// The system.
     pub candidate: Candidate,
-    /// Distances and overlaps of the attractor and the shape.
+    /// Distances and overlaps of the attractor, wherever it lies, and the shape.
     pub score: Score,
     /// Whether the attractor's picture is the shape's: see [`Attractor::is`].
     pub exact: bool,
@@ -132,36 +132,31 @@ pub fn fit(shape: &Silhouette, options: &FitOptions) -> Result<Fit, FitError> {
     // Margins change nothing: pictures that are moved have maps that are moved.
     let (cropped, there) = shape.cropped();
     let options = options.moved(&there.inverse());
-    let (mut found, evaluations) = methods::found(&cropped, &options)?;
+    let (found, evaluations) = methods::found(&cropped, &options)?;
     let cancel = options.cancel.as_deref();
-    let mut rivals = found.split_off(1);
-    rivals.sort_by(|one, other| one.description.total_cmp(&other.description));
-    let others = { rivals.into_iter() }
-        .map(|rival| rival.measured(shape, &there, cancel))
-        .collect::<Result<_, _>>()?;
-    let Found {
-        candidate,
-        method,
-        description,
-    } = found.swap_remove(0);
+    let measured = found
+        .into_iter()
+        .map(|it| it.measured(shape, &there, cancel));
+    let mut others: Vec<(Rival, bool)> = measured.collect::<Result<_, _>>()?;
+    // The shortest description of a picture that has a part of the shape.
+    let best = { others.iter() }.position(|(rival, _)| rival.score.iou > 0.0);
+    let (best, exact) = others.remove(best.unwrap_or(0));
     // Branch points that are given keep their order.
     let candidate = match options.branch_points.branches.is_empty() {
-        true => candidate.ordered(cropped.middle()),
-        false => candidate,
+        true => best.candidate.ordered(shape.middle()),
+        false => best.candidate,
     };
-    let candidate = candidate.moved(&there);
-    let attractor = candidate.attractor(shape.size(), cancel)?;
     Ok(Fit {
-        score: Score::new(shape.bits(), &attractor.pixels),
-        exact: attractor.is(shape.bits()),
+        score: best.score,
+        exact,
         bits: bits::of(shape, &candidate, cancel)?,
         certificate: Certificate::new(shape, &candidate),
         dimension: dimension(&candidate),
         density: FittedWeights::of(shape, &candidate),
         candidate,
-        method,
-        description,
-        others,
+        method: best.method,
+        description: best.description,
+        others: others.into_iter().map(|(rival, _)| rival).collect(),
         evaluations,
     })
 }

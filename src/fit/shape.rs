@@ -5,7 +5,7 @@ use std::num::NonZero;
 use crate::Bits;
 use crate::geometry::{Bounds, DAffine2, DVec2};
 use crate::morphology::DistanceMap;
-use crate::saturating::whole;
+use crate::saturating::{real, whole};
 
 use super::FitError;
 
@@ -120,6 +120,27 @@ impl Silhouette {
             values: self.values.clone(),
         };
         (cropped, DAffine2::from_translation(low))
+    }
+
+    /// Returns the shape in a picture of at most `most` pixels along its longer side, whose pixels are those at their centres, and
+    /// the factor of its coordinates. `None` if too little is left of it.
+    pub(crate) fn reduced(&self, most: usize) -> Option<(Self, f64)> {
+        let size = self.size();
+        let longer = size[0].max(size[1]);
+        if longer <= most {
+            return Some((self.clone(), 1.0));
+        }
+        let factor = real(most) / real(longer);
+        let [width, height] = size.map(|side| whole((real(side) * factor).ceil()));
+        let bits = Bits::of(width, height, |column, row| {
+            let from = centre([column, row], height) / factor;
+            let [column, row] = [whole(from.x), whole(real(size[1]) - from.y)];
+            from.y <= real(size[1])
+                && column < size[0]
+                && row < size[1]
+                && self.bits.get(column, row)
+        });
+        Some((Self::new(bits).ok()?, factor))
     }
 
     /// Returns the pixels, in rows from the top.

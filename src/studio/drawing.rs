@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::catalogue::Catalogue;
 use crate::cli::held::{Done, Held};
-use crate::cli::{grow, map};
+use crate::cli::{grow, map, show};
 use crate::diagnostic::Source;
 use crate::render::space::Sight;
 
@@ -113,6 +113,15 @@ impl Shot {
         let settings = self.look.iter().filter(|it| it.starts_with("--set="));
         arguments.extend(settings.cloned());
         map::hold(&arguments, &self.source, &self.catalogue, held)?;
+        Ok(held.take().bytes)
+    }
+
+    /// Draws the figure of the rule, as `kfrac show` does; returns the bytes of an SVG.
+    pub(super) fn figure(&self, held: &Held) -> Result<Vec<u8>, Refusal> {
+        let mut arguments = vec![self.rule.clone(), "--output=-".into()];
+        let is_own = |it: &&String| it.starts_with("--set=") || it.starts_with("--from=");
+        arguments.extend(self.look.iter().filter(is_own).cloned());
+        show::hold(&arguments, &self.source, &self.catalogue, held)?;
         Ok(held.take().bytes)
     }
 

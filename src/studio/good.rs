@@ -8,9 +8,10 @@ use serde_json::{Value, json};
 use crate::catalogue::Catalogue;
 use crate::cli::check;
 use crate::diagnostic::Source;
-use crate::document::Document;
 use crate::document::node::Node;
+use crate::document::{Document, Setting};
 use crate::kind::Kind;
+use crate::metadata::Parameter;
 use crate::model::Model;
 use crate::style::{Named, Width};
 
@@ -29,7 +30,7 @@ pub(super) struct Good {
     pub(super) style: Value,
     pub(super) own_steps: Option<u32>,
     /// The document with its parents and components.
-    pub(super) node: Arc<Node>,
+    pub(super) document: Arc<Document>,
 }
 
 /// Parameter of a rule.
@@ -41,6 +42,8 @@ pub(super) struct ParameterState {
     pub(super) value: f64,
     pub(super) min: Option<f64>,
     pub(super) max: Option<f64>,
+    /// Whether it takes whole numbers alone.
+    pub(super) is_integer: bool,
     about: Option<String>,
 }
 
@@ -72,7 +75,7 @@ impl Reader {
             Ok(()) => match check::checked(&source, &self.catalogue) {
                 Err(found) => (None, found),
                 Ok((document, model, found)) => {
-                    let good = Good::of(&source, &document, &model);
+                    let good = Good::of(&source, document, &model);
                     ((!found.has_errors()).then_some(good), found)
                 }
             },
@@ -87,7 +90,17 @@ impl Reader {
 }
 
 impl Good {
-    fn of(source: &Arc<Source>, document: &Document, model: &Model) -> Self {
+    /// Returns the values of the document, with those of its parents and components.
+    pub(super) fn node(&self) -> &Node {
+        self.document.node()
+    }
+
+    /// Returns whether pictures show the set to the pixel where no number of steps is given.
+    pub(super) fn is_limit(&self) -> bool {
+        self.own_steps.is_none() && matches!(self.kind, Kind::Ifs | Kind::Instancing)
+    }
+
+    fn of(source: &Arc<Source>, document: Document, model: &Model) -> Self {
         let parameters = &document.metadata().params;
         let heading = model.metadata();
         let described = &heading.description;
@@ -107,6 +120,7 @@ impl Good {
                     value: parameter.value,
                     min: parameter.min,
                     max: parameter.max,
+                    is_integer: written.whole.is_none() && is_integer(&document, parameter),
                     about: parameter.about.clone(),
                 })
                 .collect(),
@@ -136,7 +150,30 @@ impl Good {
                 "shadows": view.shadows,
             }),
             own_steps: heading.steps,
-            node: Arc::new(document.node().clone()),
+            document: Arc::new(document),
         }
     }
+}
+
+/// Returns whether a parameter takes whole numbers alone, such as a number of steps or the end of a range: a rule can be
+/// resolved with the next number, and cannot halfway to it.
+fn is_integer(document: &Document, parameter: &Parameter) -> bool {
+    let [min, max] = [
+        parameter.min.unwrap_or(f64::MIN),
+        parameter.max.unwrap_or(f64::MAX),
+    ];
+    if [parameter.value, min, max]
+        .iter()
+        .any(|it| it.fract() != 0.0)
+    {
+        return false;
+    }
+    let takes = |by: f64| {
+        let mut values = [parameter.value + by, parameter.value - by].into_iter();
+        values.any(|value| {
+            let setting = Setting::from((parameter.name.as_str(), value));
+            (min..=max).contains(&value) && document.resolve(&[setting]).is_ok()
+        })
+    };
+    !takes(0.5) && takes(1.0)
 }

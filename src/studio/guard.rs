@@ -91,7 +91,12 @@ const HEADERS: [(&str, &str); 6] = [
 pub(super) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
     let is_page = matches!(
         request.uri().path(),
-        "/" | "/studio.css" | "/studio.js" | "/design.js" | "/film.js" | "/icon.svg"
+        "/" | "/studio.css"
+            | "/studio.js"
+            | "/design.js"
+            | "/underlay.js"
+            | "/film.js"
+            | "/icon.svg"
     );
     let mut response = match app.guard.refuse(request.headers(), !is_page) {
         Some(reason) => Refusal::new(StatusCode::FORBIDDEN, reason).into_response(),

@@ -1,6 +1,6 @@
-//! Texts that undo and redo bring back, byte for byte.
+//! Texts that undo and redo bring back, byte for byte, with the set values of parameters that they replace.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 /// Largest number of texts.
@@ -9,13 +9,32 @@ const MOST: usize = 2_000;
 /// Largest number of bytes of all texts but the present one.
 const MOST_BYTES: usize = 128 << 20;
 
+/// Values of parameters that are set beside a text, by their names.
+pub(super) type Settings = BTreeMap<String, String>;
+
 /// Texts before and after the present one.
 #[derive(Debug)]
 pub(super) struct History {
-    texts: VecDeque<Arc<str>>,
+    entries: VecDeque<Entry>,
     /// Index of the present text.
     now: usize,
     bytes: usize,
+}
+
+#[derive(Debug)]
+struct Entry {
+    text: Arc<str>,
+    /// Values that were set before, and that this text has.
+    written: Settings,
+}
+
+impl From<Arc<str>> for Entry {
+    fn from(text: Arc<str>) -> Self {
+        Self {
+            text,
+            written: Settings::new(),
+        }
+    }
 }
 
 impl History {
@@ -23,14 +42,14 @@ impl History {
     pub(super) fn new(text: Arc<str>) -> Self {
         Self {
             bytes: text.len(),
-            texts: VecDeque::from([text]),
+            entries: VecDeque::from([text.into()]),
             now: 0,
         }
     }
 
     /// Returns the present text.
     pub(super) fn text(&self) -> &Arc<str> {
-        &self.texts[self.now]
+        &self.entries[self.now].text
     }
 
     /// Adds a text after the present one, in place of those that undo has left; returns whether it differs.
@@ -38,16 +57,21 @@ impl History {
         if *text == **self.text() {
             return false;
         }
-        let left = self.texts.drain(self.now + 1..);
-        self.bytes -= left.map(|text| text.len()).sum::<usize>();
+        let left = self.entries.drain(self.now + 1..);
+        self.bytes -= left.map(|entry| entry.text.len()).sum::<usize>();
         self.bytes += text.len();
-        self.texts.push_back(text);
-        while self.texts.len() > MOST || (self.bytes > MOST_BYTES && self.texts.len() > 2) {
-            let first = self.texts.pop_front();
-            self.bytes -= first.map_or(0, |text| text.len());
+        self.entries.push_back(text.into());
+        while self.entries.len() > MOST || (self.bytes > MOST_BYTES && self.entries.len() > 2) {
+            let first = self.entries.pop_front();
+            self.bytes -= first.map_or(0, |entry| entry.text.len());
         }
-        self.now = self.texts.len() - 1;
+        self.now = self.entries.len() - 1;
         true
+    }
+
+    /// Notes values that were set before the present text was added, and that it has.
+    pub(super) fn note_written(&mut self, values: Settings) {
+        self.entries[self.now].written = values;
     }
 
     /// Returns whether there is a text before the present one.
@@ -57,40 +81,39 @@ impl History {
 
     /// Returns whether there is a text after the present one.
     pub(super) fn can_redo(&self) -> bool {
-        self.now + 1 < self.texts.len()
+        self.now + 1 < self.entries.len()
     }
 
-    /// Goes back to the text before; returns whether there is one.
-    pub(super) fn undo(&mut self) -> bool {
-        let can = self.can_undo();
-        self.now -= usize::from(can);
-        can
+    /// Goes back to the text before, if there is one; returns the values that were set beside it.
+    pub(super) fn undo(&mut self) -> Option<&Settings> {
+        let written = self.can_undo().then_some(self.now)?;
+        self.now -= 1;
+        Some(&self.entries[written].written)
     }
 
-    /// Goes forward to the text after; returns whether there is one.
-    pub(super) fn redo(&mut self) -> bool {
-        let can = self.can_redo();
-        self.now += usize::from(can);
-        can
+    /// Goes forward to the text after, if there is one; returns the values that it has in place of those that are set.
+    pub(super) fn redo(&mut self) -> Option<&Settings> {
+        self.can_redo().then(|| self.now += 1)?;
+        Some(&self.entries[self.now].written)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{History, MOST};
+    use super::{History, MOST, Settings};
 
     #[test]
     fn texts_come_back_as_they_were() {
         let mut history = History::new("a: 1\r\n".into());
-        assert!(!history.undo());
+        assert!(history.undo().is_none());
         assert!(!history.push("a: 1\r\n".into()));
         assert!(history.push("a: 2 # two\n".into()) && history.push("\u{feff}a: 3".into()));
-        assert!(history.undo() && history.undo() && !history.undo());
+        assert!(history.undo().is_some() && history.undo().is_some() && history.undo().is_none());
         assert_eq!(&**history.text(), "a: 1\r\n");
-        assert!(history.redo());
+        assert!(history.redo().is_some());
         assert_eq!(&**history.text(), "a: 2 # two\n");
         assert!(history.push("a: 4".into()));
-        assert!(!history.redo() && history.undo());
+        assert!(history.redo().is_none() && history.undo().is_some());
         assert_eq!(&**history.text(), "a: 2 # two\n");
     }
 
@@ -100,13 +123,26 @@ mod tests {
         for number in 1..=3 * MOST {
             history.push(number.to_string().into());
         }
-        let undone = std::iter::from_fn(|| history.undo().then_some(())).count();
+        let undone = std::iter::from_fn(|| history.undo().map(|_| ())).count();
         assert_eq!(undone, MOST - 1);
         let long = "x".repeat(60 << 20);
         for end in ["a", "b", "c", "d"] {
             history.push((long.clone() + end).into());
         }
         assert!(history.bytes <= 3 * (61 << 20));
-        assert!(history.text().ends_with('d') && history.undo());
+        assert!(history.text().ends_with('d') && history.undo().is_some());
+    }
+
+    #[test]
+    fn values_that_a_text_replaces_are_set_again() {
+        let mut history = History::new("a: 1".into());
+        let values = Settings::from([("a".into(), "2".into())]);
+        assert!(history.push("a: 2".into()));
+        history.note_written(values.clone());
+        assert!(history.push("a: 2 # two".into()));
+        assert_eq!(history.undo(), Some(&Settings::new()));
+        assert_eq!(history.undo(), Some(&values));
+        assert_eq!(history.redo(), Some(&values));
+        assert_eq!(history.redo(), Some(&Settings::new()));
     }
 }

@@ -60,7 +60,7 @@ impl Default for Jobs {
 
 impl Jobs {
     /// Returns a queue of jobs that take no longer than a limit.
-    fn within(limit: Duration) -> Self {
+    pub(super) fn within(limit: Duration) -> Self {
         Self {
             turn: Semaphore::new(1),
             limit,

@@ -19,6 +19,7 @@
 //! | `problems`, `complete` | mistakes at their places; completion from the schema |
 //! | `vary`, `write` | members near the present one; values that are written into the text |
 //! | `design` | points, elements and maps that a hand drags; each gesture an edit of the text |
+//! | `underlay` | a picture under the design, and its collage by the maps of the system |
 //! | `library` | the library, with thumbnails |
 //! | `files` | where files may be written |
 //! | `guard`, `server` | requests that are answered, and the answers |
@@ -49,6 +50,7 @@ mod server;
 mod session;
 mod shots;
 mod sight;
+mod underlay;
 mod vary;
 mod view;
 mod write;

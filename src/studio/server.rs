@@ -4,6 +4,7 @@ mod changes;
 mod design;
 mod pictures;
 mod reports;
+mod underlay;
 
 use std::io;
 use std::net::TcpListener;
@@ -27,6 +28,8 @@ use super::guard::{self, Guard};
 use super::jobs::Jobs;
 use super::library::Thumbnails;
 use super::session::Session;
+use super::underlay::MOST_BYTES;
+use underlay::Fits;
 
 /// Everything that requests share.
 pub(super) struct App {
@@ -34,6 +37,7 @@ pub(super) struct App {
     session: Mutex<Session>,
     pictures: Jobs,
     thumbs: Jobs,
+    fits: Fits,
     thumbnails: Thumbnails,
     /// Number of changes, with the tab that has made the last one.
     changes: watch::Sender<(u64, String)>,
@@ -75,6 +79,7 @@ impl App {
             session: Mutex::new(session),
             pictures: Jobs::default(),
             thumbs: Jobs::default(),
+            fits: Fits::default(),
             thumbnails: Thumbnails::default(),
             changes: watch::Sender::new((0, String::new())),
             nudge: Mutex::default(),
@@ -177,6 +182,13 @@ fn router(app: Arc<App>) -> Router {
             ),
         )
         .route(
+            "/underlay.js",
+            text(
+                "text/javascript; charset=utf-8",
+                include_str!("page/underlay.js"),
+            ),
+        )
+        .route(
             "/design.js",
             text(
                 "text/javascript; charset=utf-8",
@@ -185,6 +197,7 @@ fn router(app: Arc<App>) -> Router {
         )
         .route("/pointer", post(design::pointer))
         .route("/edit", post(design::act))
+        .route("/design/view", post(design::view))
         .route(
             "/icon.svg",
             text("image/svg+xml", include_str!("page/icon.svg")),
@@ -198,6 +211,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/picture", post(pictures::picture))
         .route("/preview", post(pictures::preview))
         .route("/map", post(pictures::map))
+        .route("/figure", get(pictures::figure))
         .route("/film", post(pictures::film))
         .route("/numbers", get(reports::numbers))
         .route("/vary", post(changes::vary_all))
@@ -209,6 +223,21 @@ fn router(app: Arc<App>) -> Router {
         .route("/save", post(changes::save))
         .route("/component", post(changes::component))
         .route("/export", post(pictures::export))
+        .route(
+            "/underlay",
+            put(underlay::set)
+                .layer(DefaultBodyLimit::max(MOST_BYTES))
+                .get(underlay::picture)
+                .delete(underlay::remove),
+        )
+        .route("/underlay/place", post(underlay::put))
+        .route("/underlay/collage", get(underlay::collage))
+        .route(
+            "/fit",
+            post(underlay::fit)
+                .get(underlay::progress)
+                .delete(underlay::stop),
+        )
         .route("/complete", post(reports::completions))
         .route("/events", get(reports::events))
         .layer(DefaultBodyLimit::max(Source::MAX_BYTES + SPARE))

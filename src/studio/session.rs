@@ -16,12 +16,13 @@ use super::design::{self, Act, Hand, Scene};
 use super::drawing::Wholes;
 use super::files::{Roots, is_rule};
 use super::good::{Checked, Good, Reader};
-use super::history::History;
+use super::history::{History, Settings};
 use super::look::Look;
 use super::numbers::Numbers;
 use super::problems::Problem;
 use super::shots::Pace;
 use super::sight::Sight;
+use super::underlay::Underlay;
 use super::vary::Variant;
 use super::view::View;
 
@@ -59,6 +60,8 @@ pub(super) struct Session {
     pub(super) pace: Pace,
     pub(super) wholes: Arc<Wholes>,
     pub(super) variants: Vec<Variant>,
+    /// Picture under the figures of the design.
+    pub(super) underlay: Option<Underlay>,
 }
 
 /// Revision of the text and settings, on which forecast and dimension depend.
@@ -118,6 +121,7 @@ impl Session {
             pace: Pace::default(),
             wholes: Arc::default(),
             variants: Vec::new(),
+            underlay: None,
         };
         let checked = session.reader().check(text);
         session.take(checked);
@@ -163,10 +167,8 @@ impl Session {
 
     /// Returns the state before a hand dragged.
     pub(super) fn kept(&self) -> Result<(&Good, &Look), Refusal> {
-        match &self.kept {
-            Some((good, look)) => Ok((good, look)),
-            None => Ok((self.good()?, &self.look)),
-        }
+        let kept = self.kept.as_ref().map(|(good, look)| (good, look));
+        kept.map_or_else(|| Ok((self.good()?, &self.look)), Ok)
     }
 
     /// Keeps what there is, before a hand drags.
@@ -183,10 +185,19 @@ impl Session {
 
     /// Makes the text of a hand that has dragged an entry of the history.
     pub(super) fn keep_draft(&mut self) {
-        self.kept = None;
-        if let Some(draft) = self.draft.take() {
-            self.history.push(draft);
+        let kept = self.kept.take();
+        if let Some(draft) = self.draft.take()
+            && self.history.push(draft)
+            && let Some((_, look)) = kept
+        {
+            self.note_written(look.set);
         }
+    }
+
+    /// Notes which of the values that were set before the present text was added are not set any more.
+    pub(super) fn note_written(&mut self, mut before: Settings) {
+        before.retain(|name, _| !self.look.set.contains_key(name));
+        self.history.note_written(before);
     }
 
     /// Goes back to the text before a hand dragged.
@@ -203,12 +214,15 @@ impl Session {
     /// Returns the handles of the design.
     pub(super) fn scene(&self) -> Result<Scene, Refusal> {
         let good = self.good()?;
-        match good.revision == self.revision {
-            true => Ok(design::scene(good, &self.look)),
-            false => Err(Refusal::wrong(
-                "the text has mistakes: there is nothing to take hold of",
-            )),
+        if good.revision != self.revision {
+            let message = "the text has mistakes: there is nothing to take hold of";
+            return Err(Refusal::wrong(message));
         }
+        let mut scene = design::scene(good, &self.look, self.hand.view);
+        if let Some(underlay) = self.underlay.as_ref().filter(|_| !good.is_in_space) {
+            scene.lay(underlay.frame());
+        }
+        Ok(scene)
     }
 
     /// Changes the text by a gesture.
@@ -217,7 +231,12 @@ impl Session {
         let text = Arc::clone(self.text());
         // Only a text without mistakes has handles.
         self.scene()?;
-        let checked = design::acted(&self.reader(), self.good()?, &self.look, &text, act)?;
+        let checked = design::acted(
+            &self.reader(),
+            (self.good()?, &self.look, self.hand.view),
+            &text,
+            act,
+        )?;
         self.set_text(checked, self.revision)
     }
 
@@ -240,18 +259,26 @@ impl Session {
         Ok(())
     }
 
-    /// Goes back or forth in the history; returns the text to be read, if there is one.
+    /// Goes back or forth in the history; returns whether there is such a text.
     pub(super) fn travel(&mut self, is_back: bool) -> bool {
         self.drop_draft();
-        let has_moved = match is_back {
-            true => self.history.undo(),
-            false => self.history.redo(),
-        };
-        if has_moved {
-            let checked = self.reader().check(Arc::clone(self.history.text()));
-            self.take(checked);
+        let set = &mut self.look.set;
+        if is_back {
+            let Some(values) = self.history.undo() else {
+                return false;
+            };
+            for (name, value) in values {
+                set.entry(name.clone()).or_insert_with(|| value.clone());
+            }
+        } else {
+            let Some(values) = self.history.redo() else {
+                return false;
+            };
+            set.retain(|name, _| !values.contains_key(name));
         }
-        has_moved
+        let checked = self.reader().check(Arc::clone(self.history.text()));
+        self.take(checked);
+        true
     }
 
     /// Opens an entry of the library as a copy that is not saved.
@@ -436,8 +463,10 @@ impl Session {
             "parameters": good.map(|good| &good.parameters),
             "look": self.look,
             "factor": self.factor(),
+            "isLimit": good.is_some_and(Good::is_limit),
             "design": self.scene().ok(),
             "hand": self.hand.state(),
+            "underlay": self.underlay.as_ref().map(Underlay::state),
         })
     }
 }

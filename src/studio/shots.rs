@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::diagnostic::Source;
-use crate::kind::Kind;
 
 use super::answer::Refusal;
 use super::drawing::{Drawn, Shot};
@@ -155,11 +154,10 @@ impl Session {
 
     /// Returns the number of steps of a picture that gives none, where it is known.
     fn default_steps(&self, good: &Good, numbers: Option<Arc<Numbers>>) -> Option<u32> {
-        let proposed = || match good.kind {
-            Kind::Rule | Kind::LSystem => numbers.map(|it| it.proposed),
-            _ => None,
-        };
-        good.own_steps.or_else(proposed)
+        match good.is_limit() {
+            true => None,
+            false => good.own_steps.or_else(|| numbers.map(|it| it.proposed)),
+        }
     }
 
     /// Returns the number of steps at a magnification: elements stay as long in the picture as they are without it.

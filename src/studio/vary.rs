@@ -101,7 +101,12 @@ fn vary_parameters(
     for parameter in parameters {
         let now = value_of(parameter, set);
         let range = parameter.min.zip(parameter.max).map(|(min, max)| max - min);
-        let step = range.unwrap_or_else(|| now.abs().max(0.2)) * SHARE * swing(stream);
+        let most = range.unwrap_or_else(|| now.abs().max(0.2)) * SHARE;
+        // Whole numbers change by one at least, if they change.
+        let step = match parameter.is_integer {
+            true => (most.max(1.0) * swing(stream)).round(),
+            false => most * swing(stream),
+        };
         let [min, max] = [
             parameter.min.unwrap_or(f64::MIN),
             parameter.max.unwrap_or(f64::MAX),

@@ -10,15 +10,29 @@ use crate::expression::{Expression, PARTS};
 
 use super::answer::Refusal;
 use super::good::{Checked, Good, ParameterState, Reader};
+use super::session::Session;
+
+impl Session {
+    /// Writes the value of a parameter that is set into the text.
+    pub(super) fn write_value(&mut self, name: &str) -> Result<(), Refusal> {
+        let before = self.look.set.clone();
+        let Some(value) = before.get(name) else {
+            return Err(Refusal::wrong(format!("{name} is not set")));
+        };
+        let checked = write(&self.reader(), self.text(), name, value)?;
+        let revision = self.revision;
+        self.set_text(checked, revision)?;
+        self.look.set.remove(name);
+        if self.revision != revision {
+            self.note_written(before);
+        }
+        Ok(())
+    }
+}
 
 /// Returns the text in which a parameter has another value: nothing else is changed, and the new text, when it is read,
 /// has that value.
-pub(super) fn write(
-    reader: &Reader,
-    text: &Arc<str>,
-    name: &str,
-    value: &str,
-) -> Result<Checked, Refusal> {
+fn write(reader: &Reader, text: &Arc<str>, name: &str, value: &str) -> Result<Checked, Refusal> {
     let old = reader.source(text);
     let node = Node::parse(&old).map_err(|_| Refusal::wrong("the text has mistakes"))?;
     let missing = || Refusal::wrong(format!("the value of {name} is not in this file"));
@@ -54,9 +68,9 @@ fn number(good: &Good, name: &str) -> Option<Vec<PathStep>> {
         .filter_map(|(part, end)| Some((part, name.strip_suffix(end)?)))
         .next();
     match whole {
-        None => place(&good.node, &good.source, name),
+        None => place(good.node(), &good.source, name),
         Some((part, whole)) => {
-            let mut at = place(&good.node, &good.source, whole)?;
+            let mut at = place(good.node(), &good.source, whole)?;
             at.push(part.into());
             Some(at)
         }
@@ -65,7 +79,7 @@ fn number(good: &Good, name: &str) -> Option<Vec<PathStep>> {
 
 /// Returns whether the value of a parameter is a number that is written in the text, not a formula of others.
 pub(super) fn is_number(good: &Good, parameter: &ParameterState) -> bool {
-    let node = number(good, &parameter.name).and_then(|at| find(&good.node, &at));
+    let node = number(good, &parameter.name).and_then(|at| find(good.node(), &at));
     let parsed = node.and_then(Node::written).map(Expression::parse);
     parsed.is_some_and(|it| it.is_ok_and(|it| it.names().is_empty()))
 }

@@ -290,6 +290,64 @@ try {
   check((await value("#value-a")) === "0.457", "the slider follows the point");
   await shoot("two-parameters");
 
+  // Whole numbers have a slider of whole numbers. Systems without a number of steps are drawn to the pixel.
+  writeFileSync(join(folder, "ring.yaml"), "kind: ifs\nparams:\n  n: {value: 5, min: 3, max: 9}\n  turn: {value: 0, min: 0, max: 90}\nmaps:\n  - {for: {k: 1..n}, scale: 1/n, rotate: turn, shift: [cos(360*k/n), sin(360*k/n)]}\n");
+  const ring = await serve("ring.yaml");
+  studios.push(ring);
+  await open(ring.url);
+  await browser.until("document.querySelector('#value-n')?.closest('.parameter').querySelector('input[type=range]')");
+  await changes(() => browser.value("(() => { const range = document.querySelector('#value-n').closest('.parameter').querySelector('input[type=range]'); range.value = 6.4; range.dispatchEvent(new Event('input')); range.dispatchEvent(new Event('change')); })()"), "another number of maps is another set");
+  check((await value("#value-n")) === "6", "the slider has whole numbers");
+  check((await browser.value("document.querySelectorAll('.pad').length")) === 0, "whole numbers have no pad");
+  await settled();
+  check(await browser.value("document.querySelector('#limit').checked"), "a set without steps is drawn to the pixel");
+  check((await text("#forecast")) === "To the pixel", "the forecast names no step");
+  await changes(() => browser.click("#limit"), "a step is drawn");
+  check((await text("#forecast")).startsWith("Step "), "the forecast names the step");
+  await changes(() => browser.click("#limit"), "the set is drawn to the pixel again");
+
+  // A picture that is dropped lies under the figures; a system is fitted to it, whose collage is measured while a map moves.
+  const fits = await serve("tree.yaml");
+  studios.push(fits);
+  await open(fits.url);
+  await browser.value(`(async () => {
+    const canvas = new OffscreenCanvas(132, 132);
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#fff";
+    context.fillRect(0, 0, 132, 132);
+    context.fillStyle = "#000";
+    for (let row = 0; row < 128; row += 1) for (let column = 0; column < 128; column += 1) if (!(column & (127 - row))) context.fillRect(column + 2, row + 2, 1, 1);
+    const data = new DataTransfer();
+    data.items.add(new File([await canvas.convertToBlob()], "gasket.png", { type: "image/png" }));
+    document.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+  })()`);
+  await browser.until("document.querySelectorAll('.figure image').length > 0");
+  check((await browser.value("document.querySelectorAll('.figure[data-panel=base_element] image').length")) === 0, "base elements have no picture");
+  await shoot("underlay");
+  await browser.value("void (document.querySelector('#underlay-maps').value = '3')");
+  await browser.click("#underlay-fit");
+  await browser.until("document.querySelector('#title').textContent === 'Fit of gasket.png'");
+  await browser.until("document.querySelectorAll('.figure image').length === 4 && document.querySelector('#underlay-error').textContent.startsWith('Collage: overlap ')");
+  await settled();
+  await shoot("fit");
+  const overlap = async () => +(/overlap ([0-9.]+)/.exec(await text("#underlay-error"))?.[1]);
+  const fitted = await overlap();
+  check(fitted > 0.9, `the collage is near the picture: ${fitted}`);
+  const map = await browser.value("(() => { const it = document.querySelector('.figure .map'); it.scrollIntoView({ block: 'center' }); const { x, y, width, height } = it.getBoundingClientRect(); return [x + width / 2, y + height / 2]; })()");
+  await changes(() => browser.drag(map, [map[0] + 25, map[1] - 15]), "a map is dragged over the picture");
+  for (let end = Date.now() + 5000; (await overlap()) > fitted - 0.05; ) {
+    if (Date.now() > end) throw new Error("the error of the collage does not follow the hand");
+    await new Promise((resolve) => setTimeout(resolve, 40));
+  }
+  await shoot("dragged");
+  await browser.click("#undo");
+  await browser.until(`document.querySelector('#underlay-error').textContent.includes('overlap ${fitted.toFixed(4)}')`);
+  await browser.click("#undo");
+  await browser.until("document.querySelector('#title').textContent === 'Tree'");
+  await browser.click("#underlay-remove");
+  await browser.until("document.querySelectorAll('.figure image').length === 0");
+  checks += 3;
+
   // The time line: key frames of the sliders, played, moved, written.
   const film = await serve("tree.yaml");
   studios.push(film);

@@ -583,6 +583,99 @@ scene: [up]
     assert!(hand.text().contains("rotate: angle"));
     hand.undo();
     assert_eq!(hand.text(), text);
+    // A value that is set is written by a drag, and set again by undo.
+    let set = json!({ "angle": "0" });
+    hand.page.draw(json!({ "look": { "set": set } })).picture();
+    hand.drag("objects/side/union", [1.0, 0.0], [0.0, 1.0], json!({}));
+    assert_eq!(hand.page.state()["look"]["set"], json!({}));
+    hand.undo();
+    assert_eq!(hand.page.state()["look"]["set"], set);
+}
+
+/// A point of a ghost figure changes the number that is its limit, or the parameter on which the limit depends.
+#[test]
+fn limits_of_random_functions_are_dragged() {
+    let text = "\
+params: {wide: {value: 0.1, min: 0, max: 0.4}}
+initiator: segment
+generator:
+  random:
+    up: uniform(0.1, 0.3) # of the middle
+    along: \"normal(1/2, 0.05)\"
+    off: \"uniform(-wide, wide)\"
+  elements:
+    - [0, 0]
+    - [along, up]
+    - [3/4, off]
+    - [1, 0]
+";
+    let hand = Hand::of(text);
+    let panel = "generator/elements";
+    let limits = hand.page.state()["design"]["panels"][1]["limits"].clone();
+    let all: Vec<_> = limits
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| (it["side"].as_u64().unwrap(), it["at"].clone()))
+        .collect();
+    let wanted = [
+        (0, json!([0.45, 0.1])),
+        (1, json!([0.55, 0.3])),
+        (0, json!([0.75, -0.1])),
+        (1, json!([0.75, 0.1])),
+    ];
+    assert_eq!(all, wanted);
+    // Both numbers of a corner, one of each function.
+    let badge = hand.drag(panel, [0.55, 0.3], [0.6, 0.4], json!({}));
+    assert_eq!(badge, "up: uniform(0.1, 0.4), along: normal(1/2, 0.1)");
+    let first = text
+        .replace("up: uniform(0.1, 0.3)", "up: uniform(0.1, 0.4)")
+        .replace("(1/2, 0.05)", "(1/2, 0.1)");
+    assert_eq!(hand.text(), first);
+    let badge = hand.drag(panel, [0.4, 0.1], [0.45, 0.05], json!({}));
+    assert_eq!(badge, "up: uniform(0.05, 0.4), along: normal(1/2, 0.05)");
+    hand.undo();
+    // A limit that is a formula: its parameter.
+    let badge = hand.drag(panel, [0.75, -0.1], [0.75, -0.2], json!({}));
+    assert_eq!(badge, "wide = 0.2");
+    assert_eq!(hand.text(), first.replace("value: 0.1,", "value: 0.2,"));
+    hand.undo();
+    hand.undo();
+    assert_eq!(hand.text(), text);
+    // A limit that keys have chosen, whatever lies nearer.
+    let badge = hand.drag(panel, [0.75, 0.0], [0.75, 0.3], json!({ "limit": 1 }));
+    assert!(badge.starts_with("up: "), "{badge}");
+    hand.undo();
+    assert_eq!(hand.text(), text);
+}
+
+/// Maps that may follow each other, and the factor of maps towards vertices.
+#[test]
+fn edges_and_factors_are_shown_and_set() {
+    let text = "\
+kind: ifs
+maps: [{scale: 1/2}, {scale: 1/2, translate: [1/2, 0]}, {scale: 1/2, translate: [0, 1/2]}]
+edges: {1: [1, 2], 2: [3], 3: {1: 3, 2: 1}}
+";
+    let hand = Hand::of(text);
+    let edges = &hand.page.state()["design"]["edges"];
+    assert_eq!(edges["3"]["1"], "3");
+    let set = json!({ "act": "set", "at": "edges", "value": "{1: [1], 2: [3], 3: [1, 2]}" });
+    assert_eq!(hand.asked(set).status, 200);
+    assert!(hand.text().contains("edges: {1: [1], 2: [3], 3: [1, 2]}"));
+    let wrong = json!({ "act": "set", "at": "edges", "value": "{1: [1], 2: [3], 3: []}" });
+    assert_eq!(hand.asked(wrong).status, 422);
+    assert_eq!(
+        hand.asked(json!({ "act": "remove", "at": "edges" })).status,
+        200
+    );
+    assert_eq!(hand.page.state()["design"]["edges"], Value::Null);
+    let hand =
+        Hand::of("kind: ifs\nvertices: {points: [[0, 0], [1, 0], [0, 1]], shrink: 1/2} # half\n");
+    assert_eq!(hand.page.state()["design"]["panels"][0]["shrink"], "1/2");
+    let set = json!({ "act": "set", "at": "vertices/shrink", "value": "0.45" });
+    assert_eq!(hand.asked(set).status, 200);
+    assert!(hand.text().contains("shrink: 0.45} # half"));
 }
 
 /// Components are saved in the library of the person, and those of the library take the place of those of the file.

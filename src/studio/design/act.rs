@@ -9,6 +9,7 @@ use super::super::answer::Refusal;
 use super::components::component;
 use super::nice;
 use super::scene::{Element, Panel, Role, Scene};
+use super::space::View;
 
 /// A gesture.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -204,13 +205,14 @@ impl Design<'_> {
         key: &str,
         value: Option<&str>,
     ) -> Result<Vec<Edit>, Refusal> {
-        const KEYS: [&str; 6] = [
+        const KEYS: [&str; 7] = [
             "direction",
             "fertile",
             "visible",
             "connected",
             "use",
             "base_element",
+            "roll",
         ];
         if !KEYS.contains(&key) {
             return Err(Refusal::wrong(format!(
@@ -250,13 +252,20 @@ impl Design<'_> {
 
     fn split(&self, panel: &Panel, element: usize) -> Result<Vec<Edit>, Refusal> {
         let (found, number) = self.element(panel, element)?;
-        let [a, b] = [found.from, found.to].map(|point| panel.place(point));
-        let middle = [0, 1].map(|axis| nice::written((a[axis] + b[axis]) / 2.0, true, 1e-9));
-        let middle = format!("[{}, {}]", middle[0], middle[1]);
+        let [a, b] = [found.from, found.to].map(|point| {
+            let point = &panel.points[point];
+            [point.x, point.y, point.depth]
+        });
+        let [a, b] = [a, b].map(|place| panel.names.view().point(place));
+        let middle = (a + b) / 2.0;
+        let middle = panel.written(middle.to_array().map(|it| nice::written(it, true, 1e-9)));
         let entry = self.entry(panel, number)?;
         let Value::Mapping(entries) = &entry.value else {
             return Ok(vec![Edit::insert(panel.list.clone(), number, middle)]);
         };
+        if entry.get("to").is_none() {
+            return Err(Refusal::wrong("a face is divided in the text"));
+        }
         let copy: Vec<_> = entries
             .iter()
             .map(|(key, node)| match key.name.as_str() {
@@ -305,7 +314,7 @@ impl Design<'_> {
                     .iter()
                     .any(|it| it.entry == Some(number + 1) && it.from == point);
             if starts_here {
-                let from = panel.points[element.from].text.join(", ");
+                let from = &panel.points[element.from].whole;
                 let at = below(&below(&panel.list, number + 1), "from");
                 edits.push(Edit::set(at, format!("[{from}]")));
             }
@@ -338,11 +347,19 @@ impl Design<'_> {
         let mut edits = Vec::new();
         for at in &found.written {
             match find(self.root, at).map(|node| &node.value) {
-                Some(Value::Sequence(_)) => {
+                Some(Value::Sequence(parts)) => {
+                    let axes = panel.names.view().axes();
                     let changed = [0, 1]
                         .into_iter()
-                        .filter(|axis| found.text[*axis] != text[*axis]);
-                    edits.extend(changed.map(|axis| Edit::set(below(at, axis), text[axis])));
+                        .filter(|side| found.text[*side] != text[*side])
+                        .map(|side| (axes[side], text[side]));
+                    for (axis, text) in changed {
+                        edits.push(match axis < parts.len() {
+                            true => Edit::set(below(at, axis), text),
+                            // A point of two numbers lies in z = 0.
+                            false => Edit::insert(at.clone(), axis, text),
+                        });
+                    }
                 }
                 _ => edits.push(Edit::set(at.clone(), format!("[{}, {}]", text[0], text[1]))),
             }
@@ -372,7 +389,19 @@ impl Design<'_> {
         if points.len() < 2 {
             return Err(Refusal::wrong("a polyline has two points at least"));
         }
-        let all: Vec<_> = points.iter().map(|[x, y]| format!("[{x}, {y}]")).collect();
+        let view = panel.names.view();
+        if view == View::Left && panel.role == Role::Generator {
+            let message =
+                "a generator runs along the x axis: it is drawn in one of the other views";
+            return Err(Refusal::wrong(message));
+        }
+        let written = |[x, y]: [String; 2]| {
+            let mut text = ["0"; 3].map(str::to_owned);
+            let [right, up, _] = view.axes();
+            (text[right], text[up]) = (x, y);
+            panel.written(text)
+        };
+        let all: Vec<_> = points.into_iter().map(written).collect();
         let list = format!("[{}]", all.join(", "));
         let whole = match panel.list.first() {
             Some(PathStep::Key(key)) if key == "initiator" => {

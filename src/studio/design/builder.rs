@@ -8,8 +8,9 @@ use crate::diagnostic::Source;
 use crate::document::node::{Node, Value};
 use crate::edit::{PathStep, find};
 
+use super::limits::Functions;
 use super::maps::{self, MapHandle};
-use super::names::{Basis, Names};
+use super::names::Names;
 use super::scene::{MOST, Panel, Role, Scene, element, json, moved, window};
 
 /// Builds a scene from an assembled document of the plane.
@@ -34,6 +35,7 @@ impl<'a> Builder<'a> {
         names: Names,
     ) -> Self {
         let scene = Scene {
+            view: names.is_in_space().then(|| names.view()),
             names: names.clone(),
             ..Scene::default()
         };
@@ -70,6 +72,8 @@ impl<'a> Builder<'a> {
         if let Some(list) = find(self.root, &vertices) {
             let mut panel = self.panel(&vertices, "Vertices", Role::Maps, list);
             panel.id = "vertices".into();
+            let shrink = find(self.root, &["vertices", "shrink"].map(PathStep::from));
+            panel.shrink = shrink.and_then(Node::written).map(str::to_owned);
             if let Value::Sequence(points) = &list.value {
                 for (number, node) in points.iter().enumerate().take(MOST) {
                     panel.add(node, below(&vertices, &[number.into()]));
@@ -80,6 +84,7 @@ impl<'a> Builder<'a> {
             self.scene.panels.push(panel);
         }
         self.maps();
+        self.scene.edges = self.root.get("edges").map(json);
         self.condensation();
         if self.scene.panels.is_empty() {
             self.scene.why = Some(
@@ -151,6 +156,10 @@ impl<'a> Builder<'a> {
             elements: Vec::new(),
             maps: Vec::new(),
             ghosts: Vec::new(),
+            faces: Vec::new(),
+            limits: Vec::new(),
+            shrink: None,
+            functions: None,
             window: [0.0, 0.0, 1.0, 1.0],
             list: at.to_vec(),
             names: self.names.clone(),
@@ -228,8 +237,20 @@ impl<'a> Builder<'a> {
             let mut panel = self.panel(&list, &title, Role::Generator, elements);
             panel.names = self.names.with_drawn(random, 0.5);
             self.fill(&mut panel, elements, closed);
-            if random.is_some() {
-                panel.ghosts = self.ghosts(&list, elements, node, closed);
+            if let Some(random) = random {
+                let moves = node.get("move").is_some();
+                if !(moves && self.names.is_in_space()) {
+                    panel.ghosts = self.ghosts(&list, elements, node, closed);
+                }
+                let functions = Functions {
+                    node: random.clone(),
+                    at: below(at, &["random".into()]),
+                };
+                // Points that are moved lie elsewhere.
+                if !moves {
+                    panel.limits = functions.limits(&panel, &self.names, self.root);
+                }
+                panel.functions = Some(functions);
             }
             self.scene.panels.push(panel);
         }
@@ -257,6 +278,20 @@ impl<'a> Builder<'a> {
         limits.into()
     }
 
+    /// Adds the points of a face or of corners in space, of which the first side is an element.
+    fn face(&self, panel: &mut Panel, entry: &Node, at: &[PathStep]) -> Option<Vec<usize>> {
+        let keys = ["face", "corners"].into_iter();
+        let (key, face) = { keys }.find_map(|key| Some((key, entry.get(key)?)))?;
+        let Value::Sequence(points) = &face.value else {
+            return None;
+        };
+        let points = points.iter().enumerate();
+        let found: Option<Vec<usize>> = points
+            .map(|(number, node)| panel.add(node, below(at, &[key.into(), number.into()])))
+            .collect();
+        found.filter(|found| found.len() > 2)
+    }
+
     /// Adds the points and elements of a list.
     fn fill(&self, panel: &mut Panel, list: &Node, closed: bool) {
         panel.closed = closed;
@@ -279,11 +314,20 @@ impl<'a> Builder<'a> {
                 Value::Mapping(_) => below(&at, &["to".into()]),
                 _ => at.clone(),
             };
+            if let Some(found) = self.face(panel, entry, &at) {
+                let raw = find(self.raw, &at).unwrap_or(entry);
+                panel
+                    .elements
+                    .push(element(raw, found[0], found[1], number));
+                end = Some(found[1]);
+                panel.faces.push(found);
+                continue;
+            }
             let from = from
                 .and_then(|node| panel.add(node, below(&at, &["from".into()])))
                 .or(end);
             let Some(to) = to.and_then(|node| panel.add(node, to_at)) else {
-                panel.why = Some("it has faces or other forms: it is changed in the text".into());
+                panel.why = Some("it has other forms: it is changed in the text".into());
                 return;
             };
             if let Some(from) = from {
@@ -302,9 +346,10 @@ impl<'a> Builder<'a> {
         let sets = ["condensation", "objects", "scene"].map(|key| Some(PathStep::from(key)));
         let is_set = sets.contains(&panel.list.first().cloned());
         if panel.role != Role::Initiator && !is_set {
-            let ends = [[0.0, 0.0], [1.0, 0.0]];
+            let ends = ["0, 0", "1, 0", "0, 0, 0", "1, 0, 0"];
+            let is_rule = panel.faces.is_empty();
             for point in &mut panel.points {
-                point.pinned = point.basis == Basis::Numbers && ends.contains(&[point.x, point.y]);
+                point.pinned = is_rule && ends.contains(&point.whole.as_str());
             }
         }
         let points = panel.points.iter().map(|point| [point.x, point.y]);

@@ -7,7 +7,9 @@ use crate::edit::Edit;
 use super::super::answer::Refusal;
 use super::super::session::Session;
 use super::act::{Act, Design};
-use super::maps::{self, Grip, Pull};
+use super::hit::{REACH, distance, hit_element, hit_map};
+use super::limits::Limit;
+use super::maps::{Grip, Pull};
 use super::names::{Basis, Names};
 use super::scene::{Panel, Role, Scene};
 use super::snap::{Grid, Snapped, Snapping};
@@ -24,7 +26,7 @@ pub(crate) struct Pointer {
     x: f64,
     y: f64,
     /// Length of a pixel.
-    pixel: f64,
+    pub(super) pixel: f64,
     #[serde(default)]
     shift: bool,
     #[serde(default)]
@@ -40,7 +42,9 @@ pub(crate) struct Pointer {
     #[serde(default)]
     unlocked: bool,
     /// Map that is taken hold of at its corner, whatever lies nearer.
-    map: Option<usize>,
+    pub(super) map: Option<usize>,
+    /// Limit of random functions that is taken hold of, whatever lies nearer.
+    limit: Option<usize>,
 }
 
 fn parts() -> u32 {
@@ -77,20 +81,14 @@ enum What {
     Point(usize),
     Arrow(usize),
     Map(usize, Grip),
+    Limit(usize),
 }
-
-/// Pixels within which a handle is hit.
-const REACH: f64 = 12.0;
 
 /// Pixels that a hand moves before something is dragged.
 const STILL: f64 = 3.0;
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    libm::hypot(a[0] - b[0], a[1] - b[1])
-}
-
 impl Pointer {
-    fn place(&self) -> [f64; 2] {
+    pub(super) fn place(&self) -> [f64; 2] {
         [self.x, self.y]
     }
 
@@ -155,65 +153,6 @@ fn find<'s>(scene: &'s Scene, id: &str) -> Result<&'s Panel, Refusal> {
     found.ok_or_else(|| Refusal::wrong(format!("nothing called '{id}' is designed here")))
 }
 
-/// Returns the element that is hit: its middle, or its line.
-fn hit_element(panel: &Panel, event: &Pointer) -> Option<usize> {
-    let to_line = |index: usize| {
-        let element = &panel.elements[index];
-        let [a, b] = [element.from, element.to].map(|point| panel.place(point));
-        let along = [b[0] - a[0], b[1] - a[1]];
-        let length = along[0] * along[0] + along[1] * along[1];
-        let [x, y] = event.place();
-        let share = match length > 0.0 {
-            true => (((x - a[0]) * along[0] + (y - a[1]) * along[1]) / length).clamp(0.0, 1.0),
-            false => 0.0,
-        };
-        distance([a[0] + share * along[0], a[1] + share * along[1]], [x, y])
-    };
-    (0..panel.elements.len())
-        .map(|index| (to_line(index), index))
-        .filter(|(far, _)| *far <= REACH * event.pixel)
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, index)| index)
-}
-
-fn hit_map(panel: &Panel, event: &Pointer) -> Option<(usize, Grip, [f64; 2])> {
-    if let Some(index) = event.map {
-        return Some((index, Grip::Body, panel.maps.get(index)?.frame[0]));
-    }
-    let handles = panel
-        .maps
-        .iter()
-        .enumerate()
-        .rev()
-        .flat_map(|(index, map)| {
-            let [o, x, y] = map.frame;
-            [(Grip::Body, o), (Grip::X, x), (Grip::Y, y)].map(|(grip, place)| (index, grip, place))
-        });
-    let far = |&(_, _, place): &(usize, Grip, [f64; 2])| distance(place, event.place());
-    // Of handles in one place, a corner of a map that is drawn above others comes first.
-    let order = |it: &(usize, Grip, [f64; 2])| (far(it), !matches!(it.1, Grip::Body));
-    let nearest = handles
-        .filter(|handle| far(handle) <= REACH * event.pixel)
-        .min_by(|a, b| {
-            let ((a, x), (b, y)) = (order(a), order(b));
-            a.total_cmp(&b).then(x.cmp(&y))
-        });
-    if nearest.is_some() {
-        return nearest;
-    }
-    let inside = |map: &maps::MapHandle| {
-        let [o, x, y] = map.frame;
-        let [u, v] = [x, y].map(|it| [it[0] - o[0], it[1] - o[1]]);
-        let determinant = u[0] * v[1] - u[1] * v[0];
-        let p = [event.x - o[0], event.y - o[1]];
-        let a = (p[0] * v[1] - p[1] * v[0]) / determinant;
-        let b = (u[0] * p[1] - u[1] * p[0]) / determinant;
-        (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
-    };
-    let index = panel.maps.iter().rposition(inside)?;
-    Some((index, Grip::Body, panel.maps[index].frame[0]))
-}
-
 fn down(session: &mut Session, event: &Pointer) -> Result<(), Refusal> {
     session.drop_draft();
     session.keep()?;
@@ -224,16 +163,27 @@ fn down(session: &mut Session, event: &Pointer) -> Result<(), Refusal> {
         .map(|index| (near(panel.place(index)), index))
         .filter(|(far, _)| *far <= REACH * event.pixel && event.map.is_none())
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let (what, at) = match (point, hit_element(panel, event), hit_map(panel, event)) {
-        (Some((_, index)), _, _) => (What::Point(index), panel.place(index)),
-        (None, Some(index), _) => (What::Arrow(index), event.place()),
-        (None, None, Some((index, grip, place))) => (What::Map(index, grip), place),
+    let limit = (0..panel.limits.len())
+        .map(|index| (near(panel.limits[index].at), index))
+        .filter(|(far, index)| match event.limit {
+            Some(limit) => limit == *index,
+            None => *far <= REACH * event.pixel && point.is_none_or(|(point, _)| *far < point),
+        })
+        .filter(|_| event.map.is_none())
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let others = (hit_element(panel, event), hit_map(panel, event));
+    let (what, at) = match (limit, point, others) {
+        (Some((_, index)), ..) => (What::Limit(index), panel.limits[index].at),
+        (None, Some((_, index)), _) => (What::Point(index), panel.place(index)),
+        (None, None, (Some(index), _)) => (What::Arrow(index), event.place()),
+        (None, None, (None, Some((index, grip, place)))) => (What::Map(index, grip), place),
         _ => {
             session.hand.selected = None;
             return Ok(());
         }
     };
     let (name, index) = match what {
+        What::Limit(index) => ("limit", index),
         What::Point(index) => ("point", index),
         What::Arrow(index) => ("element", index),
         What::Map(index, _) => ("map", index),
@@ -297,7 +247,8 @@ fn up(session: &mut Session, event: &Pointer) -> Result<(), Refusal> {
     let arrow = [0, 1].map(|axis| a[axis] + 0.62 * (b[axis] - a[axis]));
     let is_arrow = distance(arrow, event.place()) <= REACH * event.pixel;
     if is_arrow && drag.panel.role != Role::BaseElement {
-        let next = element.direction % 4 + 1;
+        let directions = if drag.scene.names.is_in_space() { 8 } else { 4 };
+        let next = element.direction % directions + 1;
         session.act(&Act::Key {
             panel: event.panel.clone(),
             element: index,
@@ -329,7 +280,32 @@ impl Drag {
             What::Point(point) => self.point(session, event, point, to),
             What::Arrow(_) => Ok((Vec::new(), None)),
             What::Map(map, grip) => self.map(session, event, map, grip, to),
+            What::Limit(limit) => self.limit(session, event, limit, to),
         }
+    }
+
+    /// Changes the limits of random functions, or parameters on which they depend.
+    fn limit(
+        &self,
+        session: &mut Session,
+        event: &Pointer,
+        limit: usize,
+        to: [f64; 2],
+    ) -> Result<Edits, Refusal> {
+        let Limit { side, point, .. } = self.panel.limits[limit];
+        let found = self.panel.functions.as_ref().zip(self.node(session, point));
+        let Some((functions, node)) = found else {
+            return Ok((Vec::new(), None));
+        };
+        let names = &self.scene.names;
+        if let Some((edits, badge)) = functions.dragged(names, node, side, to, event.pixel) {
+            return Ok((edits, Some(badge)));
+        }
+        let solved = self.solved(session, event, to, &|names| {
+            let (place, _) = functions.names(names, side).point(node)?;
+            Some(place)
+        })?;
+        Ok(written(session, solved))
     }
 
     fn point(
@@ -368,11 +344,11 @@ impl Drag {
             .find(|element| element.to == point);
         let before = before.map(|element| self.panel.place(element.from));
         let Snapped { text, to, .. } = event.snapping().snap(&self.panel, Some(point), before, to);
-        let root = std::sync::Arc::clone(&session.kept()?.0.node);
+        let root = session.kept()?.0.node();
         let design = Design {
             scene: &self.scene,
-            root: &root,
-            raw: &root,
+            root,
+            raw: root,
         };
         let edits = design.place(&self.panel, point, [&text[0], &text[1]])?;
         let badge = format!(
@@ -390,7 +366,7 @@ impl Drag {
         point: usize,
     ) -> Option<&'s crate::document::node::Node> {
         let at = self.panel.points[point].written.first()?;
-        crate::edit::find(&session.kept().ok()?.0.node, at)
+        crate::edit::find(session.kept().ok()?.0.node(), at)
     }
 
     fn map(
@@ -408,16 +384,7 @@ impl Drag {
             return Ok((Vec::new(), Some(why)));
         }
         if handle.basis != Basis::Numbers && !event.alt {
-            let which = match grip {
-                Grip::Body => 0,
-                Grip::X => 1,
-                Grip::Y => 2,
-            };
-            let solved = self.solved(session, event, to, &|names| {
-                let unit = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]][which];
-                let (affine, _) = handle.map(names)?;
-                Some(affine.transform_point2(unit.into()).to_array())
-            })?;
+            let solved = self.solved(session, event, to, &|names| handle.grip(grip, names))?;
             return Ok(written(session, solved));
         }
         let snapped = match event.grid.is_some() {

@@ -8,7 +8,7 @@ use crate::ifs;
 use super::act::below;
 use super::maps::{Grip, MapHandle, Pull, dragged, forms, number, pair, rows, two};
 use super::names::{Basis, Names};
-use super::nice;
+use super::{nice, space};
 
 /// Keys of translations.
 const TRANSLATIONS: [&str; 2] = ["translate", "shift"];
@@ -35,10 +35,15 @@ pub(super) fn handle(
     at: Vec<PathStep>,
     names: &Names,
 ) -> Option<MapHandle> {
+    let placed = match names.is_in_space() {
+        true => space::seen(node, names, true)?,
+        false => placed(node, names)?,
+    };
     Some(MapHandle {
         form: forms(node, &["scale", "rotate", "matrix", "translate", "shift"]),
         is_instance: true,
-        ..MapHandle::of(name, placed(node, names)?, node, at)
+        depth: space::depth(node, names, true).filter(|_| names.is_in_space()),
+        ..MapHandle::of(name, placed, node, at)
     })
 }
 

@@ -9,7 +9,7 @@ use crate::ifs;
 
 use super::act::below;
 use super::names::{Basis, Names};
-use super::{instances, nice};
+use super::{instances, nice, space};
 
 /// Keys of maps, in the order in which they are named.
 const FORMS: [&str; 8] = [
@@ -27,14 +27,19 @@ const FORMS: [&str; 8] = [
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MapHandle {
     pub(super) name: String,
-    /// Images of (0, 0), (1, 0) and (0, 1).
+    /// Images of the lower left corner of a rectangle, of the lower right one, and of the upper left one.
     pub(super) frame: [[f64; 2]; 3],
+    /// Vector of the edges of a box along the view, in space.
+    pub(super) depth: Option<[f64; 2]>,
     pub(super) basis: Basis,
     pub(super) weight: Option<f64>,
     /// Forms that it is written in, as `scale`, `rotate` and `shift`.
     pub(super) form: String,
     /// Whether it is an instance of a structure, whose transforms are done in the order of the file.
     pub(super) is_instance: bool,
+    /// Map of the unit square to that rectangle.
+    #[serde(skip)]
+    pub(super) unit: DAffine2,
     #[serde(skip)]
     pub(super) at: Vec<PathStep>,
     #[serde(skip)]
@@ -49,10 +54,11 @@ impl MapHandle {
         node: &Node,
         at: Vec<PathStep>,
     ) -> Self {
-        let image = |x, y| map.transform_point2(DVec2::new(x, y)).to_array();
         Self {
             name,
-            frame: [image(0.0, 0.0), image(1.0, 0.0), image(0.0, 1.0)],
+            frame: corners(map),
+            depth: None,
+            unit: DAffine2::IDENTITY,
             basis,
             weight: None,
             form: String::new(),
@@ -62,18 +68,39 @@ impl MapHandle {
         }
     }
 
+    /// Shows the image of another rectangle.
+    pub(super) fn lay(&mut self, unit: DAffine2) {
+        let [o, x, y] = self.frame.map(DVec2::from);
+        let own = DAffine2::from_cols(x - o, y - o, o);
+        self.frame = corners(own * self.unit.inverse() * unit);
+        self.unit = unit;
+    }
+
     /// Returns the map for other values of names, and what it depends on.
     pub(super) fn map(&self, names: &Names) -> Option<(DAffine2, Basis)> {
         match self.is_instance {
+            _ if names.is_in_space() => space::seen(&self.node, names, self.is_instance),
             true => instances::placed(&self.node, names),
             false => affine(&self.node, names),
         }
+    }
+
+    /// Returns the place of a grip for other values of names.
+    pub(super) fn grip(&self, grip: Grip, names: &Names) -> Option<[f64; 2]> {
+        let (map, _) = self.map(names)?;
+        let corner = match grip {
+            Grip::Body => DVec2::ZERO,
+            Grip::X => DVec2::X,
+            Grip::Y => DVec2::Y,
+        };
+        Some((map * self.unit).transform_point2(corner).to_array())
     }
 
     /// Returns the edits that write the map after a grip has been dragged, in the keys in which it is written. `None` if
     /// no map of that form lies there.
     pub(super) fn edits(&self, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
         match self.is_instance {
+            _ if names.is_in_space() => space::edits(self, names, pull),
             true => instances::edits(self, names, pull),
             false => edits(self, names, pull),
         }
@@ -91,6 +118,12 @@ impl MapHandle {
         let far = [0, 1].map(|axis| x[axis] + y[axis] - o[axis]);
         [o, x, far, y]
     }
+}
+
+/// Returns the images of three corners of the unit square.
+fn corners(map: DAffine2) -> [[f64; 2]; 3] {
+    let image = |x, y| map.transform_point2(DVec2::new(x, y)).to_array();
+    [image(0.0, 0.0), image(1.0, 0.0), image(0.0, 1.0)]
 }
 
 /// Returns the maps of a list, or of a mapping of names.
@@ -117,7 +150,8 @@ pub(super) fn handles(node: &Node, at: &[PathStep], names: &Names) -> Vec<MapHan
         Some(MapHandle {
             weight: weight.map(|it| it.0),
             form: forms(node, &FORMS),
-            ..MapHandle::of(name, affine(node, names)?, node, below(at, step))
+            depth: space::depth(node, names, false).filter(|_| names.is_in_space()),
+            ..MapHandle::of(name, map_of(node, names)?, node, below(at, step))
         })
     };
     entries.into_iter().filter_map(handle).collect()
@@ -160,6 +194,14 @@ pub(super) fn pair(node: &Node, names: &Names) -> Option<(DVec2, Basis)> {
     }
 }
 
+/// Returns a map as it is written, as far as it is seen, and what it depends on.
+fn map_of(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
+    match names.is_in_space() {
+        true => space::seen(node, names, false),
+        false => affine(node, names),
+    }
+}
+
 /// Returns a map of the plane as it is written, and what it depends on.
 fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
     let mut basis = Basis::Numbers;
@@ -170,7 +212,11 @@ fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
                 "scale" | "rotate" => pair(node, names)?,
                 _ => names.point(node).map(|(at, own)| (at.into(), own))?,
             };
-            basis = basis.max(own);
+            // The number before the parameters of `90 + bend` is the map's own.
+            basis = basis.max(match own {
+                Basis::Parameters if key == "rotate" && is_offset(node) => Basis::Numbers,
+                own => own,
+            });
             Some(Some(value))
         }
     };
@@ -200,14 +246,48 @@ fn affine(node: &Node, names: &Names) -> Option<(DAffine2, Basis)> {
     map.is_finite().then_some((map, basis))
 }
 
+/// Splits a formula that begins with a term which is a number, such as `90 + bend`, into that number and the other terms.
+fn offset(text: &str) -> Option<(f64, &str)> {
+    let is_digit = |at: usize, it: char| it.is_ascii_digit() || it == '.' || (at == 0 && it == '-');
+    let end = { text.char_indices() }.find(|&(at, it)| !is_digit(at, it));
+    let (number, rest) = text.split_at(end?.0);
+    let rest = rest.trim_start();
+    let number = number.parse().ok()?;
+    rest.starts_with(['+', '-']).then_some((number, rest))
+}
+
+/// Returns whether a number, or each of a list, has a term of its own.
+pub(super) fn is_offset(node: &Node) -> bool {
+    match &node.value {
+        Value::Number(_) => true,
+        Value::Text(text) => offset(text).is_some(),
+        Value::Sequence(parts) => parts.iter().all(is_offset),
+        _ => false,
+    }
+}
+
+/// Returns an angle as it is written in the place of another one. Terms with parameters stay.
+pub(super) fn turned(node: Option<&Node>, names: &Names, angle: f64) -> String {
+    let round = |angle: f64| nice::decimals(angle, 0.05);
+    let kept = node.and_then(|node| {
+        let Value::Text(text) = &node.value else {
+            return None;
+        };
+        let (number, rest) = offset(text)?;
+        let others = names.value(node)?.0 - number;
+        Some(format!("{} {rest}", round(angle - others)))
+    });
+    kept.unwrap_or_else(|| round(angle))
+}
+
 /// Part of a parallelogram that is dragged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Grip {
     /// The whole parallelogram.
     Body,
-    /// The image of (1, 0).
+    /// The image of the lower right corner.
     X,
-    /// The image of (0, 1).
+    /// The image of the upper left corner.
     Y,
 }
 
@@ -260,26 +340,54 @@ fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
     let node = &handle.node;
     let is_one = |key: &str| node.get(key).is_none_or(|node| names.value(node).is_some());
     let keeps = similar || node.get("matrix").is_none() && is_one("scale");
-    let new = dragged(old, grip, to, keeps);
+    let image = dragged(old * handle.unit, grip, to, keeps);
+    let new = match grip {
+        Grip::Body => {
+            let by = image.translation - (old * handle.unit).translation;
+            DAffine2::from_translation(by) * old
+        }
+        Grip::X | Grip::Y => image * handle.unit.inverse(),
+    };
     let step =
         |key: &str| -> Vec<PathStep> { handle.at.iter().cloned().chain([key.into()]).collect() };
-    let number = |value: f64| number(value, pixel);
+    // The length by which the rectangle moves if a factor changes by 1.
+    let length = handle
+        .unit
+        .matrix2
+        .x_axis
+        .length()
+        .max(handle.unit.matrix2.y_axis.length());
+    let factor = |value: f64| number(value, pixel / length);
+    let factors_of = |value: DVec2| two(value, pixel / length);
     let two = |value: DVec2| two(value, pixel);
+    let number = |value: f64| number(value, pixel);
     let put = |key: &str, value: String| match node.get(key) {
         Some(_) => Edit::set(step(key), value),
         None => Edit::add(handle.at.clone(), key, value),
+    };
+    // Coordinates that stay are written as they are.
+    let coordinates = |key: &str, to: DVec2| match node.get(key).map(|node| &node.value) {
+        Some(Value::Sequence(parts)) if parts.len() == 2 => {
+            let changed = |axis: &usize| {
+                let before = names.value(&parts[*axis]);
+                before.is_none_or(|(before, _)| (to[*axis] - before).abs() > 1e-12)
+            };
+            let set = |axis: usize| Edit::set(below(&step(key), axis), number(to[axis]));
+            (0..2).filter(changed).map(set).collect()
+        }
+        _ => vec![Edit::set(step(key), two(to))],
     };
     let mut edits = Vec::new();
     if new.matrix2 != old.matrix2 {
         let [x, y] = [new.matrix2.x_axis, new.matrix2.y_axis];
         if node.get("matrix").is_some() {
-            let rows = [DVec2::new(x.x, y.x), DVec2::new(x.y, y.y)].map(two);
+            let rows = [DVec2::new(x.x, y.x), DVec2::new(x.y, y.y)].map(factors_of);
             edits.push(Edit::set(
                 step("matrix"),
                 format!("[{}, {}]", rows[0], rows[1]),
             ));
         } else if node.get("times").is_some() {
-            edits.push(Edit::set(step("times"), two(x)));
+            edits.push(Edit::set(step("times"), factors_of(x)));
         } else {
             let degrees = |of: DVec2| libm::atan2(of.y, of.x).to_degrees();
             let mirrored = new.matrix2.determinant() < 0.0;
@@ -295,30 +403,31 @@ fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
             };
             let factors = DVec2::new(x.length() * signs.x, y.length() * sy);
             let angles = [degrees(x * signs.x), degrees(-(y * sy).perp())];
-            let round = |angle: f64| nice::decimals(angle, 0.05);
+            let rotate = node.get("rotate");
+            let part = |axis: usize| match rotate.map(|node| &node.value) {
+                Some(Value::Sequence(parts)) => parts.get(axis),
+                _ => rotate,
+            };
+            let turn = |axis: usize| turned(part(axis), names, angles[axis]);
             let one_scale = node
                 .get("scale")
                 .is_some_and(|node| names.value(node).is_some());
             let one_angle = is_one("rotate");
             if (factors - scale.unwrap_or(DVec2::ONE)).length() > 1e-12 {
                 let text = if one_scale {
-                    number(factors.x)
+                    factor(factors.x)
                 } else {
-                    two(factors)
+                    factors_of(factors)
                 };
                 edits.push(put("scale", text));
             }
             if one_angle {
-                let angle = if grip == Grip::Y {
-                    angles[1]
-                } else {
-                    angles[0]
-                };
-                if node.get("rotate").is_some() || round(angle) != "0" {
-                    edits.push(put("rotate", round(angle)));
+                let text = turn(usize::from(grip == Grip::Y));
+                if rotate.is_some() || text != "0" {
+                    edits.push(put("rotate", text));
                 }
             } else {
-                let text = format!("[{}, {}]", round(angles[0]), round(angles[1]));
+                let text = format!("[{}, {}]", turn(0), turn(1));
                 edits.push(Edit::set(step("rotate"), text));
             }
         }
@@ -329,13 +438,16 @@ fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Vec<Edit>> {
             return None;
         }
         let centre = rest.inverse() * new.translation;
-        edits.push(Edit::set(step("fixed"), two(centre)));
+        edits.extend(coordinates("fixed", centre));
     } else if new.translation != old.translation {
         let key = match node.get("shift") {
             Some(_) => "shift",
             None => "translate",
         };
-        edits.push(put(key, two(new.translation)));
+        match node.get(key) {
+            Some(_) => edits.extend(coordinates(key, new.translation)),
+            None => edits.push(put(key, two(new.translation))),
+        }
     }
     Some(edits)
 }

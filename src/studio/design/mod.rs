@@ -9,7 +9,10 @@
 //! | `scene` | points and elements, with the places where they are written |
 //! | `maps` | maps of systems, and instances of structures, as parallelograms |
 //! | `instances` | transforms of instances, in the order of the file |
+//! | `limits` | limits of random functions |
+//! | `space` | views of space along an axis, and maps of space in them |
 //! | `names` | values of numbers, and what they depend on |
+//! | `hit` | handles under a pointer |
 //! | `drag` | a hand that drags: preview, end, and cancelling |
 //! | `snap`, `nice` | where a point comes to rest, and how it is written |
 //! | `solve` | parameters for which a point lies where it is dragged |
@@ -21,13 +24,16 @@ mod builder;
 mod components;
 mod drag;
 mod generators;
+mod hit;
 mod instances;
+mod limits;
 mod maps;
 mod names;
 mod nice;
 mod scene;
 mod snap;
 mod solve;
+mod space;
 
 use serde::Serialize;
 
@@ -41,8 +47,9 @@ use super::look::Look;
 pub(super) use act::Act;
 pub(super) use components::NewComponent;
 pub(super) use drag::{Pointer, pointer};
-use names::Names;
+pub(super) use names::Names;
 pub(super) use scene::Scene;
+pub(super) use space::View;
 
 /// State of the hand that designs.
 #[derive(Clone, Debug, Default)]
@@ -51,13 +58,15 @@ pub(super) struct Hand {
     /// Effect of the last movement, in words.
     pub(super) badge: Option<String>,
     pub(super) selected: Option<Selected>,
+    /// View of figures in space.
+    pub(super) view: View,
 }
 
 /// Selected handle.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Selected {
     panel: String,
-    /// `point`, `element` or `map`.
+    /// `point`, `element`, `map` or `limit`.
     what: &'static str,
     index: usize,
 }
@@ -76,12 +85,15 @@ impl Hand {
 }
 
 /// Returns the handles of a text.
-pub(super) fn scene(good: &Good, look: &Look) -> Scene {
+pub(super) fn scene(good: &Good, look: &Look, view: View) -> Scene {
     let names = Names::of(&good.parameters, &look.set);
-    let raw = raw(good).unwrap_or_else(|_| Node::clone(&good.node));
-    let builder = builder::Builder::new(&good.source, &good.node, &raw, names);
+    let names = match good.is_in_space {
+        true => names.seen(view),
+        false => names,
+    };
+    let raw = raw(good).unwrap_or_else(|_| Node::clone(good.node()));
+    let builder = builder::Builder::new(&good.source, good.node(), &raw, names);
     let why = match good.kind {
-        _ if good.is_in_space => "files in space are designed in their text",
         Kind::Rule => return builder.rule(),
         Kind::Ifs => return builder.system(),
         Kind::Instancing => return builder.structure(),
@@ -96,12 +108,11 @@ pub(super) fn scene(good: &Good, look: &Look) -> Scene {
 /// Returns the text after a gesture.
 pub(super) fn acted(
     reader: &Reader,
-    good: &Good,
-    look: &Look,
+    (good, look, view): (&Good, &Look, View),
     text: &str,
     act: &Act,
 ) -> Result<Checked, Refusal> {
-    let edits = with_design(good, look, |design| design.edits(act))?;
+    let edits = with_design(good, look, view, |design| design.edits(act))?;
     edited(reader, text, &edits)
 }
 
@@ -113,7 +124,11 @@ pub(super) fn component(
     panel: &str,
     title: &str,
 ) -> Result<NewComponent, Refusal> {
-    let new = with_design(good, look, |design| design.saved(panel, title))?;
+    if good.is_in_space {
+        let message = "components in space are saved by hand: copy them from the text";
+        return Err(Refusal::wrong(message));
+    }
+    let new = with_design(good, look, View::Front, |design| design.saved(panel, title))?;
     checked(reader, new.rule.clone())?;
     Ok(new)
 }
@@ -122,11 +137,12 @@ pub(super) fn component(
 fn with_design<T>(
     good: &Good,
     look: &Look,
+    view: View,
     act: impl FnOnce(&act::Design<'_>) -> Result<T, Refusal>,
 ) -> Result<T, Refusal> {
     act(&act::Design {
-        scene: &scene(good, look),
-        root: &good.node,
+        scene: &scene(good, look, view),
+        root: good.node(),
         raw: &raw(good)?,
     })
 }

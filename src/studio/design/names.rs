@@ -6,14 +6,16 @@ use serde::Serialize;
 
 use crate::document::node::{Node, Value};
 use crate::expression::{Expression, PARTS, Scope};
+use crate::geometry::DVec3;
 use crate::rule::ElementContext;
 
 use super::super::good::ParameterState;
+use super::space::View;
 
 /// Dependence of a number; the later ones include those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Basis {
+pub(crate) enum Basis {
     /// Nothing: constants only.
     Numbers,
     /// Parameters of the rule.
@@ -24,14 +26,16 @@ pub(super) enum Basis {
 
 /// Names with values.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Names {
+pub(crate) struct Names {
     values: BTreeMap<String, f64>,
     drawn: BTreeSet<String>,
+    /// View of a figure in space; `None` in the plane.
+    view: Option<View>,
 }
 
 impl Names {
     /// Returns the parameters of a rule, with the values that are set.
-    pub(super) fn of(parameters: &[ParameterState], set: &BTreeMap<String, String>) -> Self {
+    pub(crate) fn of(parameters: &[ParameterState], set: &BTreeMap<String, String>) -> Self {
         let mut names = Self::default();
         for parameter in parameters {
             let value = super::super::vary::value_of(parameter, set);
@@ -41,6 +45,23 @@ impl Names {
             names.draw(name, if number == 0 { 1.0 } else { 0.0 });
         }
         names
+    }
+
+    /// Returns the names for points in space as they are seen.
+    pub(super) fn seen(self, view: View) -> Self {
+        Self {
+            view: Some(view),
+            ..self
+        }
+    }
+
+    pub(super) fn is_in_space(&self) -> bool {
+        self.view.is_some()
+    }
+
+    /// Returns the view of space; in the plane, that from the front.
+    pub(super) fn view(&self) -> View {
+        self.view.unwrap_or_default()
     }
 
     fn draw(&mut self, name: &str, value: f64) {
@@ -74,7 +95,7 @@ impl Names {
         }
     }
 
-    fn evaluate(&self, expression: &Expression) -> Option<f64> {
+    pub(super) fn evaluate(&self, expression: &Expression) -> Option<f64> {
         let mut scope = Scope::new();
         for (name, value) in &self.values {
             scope.constant(name, *value);
@@ -83,7 +104,7 @@ impl Names {
     }
 
     /// Returns the value of a number.
-    pub(super) fn value(&self, node: &Node) -> Option<(f64, Basis)> {
+    pub(crate) fn value(&self, node: &Node) -> Option<(f64, Basis)> {
         match &node.value {
             Value::Number(value) => Some((*value, Basis::Numbers)),
             Value::Text(text) => {
@@ -112,13 +133,19 @@ impl Names {
     }
 
     /// Returns the value of a point: a list of two numbers, or a real or complex number.
-    pub(super) fn point(&self, node: &Node) -> Option<([f64; 2], Basis)> {
+    pub(crate) fn point(&self, node: &Node) -> Option<([f64; 2], Basis)> {
         match &node.value {
             Value::Sequence(parts) => {
-                let [x, y] = parts.as_slice() else {
+                let dimensions = if self.is_in_space() { 2..=3 } else { 2..=2 };
+                if !dimensions.contains(&parts.len()) {
                     return None;
+                }
+                let [right, up, _] = self.view().axes();
+                let shown = |axis: usize| match parts.get(axis) {
+                    Some(part) => self.value(part),
+                    None => Some((0.0, Basis::Numbers)),
                 };
-                let ((x, one), (y, other)) = (self.value(x)?, self.value(y)?);
+                let ((x, one), (y, other)) = (shown(right)?, shown(up)?);
                 Some(([x, y], one.max(other)))
             }
             Value::Number(value) => Some(([*value, 0.0], Basis::Numbers)),
@@ -130,6 +157,24 @@ impl Names {
             }
             _ => None,
         }
+    }
+
+    /// Returns the value of a point or a vector in space. One of two numbers lies in z = 0.
+    pub(super) fn vector(&self, node: &Node) -> Option<(DVec3, Basis)> {
+        let Value::Sequence(parts) = &node.value else {
+            return None;
+        };
+        let mut vector = DVec3::ZERO;
+        let mut basis = Basis::Numbers;
+        if !(2..=3).contains(&parts.len()) {
+            return None;
+        }
+        for (axis, part) in parts.iter().enumerate() {
+            let (value, own) = self.value(part)?;
+            vector[axis] = value;
+            basis = basis.max(own);
+        }
+        Some((vector, basis))
     }
 
     /// Returns the names with other values of some.

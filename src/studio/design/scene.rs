@@ -4,9 +4,12 @@ use serde::Serialize;
 
 use crate::document::node::{Node, Value};
 use crate::edit::PathStep;
+use crate::geometry::DAffine2;
 
+use super::limits::{Functions, Limit};
 use super::maps;
 use super::names::{Basis, Names};
+use super::space::View;
 
 /// Largest number of handles of a panel.
 pub(super) const MOST: usize = 300;
@@ -19,8 +22,12 @@ pub(crate) struct Scene {
     pub(super) generators: Vec<String>,
     /// Selection, as it is written: `by_index`, `at_random` or cases.
     pub(super) select: Option<serde_json::Value>,
+    /// Maps that may follow each map of a recurrent system, as they are written.
+    pub(super) edges: Option<serde_json::Value>,
     /// Reason why nothing is designed here.
     pub(super) why: Option<String>,
+    /// View of a figure in space; `None` in the plane.
+    pub(super) view: Option<View>,
     #[serde(skip)]
     pub(super) names: Names,
 }
@@ -47,10 +54,18 @@ pub(super) struct Panel {
     pub(super) points: Vec<Point>,
     pub(super) elements: Vec<Element>,
     pub(super) maps: Vec<maps::MapHandle>,
-    /// Limits of random functions: polylines.
+    /// Points of faces of which elements are sides, in space.
+    pub(super) faces: Vec<Vec<usize>>,
+    /// Figures at the limits of random functions: polylines.
     pub(super) ghosts: Vec<Vec<[f64; 2]>>,
+    /// Their points that are dragged.
+    pub(super) limits: Vec<Limit>,
+    /// Factor of the maps towards vertices, as written.
+    pub(super) shrink: Option<String>,
     /// Lower left and upper right corner.
     pub(super) window: [f64; 4],
+    #[serde(skip)]
+    pub(super) functions: Option<Functions>,
     #[serde(skip)]
     pub(super) list: Vec<PathStep>,
     #[serde(skip)]
@@ -62,8 +77,13 @@ pub(super) struct Panel {
 pub(super) struct Point {
     pub(super) x: f64,
     pub(super) y: f64,
-    /// As written.
+    /// Coordinate that is not seen, in space.
+    pub(super) depth: f64,
+    /// Coordinates that are seen, as written.
     pub(super) text: [String; 2],
+    /// All coordinates, as written.
+    #[serde(skip)]
+    pub(super) whole: String,
     pub(super) basis: Basis,
     /// Whether it is an end of a generator.
     pub(super) pinned: bool,
@@ -84,25 +104,54 @@ pub(super) struct Element {
     #[serde(rename = "use")]
     pub(super) generator: Option<String>,
     pub(super) base_element: Option<String>,
+    /// Angle by which it is turned about itself, in space.
+    pub(super) roll: Option<String>,
     /// Its entry in the list; the last element of a closed list has none.
     pub(super) entry: Option<usize>,
+}
+
+impl Scene {
+    /// Shows images of a rectangle, of which `frame` is the map from the unit square, in place of those of the unit square.
+    pub(in crate::studio) fn lay(&mut self, frame: DAffine2) {
+        for panel in &mut self.panels {
+            let maps = panel.maps.iter_mut().filter(|map| !map.is_instance);
+            maps.for_each(|map| map.lay(frame));
+            if panel.role == Role::BaseElement {
+                continue;
+            }
+            let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+            let frame = corners.map(|corner| frame.transform_point2(corner.into()).to_array());
+            let points = panel.points.iter().map(|point| [point.x, point.y]);
+            let maps = panel.maps.iter().flat_map(maps::MapHandle::corners);
+            panel.window = window(frame.into_iter().chain(points).chain(maps));
+        }
+    }
 }
 
 impl Panel {
     /// Adds a point, or a place where a known one is written.
     pub(super) fn add(&mut self, node: &Node, at: Vec<PathStep>) -> Option<usize> {
         let ([x, y], basis) = self.names.point(node)?;
-        let text = match &node.value {
+        let [right, up, along] = self.names.view().axes();
+        let (text, whole) = match &node.value {
             Value::Sequence(parts) => {
-                let text =
-                    |index: usize| parts.get(index).and_then(Node::written).unwrap_or_default();
-                [text(0), text(1)].map(str::to_owned)
+                let text = |axis: usize| match parts.get(axis) {
+                    Some(part) => part.written().unwrap_or_default(),
+                    None => "0",
+                };
+                let size = parts.len();
+                let whole: Vec<_> = (0..size).map(text).collect();
+                ([text(right), text(up)].map(str::to_owned), whole.join(", "))
             }
-            _ => [node.written()?.to_owned(), String::new()],
+            _ => {
+                let text = node.written()?.to_owned();
+                ([text.clone(), String::new()], text)
+            }
         };
+        let depth = self.names.vector(node).map_or(0.0, |(at, _)| at[along]);
         let known = self.points.iter().position(|point| {
-            point.text == text
-                || (basis == Basis::Numbers && point.basis == basis && [point.x, point.y] == [x, y])
+            let is_number = basis == Basis::Numbers && point.basis == basis;
+            point.whole == whole || is_number && [point.x, point.y, point.depth] == [x, y, depth]
         });
         if let Some(known) = known {
             self.points[known].written.push(at);
@@ -111,7 +160,9 @@ impl Panel {
         self.points.push(Point {
             x,
             y,
+            depth,
             text,
+            whole,
             basis,
             pinned: false,
             written: vec![at],
@@ -126,12 +177,20 @@ impl Panel {
             self.points.push(Point {
                 x,
                 y,
+                depth: 0.0,
                 text: text.clone(),
+                whole: text.join(", "),
                 basis: Basis::Numbers,
                 pinned: false,
                 written: Vec::new(),
             });
         }
+    }
+
+    /// Returns a point of space as it is written: with two coordinates in the plane.
+    pub(super) fn written(&self, text: [String; 3]) -> String {
+        let size = if self.names.is_in_space() { 3 } else { 2 };
+        format!("[{}]", text[..size].join(", "))
     }
 
     pub(super) fn place(&self, point: usize) -> [f64; 2] {
@@ -155,6 +214,7 @@ pub(super) fn element(entry: &Node, from: usize, to: usize, number: usize) -> El
         generator: text("use"),
         base_element: { entry.get("base_element") }
             .map(|node| node.written().unwrap_or("its own").to_owned()),
+        roll: text("roll"),
         entry: Some(number),
     }
 }

@@ -2,7 +2,7 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const $ = (id) => document.getElementById(id);
-let page = null; // what the rest of the page lends: tab, json, make, state, take, say, ask, stepNow
+let page = null; // what the rest of the page lends: tab, call, json, make, state, take, ask, stepNow, images, forget
 let chosen = null; // panel, what, index
 let held = null; // panel and window while a pointer is down
 let drawing = null; // panel and points of a polyline that is drawn
@@ -22,6 +22,7 @@ const button = (text, act, more = {}) => page.make("button", { type: "button", c
 
 export function start(lent) {
   page = lent;
+  $("design-view").onchange = () => view($("design-view").value);
   $("design-grid").onchange = $("design-parts").onchange = $("design-lock").onchange = $("design-table").ontoggle = show;
   document.addEventListener("keydown", keys, true);
 }
@@ -35,6 +36,14 @@ async function act(gesture) {
   } catch (error) {
     say(error.message);
     return false;
+  }
+}
+/** Shows figures of space from another side. */
+async function view(view) {
+  try {
+    page.take(await page.json("POST", "/design/view", { tab: page.tab, view }));
+  } catch (error) {
+    say(error.message);
   }
 }
 const say = (text) => ($("design-badge").textContent = text);
@@ -77,7 +86,12 @@ export function show() {
   const all = scene();
   $("design-why").textContent = all?.why ?? (all ? "" : "The text has mistakes: there is nothing to take hold of.");
   $("design-tools").hidden = !all || Boolean(all.why);
+  $("design-figure").hidden = !all?.why;
+  $("design-table").hidden = !all || Boolean(all.why);
   if (!all) return;
+  if (all.why) picture();
+  $("design-view-label").hidden = !all.view;
+  if (all.view) $("design-view").value = all.view;
   if (chosen && !exists(chosen)) chosen = null;
   const box = $("design-figures");
   const old = new Map([...box.children].map((it) => [it.dataset.panel, it]));
@@ -94,7 +108,24 @@ export function show() {
     selection();
   }
 }
-const exists = ({ panel, what, index }) => Boolean({ point: panelOf(panel)?.points, element: panelOf(panel)?.elements, map: panelOf(panel)?.maps }[what]?.[index]);
+/** Shows the figure of a rule that is designed in its text. */
+async function picture() {
+  const image = $("design-figure");
+  const { revision, look } = page.state();
+  const about = JSON.stringify([revision, look.set, look.options.from]);
+  if (image.dataset.about === about) return;
+  image.dataset.about = about;
+  try {
+    const url = URL.createObjectURL(await (await page.call("GET", `/figure?tab=${page.tab}`)).blob());
+    image.onload = () => URL.revokeObjectURL(url);
+    image.src = url;
+    image.alt = `Figure of ${page.state().about?.title || page.state().name}, as kfrac show draws it`;
+  } catch (error) {
+    if (error.status !== 410) image.alt = error.message;
+    else image.dataset.about = "";
+  }
+}
+const exists = ({ panel, what, index }) => Boolean({ point: panelOf(panel)?.points, element: panelOf(panel)?.elements, map: panelOf(panel)?.maps, limit: panelOf(panel)?.limits }[what]?.[index]);
 
 function figure(id) {
   const drawn = svg("svg", { tabindex: 0, role: "application" });
@@ -181,7 +212,7 @@ function fill(block, panel) {
   const head = [page.make("h3", {}, panel.title)];
   const generator = panel.role === "generator" ? /^generators\/([^/]+)/.exec(panel.id)?.[1] ?? "generator" : null;
   if (panel.why?.startsWith("it is written in")) head.push(button("Make it mine", () => act({ act: "own", panel: panel.id }), { title: panel.why }));
-  if (panel.role !== "maps") head.push(button(isDraw ? "Done" : "Draw", () => (isDraw ? finish() : begin(panel.id)), { title: "Draw a polyline (P, clicks, Enter)", "aria-pressed": String(isDraw) }));
+  if (panel.role !== "maps" && !(scene().view === "left" && panel.role === "generator")) head.push(button(isDraw ? "Done" : "Draw", () => (isDraw ? finish() : begin(panel.id)), { title: "Draw a polyline (P, clicks, Enter)", "aria-pressed": String(isDraw) }));
   if (isComponent(panel)) {
     head.push(exchange(panel.role, panel.id, `${panel.title}: from the library`));
     if (!panel.why) head.push(button("Save…", () => name("Save as a component", "mine", (to) => saveComponent(panel.id, to)), { title: "Save as a component, in your library" }));
@@ -192,7 +223,9 @@ function fill(block, panel) {
       button("Rename", () => name("Another name", generator, (to) => act({ act: "rename_generator", from: generator, to }))),
       button("Remove", () => act({ act: "remove_generator", name: generator })));
   }
-  block.firstElementChild.replaceChildren(...head);
+  if (panel.shrink !== null) head.push(field("shrink", panel.shrink, (value) => act({ act: "set", at: "vertices/shrink", value }), { size: 6, "aria-label": "factor of the maps towards the vertices" }));
+  const isTyping = block.firstElementChild.contains(document.activeElement) && document.activeElement.matches("input");
+  if (!isTyping) block.firstElementChild.replaceChildren(...head);
   const drawn = block.lastElementChild;
   const wide = block.clientWidth || 340;
   let [x0, y0, x1, y1] = panel.window;
@@ -204,13 +237,18 @@ function fill(block, panel) {
   const count = panel.maps.length ? `${panel.maps.length} ${panel.maps[0].is_instance ? "instances" : "maps"}` : `${panel.points.length} points, ${panel.elements.length} elements`;
   drawn.setAttribute("aria-label", `${panel.title}: ${count}. Full stop and comma choose a handle, arrow keys move it.`);
   const pixel = Math.max((x1 - x0) / wide, (y1 - y0) / high);
-  const parts = [...grid(panel, pixel, [x0, y0, x1, y1])];
+  const parts = [...page.images(panel), ...grid(panel, pixel, [x0, y0, x1, y1])];
   for (const ghost of panel.ghosts) parts.push(svg("polyline", { class: "ghost", points: ghost.map(([x, y]) => `${x},${-y}`).join(" ") }));
+  for (const face of panel.faces) parts.push(svg("polygon", { class: "face", points: face.map((at) => `${panel.points[at].x},${-panel.points[at].y}`).join(" ") }));
   panel.elements.forEach((it, index) => parts.push(...element(panel, it, index, pixel)));
   panel.maps.forEach((it, index) => parts.push(...parallelogram(panel, it, index, pixel)));
   panel.points.forEach((it, index) => {
     const isChosen = chosen?.panel === panel.id && chosen.what === "point" && chosen.index === index;
     parts.push(svg("circle", { class: `handle ${it.basis}${it.pinned ? " pinned" : ""}${isChosen ? " chosen" : ""}`, cx: it.x, cy: -it.y, r: (isChosen ? 8 : 5.5) * pixel }));
+  });
+  panel.limits.forEach((it, index) => {
+    const isChosen = chosen?.panel === panel.id && chosen.what === "limit" && chosen.index === index;
+    parts.push(svg("circle", { class: `handle limit${isChosen ? " chosen" : ""}`, cx: it.at[0], cy: -it.at[1], r: (isChosen ? 6.5 : 4) * pixel }));
   });
   if (isDraw) {
     const all = [...drawing.at, ...(drawing.next ? [drawing.next] : [])];
@@ -245,10 +283,12 @@ function element(panel, it, index, pixel) {
   const [x, y] = [a.x + 0.62 * (b.x - a.x), a.y + 0.62 * (b.y - a.y)];
   const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
   const [u, v] = [(b.x - a.x) / length, (b.y - a.y) / length];
-  const [along, side] = [it.direction > 2 ? -1 : 1, it.direction === 2 || it.direction === 4 ? -1 : 1];
+  // Directions 5 to 8 are those with the third axis reflected.
+  const flat = (it.direction - 1) % 4;
+  const [along, side] = [flat > 1 ? -1 : 1, flat % 2 ? -1 : 1];
   const size = Math.min(9 * pixel, 0.22 * length);
   const at = (s, t) => `${x + size * (s * along * u - t * side * v)} ${-(y + size * (s * along * v + t * side * u))}`;
-  return [line, svg("path", { class: `arrow${isChosen ? " chosen" : ""}`, d: `M${at(1, 0)}L${at(-0.8, 0)}L${at(-0.8, 0.95)}Z` })];
+  return [line, svg("path", { class: `arrow${isChosen ? " chosen" : ""}`, d: `M${at(1, 0)}L${at(-0.8, 0)}L${at(-0.8, 0.95)}Z${it.direction > 4 ? `M${at(-0.8, -0.3)}L${at(0.6, -0.3)}L${at(0.6, -0.5)}L${at(-0.8, -0.5)}Z` : ""}` })];
 }
 function parallelogram(panel, it, index, pixel) {
   const isChosen = chosen?.panel === panel.id && chosen.what === "map" && chosen.index === index;
@@ -256,13 +296,15 @@ function parallelogram(panel, it, index, pixel) {
   const far = [x[0] + y[0] - o[0], x[1] + y[1] - o[1]];
   const kind = isChosen ? " chosen" : "";
   const middle = [(o[0] + far[0]) / 2, (o[1] + far[1]) / 2];
+  // The box of a map in space: the face behind, and the edges to it.
+  const behind = it.depth && Math.hypot(...it.depth) > pixel ? [svg("path", { class: "box", d: [o, x, far, y].map((at, i, all) => { const to = all[(i + 1) % 4]; const [u, v] = it.depth; return `M${at[0]} ${-at[1]}L${at[0] + u} ${-at[1] - v}L${to[0] + u} ${-to[1] - v}`; }).join("") })] : [];
   const name = svg("text", { class: "name", x: middle[0], y: -middle[1], "font-size": 12 * pixel });
   name.textContent = it.name;
-  return [svg("polygon", { class: `map${kind}`, points: [o, x, far, y].map((at) => `${at[0]},${-at[1]}`).join(" ") }), name,
+  return [...behind, svg("polygon", { class: `map${kind}`, points: [o, x, far, y].map((at) => `${at[0]},${-at[1]}`).join(" ") }), name,
     ...[[o, "corner"], [x, "x"], [y, "y"]].map(([at, what]) => svg("circle", { class: `handle ${it.basis} ${what}${kind}`, cx: at[0], cy: -at[1], r: 5 * pixel }))];
 }
 
-// What is chosen, as fields.
+// The chosen handle, as fields.
 
 function chosenBox() {
   const box = $("design-chosen");
@@ -276,6 +318,9 @@ function chosenBox() {
   } else if (what === "element") {
     const it = panel.elements[index];
     box.replaceChildren(make("b", {}, `Element ${index + 1}`), ...elementFields(id, it, index), button("Split", () => act({ act: "split", panel: id, element: index }), { title: "Split in its middle (S)" }), button("Delete", () => act({ act: "join", panel: id, point: it.to })));
+  } else if (what === "limit") {
+    const it = panel.limits[index];
+    box.replaceChildren(make("b", {}, `${it.side ? "Largest" : "Least"} values of point ${it.point}`), make("span", { className: "quiet" }, `[${panel.points[it.point].text.join(", ")}]`));
   } else {
     const it = panel.maps[index];
     const at = id + "/" + (Number.isNaN(+it.name) ? it.name : it.name - 1);
@@ -295,11 +340,13 @@ function elementFields(id, it, index) {
   const key = (key) => (value) => act({ act: "key", panel: id, element: index, key, value: value || null });
   if (it.entry === null) return [make("span", { className: "quiet" }, "closes the figure")];
   const options = (now, list) => list.map(([value, text]) => make("option", { value, selected: value === now }, text));
-  const direction = make("select", { "aria-label": `direction of element ${index + 1}`, onchange: (event) => key("direction")(event.target.value) }, ...options(String(it.direction), [["1", "1 normal"], ["2", "2 sides swapped"], ["3", "3 ends swapped"], ["4", "4 both"]]));
+  const directions = ["normal", "sides swapped", "ends swapped", "both"].map((name, at) => [String(at + 1), `${at + 1} ${name}`]);
+  if (scene().view) directions.push(...directions.map(([, name], at) => [String(at + 5), `${at + 5} ${name.slice(2)}, front and back`]));
+  const direction = make("select", { "aria-label": `direction of element ${index + 1}`, onchange: (event) => key("direction")(event.target.value) }, ...options(String(it.direction), directions));
   const flags = ["fertile", "visible", "connected"].map((name) => make("label", {}, make("input", { type: "checkbox", checked: it[name], onchange: (event) => key(name)(String(event.target.checked)) }), name));
   const generators = scene().generators;
   const uses = generators.length ? make("select", { "aria-label": `generator of element ${index + 1}`, onchange: (event) => key("use")(event.target.value) }, ...options(it.use ?? "", [["", "as selected"], ...generators.map((name) => [name, `use ${name}`])])) : null;
-  return [direction, ...flags, uses, field("base element", it.base_element ?? "", key("base_element"), { size: 8 })].filter(Boolean);
+  return [direction, ...flags, uses, scene().view ? field("roll", it.roll ?? "", key("roll"), { size: 4 }) : null, field("base element", it.base_element ?? "", key("base_element"), { size: 8 })].filter(Boolean);
 }
 function table() {
   const { make } = page;
@@ -318,8 +365,9 @@ function selection() {
   const { select, generators } = scene();
   const box = $("design-select");
   const rule = scene().panels.some((it) => it.role === "generator");
-  box.hidden = !rule;
-  if (!rule) return;
+  const followers = rule ? null : edges();
+  box.hidden = !rule && !followers;
+  if (!rule) return box.replaceChildren(...(followers ?? []));
   const parts = [make("h3", {}, "Selection")];
   const set = (at, value) => act({ act: "set", at, value });
   const choice = (now, change) => make("select", { "aria-label": "generator", onchange: (event) => change(event.target.value) }, ...generators.map((name) => make("option", { value: name, selected: name === now }, name)));
@@ -343,6 +391,31 @@ function selection() {
   if (!scene().panels.some((it) => it.role === "base_element")) parts.push(make("label", {}, "Base element ", exchange("base_element", "base_element", "Base element from the library")));
   parts.push(button("From here on another rule", () => name("From here on another rule", generators.length ? `rule-${generators.length + 1}` : "second", (to) => act({ act: "from_here", step: page.stepNow(), name: to })), { title: "Elements of later steps are replaced by a copy, which can be changed" }));
   box.replaceChildren(...parts);
+}
+/** Shows which maps of a system may follow each of them: a table of ticks. */
+function edges() {
+  const { make } = page;
+  const maps = panelOf("maps")?.maps ?? [];
+  if (maps.length < 2 || maps.length > 12 || panelOf("maps").why) return null;
+  const names = maps.map((it) => it.name);
+  const number = (name) => (names.indexOf(String(name)) + 1) || +name;
+  const written = scene().edges;
+  const weights = (list) => new Map(Array.isArray(list) ? list.map((name) => [number(name), null]) : Object.entries(list ?? {}).map(([name, weight]) => [number(name), weight]));
+  const all = new Map(names.map((_, at) => [at + 1, null]));
+  const known = new Map(Object.entries(written ?? {}).map(([name, list]) => [number(name), weights(list)]));
+  const rows = names.map((_, at) => (written ? known.get(at + 1) ?? new Map() : new Map(all)));
+  const text = (name) => (/^[A-Za-z0-9][\w-]*$/.test(name) ? name : JSON.stringify(name));
+  const toggle = (from, to) => {
+    const row = rows[from];
+    if (!row.delete(to + 1)) row.set(to + 1, [...row.values()].some((it) => it !== null) ? "1" : null);
+    const has = (row) => [...row].sort(([a], [b]) => a - b);
+    const line = (row) => ([...row.values()].some((it) => it !== null) ? `{${has(row).map(([to, weight]) => `${text(names[to - 1])}: ${weight ?? 1}`).join(", ")}}` : `[${has(row).map(([to]) => text(names[to - 1])).join(", ")}]`);
+    act({ act: "set", at: "edges", value: `{${rows.map((row, at) => `${text(names[at])}: ${line(row)}`).join(", ")}}` });
+  };
+  const head = make("tr", {}, make("th", {}, "after"), ...names.map((name) => make("th", { scope: "col" }, name)));
+  const body = names.map((name, from) => make("tr", {}, make("th", { scope: "row" }, name), ...names.map((other, to) => make("td", {}, make("input", { type: "checkbox", checked: rows[from].has(to + 1), "aria-label": `map ${other} after map ${name}`, onchange: () => toggle(from, to) })))));
+  const free = written ? button("Any map may follow", () => act({ act: "remove", at: "edges" })) : null;
+  return [make("h3", {}, "Maps that may follow"), make("table", { className: "edges" }, make("tbody", {}, head, ...body)), free].filter(Boolean);
 }
 function name(title, value, act) {
   const input = page.make("input", { type: "text", value, required: true });
@@ -407,28 +480,34 @@ async function keys(event) {
   }
   if (step && own && own.what !== "element") {
     stop();
-    const from = own.what === "point" ? [panel.points[own.index].x, panel.points[own.index].y] : panel.maps[own.index].frame[0];
+    const from = { point: () => [panel.points[own.index].x, panel.points[own.index].y], map: () => panel.maps[own.index].frame[0], limit: () => panel.limits[own.index].at }[own.what]();
     const at = (sign) => ({ panel: id, x: from[0] + sign * step[0] * by, y: from[1] + sign * step[1] * by, pixel: by / 100, alt: event.altKey });
     held = { panel: id, view: block.lastElementChild.dataset.view };
     await settled();
-    await send({ ...at(0), phase: "down", map: own.what === "map" ? own.index : null });
+    await send({ ...at(0), phase: "down", map: own.what === "map" ? own.index : null, limit: own.what === "limit" ? own.index : null });
     await send({ ...at(1), phase: "move" });
     held = null;
     await send({ ...at(1), phase: "up" });
     return;
   }
   const letter = event.key.toLowerCase();
-  const handles = [...panel.points.map((_, index) => ({ panel: id, what: "point", index })), ...panel.elements.map((_, index) => ({ panel: id, what: "element", index })), ...panel.maps.map((_, index) => ({ panel: id, what: "map", index }))];
+  const handles = [...panel.points.map((_, index) => ({ panel: id, what: "point", index })), ...panel.elements.map((_, index) => ({ panel: id, what: "element", index })), ...panel.maps.map((_, index) => ({ panel: id, what: "map", index })), ...panel.limits.map((_, index) => ({ panel: id, what: "limit", index }))];
   const next = { ".": 1, ",": -1 }[letter];
   if (next && handles.length) {
     stop();
     const now = handles.findIndex((it) => own && it.what === own.what && it.index === own.index);
     chosen = handles[(now + next + handles.length) % handles.length];
-    const it = { point: panel.points, element: panel.elements, map: panel.maps }[chosen.what][chosen.index];
+    const it = { point: panel.points, element: panel.elements, map: panel.maps, limit: panel.limits }[chosen.what][chosen.index];
     say(`${chosen.what} ${chosen.index + (chosen.what === "point" ? 0 : 1)}${it.text ? `: [${it.text.join(", ")}]` : ""}`);
     return show();
   }
   if (letter === "p") return stop(), begin(id);
+  if (letter === "w" && scene().view) {
+    stop();
+    const list = [...$("design-view").options].map((it) => it.value);
+    await view(list[(list.indexOf(scene().view) + 1) % list.length]);
+    return document.querySelector(`[data-panel="${CSS.escape(id)}"] svg`)?.focus();
+  }
   if (letter === "g") {
     stop();
     const list = $("design-grid");
@@ -441,16 +520,17 @@ async function keys(event) {
   if (own.what === "element") {
     const it = panel.elements[index];
     const flag = { f: "fertile", v: "visible", c: "connected" }[letter];
-    if ("1234".includes(letter)) return stop(), key("direction", letter);
+    if ((scene().view ? "12345678" : "1234").includes(letter)) return stop(), key("direction", letter);
     if (flag) return stop(), key(flag, String(!it[flag]));
     if (letter === "u" && scene().generators.length) {
       const list = [null, ...scene().generators];
       return stop(), key("use", list[(list.indexOf(it.use) + 1) % list.length]);
     }
     if (letter === "b") return stop(), $("design-chosen").querySelector("label:last-of-type input")?.focus();
+    if (letter === "r" && scene().view) return stop(), [...$("design-chosen").querySelectorAll("label")].find((it) => it.textContent.startsWith("roll"))?.querySelector("input").focus();
     if (letter === "s") return stop(), act({ act: "split", panel: id, element: index });
     if (event.key === "Delete") return stop(), act({ act: "join", panel: id, point: it.to });
-  } else if (event.key === "Delete") {
+  } else if (event.key === "Delete" && own.what !== "limit") {
     stop();
     await act(own.what === "map" ? { act: "remove_map", panel: id, map: index } : { act: "join", panel: id, point: index });
   }

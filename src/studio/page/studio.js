@@ -1,6 +1,7 @@
 // The page of the studio: a screen and a hand. Whatever is decided is decided by the server.
 
 import * as film from "./film.js";
+import * as underlay from "./underlay.js";
 
 const $ = (id) => document.getElementById(id);
 const key = location.hash.slice(1) || sessionStorage.getItem("key") || "";
@@ -15,11 +16,12 @@ let numbers = null; // forecast and dimension
 let drawn = null; // numbers of the last picture
 
 /** Calls the server; returns the answer, or throws its message. */
-async function call(method, path, body, kind = "application/json") {
+async function call(method, path, body, kind = "application/json", signal) {
   const answer = await fetch(path, {
     method,
     headers: { "x-kfrac-key": key, ...(body === undefined ? {} : { "content-type": kind }) },
-    body: body === undefined || typeof body === "string" ? body : JSON.stringify(body),
+    body: body === undefined || typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body),
+    signal,
   });
   if (answer.ok) {
     return answer;
@@ -278,7 +280,8 @@ function set(option, value, draft = false) {
 
 // Generation: steps and seeds.
 
-// Sets in space without a number of steps are drawn to the pixel.
+// Sets without a number of steps are drawn to the pixel.
+const isLimit = () => look.steps == null && (look.detail != null || Boolean(state.isLimit));
 const stepNow = () => look.steps ?? (state.isInSpace ? drawn?.steps : null) ?? numbers?.proposed ?? 0;
 function goTo(step) {
   look.steps = Math.max(0, step);
@@ -303,12 +306,11 @@ function placeSteps() {
     tick.title = describe(at);
   });
   const now = steps[stepNow()];
-  const isLimit = look.detail != null && look.steps == null;
-  $("limit").checked = look.detail != null;
-  $("forecast").className = now && !now.fits ? "beyond" : "";
-  const [head, ...rest] = describe(stepNow()).split(" · ");
-  $("forecast").replaceChildren(make("b", {}, isLimit ? "To the pixel" : head), rest.join(" · "));
-  range.setAttribute("aria-valuetext", describe(stepNow()) + (now && !now.fits ? ", beyond what is grown here" : ""));
+  $("limit").checked = look.detail != null || isLimit();
+  $("forecast").className = now && !now.fits && !isLimit() ? "beyond" : "";
+  const [head, ...rest] = isLimit() ? ["To the pixel"] : describe(stepNow()).split(" · ");
+  $("forecast").replaceChildren(make("b", {}, head), rest.join(" · "));
+  range.setAttribute("aria-valuetext", (isLimit() ? head : describe(stepNow())) + (now && !now.fits && !isLimit() ? ", beyond what is grown here" : ""));
   $("back").disabled = stepNow() === 0;
 }
 const count = (text) => (text.includes("^") ? 10 ** +text.split("^")[1] : +text.replaceAll(",", ""));
@@ -321,8 +323,8 @@ $("step").oninput = () => goTo(+$("step").value);
 $("back").onclick = () => goTo(stepNow() - 1);
 $("forward").onclick = () => goTo(stepNow() + 1);
 $("limit").onchange = () => {
-  look.detail = $("limit").checked ? 1 : null;
-  look.steps = null;
+  look.detail = $("limit").checked && !state.isLimit ? 1 : null;
+  look.steps = $("limit").checked || !state.isLimit ? null : numbers?.proposed ?? 0;
   placeSteps();
   changed();
 };
@@ -415,6 +417,7 @@ const limits = (it) => {
   const wide = Math.max(1, Math.abs(it.value));
   return [it.min ?? (it.max != null ? it.max - 2 * wide : it.value - wide), it.max ?? (it.min != null ? it.min + 2 * wide : it.value + wide)];
 };
+const isFixed = (it) => limits(it)[0] === limits(it)[1];
 const isMapped = () => state.isSystem && !state.isInSpace;
 function groups() {
   const parts = new Map();
@@ -431,7 +434,8 @@ function family() {
   $("about").hidden = !state.about?.about;
   $("source").textContent = state.about?.source ? `From: ${state.about.source}` : "";
   const controls = all.map(([name, parts]) => (parts[0].whole ? pad(name, parts) : slider(parts[0])));
-  if (isMapped() && all.length === 2 && state.parameters.length === 2) controls.push(pad("", state.parameters));
+  const isPair = all.length === 2 && state.parameters.length === 2 && !state.parameters.some((it) => it.is_integer || isFixed(it));
+  if (isMapped() && isPair) controls.push(pad("", state.parameters));
   $("parameters").replaceChildren(...controls);
   offerWriting();
   pads.forEach(lay);
@@ -442,7 +446,7 @@ async function lay({ area, name, parts, span }) {
   const over = name ? [`${name}=[${span.map((it) => it[0])}]..[${span.map((it) => it[1])}]`] : parts.map((it, at) => `${it.name}=${span[at].join("..")}`);
   const others = Object.entries(look.set).filter(([key]) => key !== name && !parts.some((it) => it.name === key));
   const about = JSON.stringify([state.revision, over, others]);
-  if (!isMapped() || area.dataset.map === about) return;
+  if (!isMapped() || parts.some(isFixed) || area.dataset.map === about) return;
   if (map.about !== about) map = { about, url: call("POST", "/map", { tab, over, width: 240, height: name ? 240 : 150 }).then((it) => it.blob()).then(URL.createObjectURL) };
   try {
     area.style.backgroundImage = `url(${await map.url})`;
@@ -471,13 +475,13 @@ function heading(name, about, input) {
 function slider(it) {
   const [min, max] = limits(it);
   const typed = words({ id: `value-${it.name}` });
-  const range = make("input", { type: "range", min, max, step: "any", "aria-label": `${it.name}, from ${min} to ${max}` });
+  const range = make("input", { type: "range", min, max, step: it.is_integer ? 1 : "any", "aria-label": `${it.name}, from ${min} to ${max}` });
   const place = () => {
     const value = typed.value = valueOf(it);
     if (Number.isFinite(+value)) range.value = value;
   };
   range.oninput = () => {
-    const digits = Math.max(0, 3 - Math.floor(Math.log10((max - min) || 1)));
+    const digits = it.is_integer ? 0 : Math.max(0, 3 - Math.floor(Math.log10((max - min) || 1)));
     look.set[it.name] = String(+(+range.value).toFixed(Math.min(12, digits)));
     changed(true);
   };
@@ -492,7 +496,7 @@ function slider(it) {
     const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageUp: 10, PageDown: -10 }[event.key];
     if (!by) return;
     event.preventDefault();
-    range.value = +range.value + by * (max - min) / (event.shiftKey ? 1000 : 100);
+    range.value = +range.value + by * (it.is_integer ? 1 : (max - min) / (event.shiftKey ? 1000 : 100));
     range.dispatchEvent(new Event("input"));
     range.dispatchEvent(new Event("change"));
   };
@@ -507,7 +511,7 @@ function pad(name, parts) {
   const knob = make("i");
   const called = name || parts.map((it) => it.name).join(" and ");
   const area = make("div", { className: "pad", tabIndex: 0, role: "application", "aria-label": `${called}: arrow keys move the point` }, knob);
-  const share = (at, value) => `${100 * Math.abs(at - (value - span[at][0]) / (span[at][1] - span[at][0]))}%`;
+  const share = (at, value) => `${100 * Math.abs(at - (value - span[at][0]) / (span[at][1] - span[at][0] || 1))}%`;
   area.style.setProperty("--zero-x", share(0, 0));
   area.style.setProperty("--zero-y", share(1, 0));
   const put = (value) => {
@@ -547,7 +551,7 @@ function pad(name, parts) {
   placed.push(place);
   pads.push({ area, name, parts, span });
   place();
-  return make("div", { className: "parameter" }, ...(name ? heading(name, parts[0].about, typed) : []), area);
+  return make("div", { className: "parameter" }, ...(name ? heading(name, parts[0].about?.replace(/^the real part of [^:]*(: )?/, ""), typed) : []), area);
 }
 
 // Style: each control is an option of `kfrac grow`.
@@ -851,11 +855,7 @@ function list() {
   if (!found.length) $("entries").append(make("li", { className: "quiet" }, "Nothing has this in its name, title or tags."));
 }
 async function openEntry(id) {
-  const open = async () => {
-    take(await json("POST", "/open", { tab, id }));
-    look = state.look;
-    changed();
-  };
+  const open = async () => opened(await json("POST", "/open", { tab, id }));
   if (state.isSaved || !state.canUndo) return open().catch((error) => say(error.message));
   ask("Open a copy", [make("p", {}, "The text is not saved. Undo brings it back.")], { go: "Open", act: open });
 }
@@ -952,7 +952,7 @@ function exports(heading, formats, more, note = "") {
 $("export").onclick = () => exports("Export", state.isInSpace ? ["png", "svg", "pdf", "dxf", "usda", "3mf", "glb", "pov", "stl", "obj", "ply", "csv", "json"] : ["svg", "png", "pdf", "dxf", "csv", "json"], [[tick({ name: "plot" }), " Single strokes, for a plotter"]]);
 $("film-export").onclick = () => film.frames().then(({ command }) => exports("Export the film", ["gif", "apng", "y4m", "mp4", "webm"], [], command), (error) => say(error.message));
 $("help").onclick = () => {
-  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction; fertile, visible, connected, use, base element; split; remove"], ["P, arrows, Space, Enter", "in a figure: draw, go to a point, place it, end"], ["G, Esc", "in a figure: grid; cancel"], ["?", "these keys"]];
+  const keys = [["[ and ]", "a step back, a step forward"], ["+ − 0", "zoom in, zoom out, show all"], ["arrows", "on the picture: move it, and with Shift turn it; in space turn it, with Ctrl move it, with Shift turn the light"], ["wheel, drag", "zoom about the pointer; move, and with Shift turn; in space turn, with Ctrl or the right button move, with Shift turn the light"], ["R", "another seed"], ["Ctrl+S", "save"], ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"], ["Ctrl+Space", "in the text: completions"], [". and ,", "in a figure: choose the next handle, the one before"], ["arrows, 1 2 3 4, F V C U B, S, Delete", "in a figure: move the point; direction, in space 1 to 8; fertile, visible, connected, use, base element; split; remove"], ["W, R", "in a figure of space: another view; roll"], ["P, arrows, Space, Enter", "in a figure: draw, go to a point, place it, end"], ["G, Esc", "in a figure: grid; cancel"], ["?", "these keys"]];
   ask("Keys", [make("dl", {}, ...keys.flatMap(([name, about]) => [make("dt", {}, name), make("dd", {}, about)]))]);
 };
 $("copy").onclick = async () => {
@@ -976,12 +976,13 @@ $("redo").onclick = () => travel("/redo");
 let design = null;
 /** Returns the code of the figures of a design, which is loaded when they are seen first. */
 const loaded = () => (design ??= import("./design.js").then(
-  (it) => (it.start({ tab, json, make, take, ask, stepNow, state: () => state, forget: () => (entries = null) }), it),
+  (it) => (it.start({ tab, call, json, make, take, ask, stepNow, state: () => state, images: underlay.images, forget: () => (entries = null) }), it),
   (error) => { design = null; throw error; },
 ));
 /** Shows the figures of the design, if its tab is open. */
 async function figures() {
   if ($("design").hidden) return;
+  underlay.show();
   try {
     (await loaded()).show();
   } catch (error) {
@@ -1112,9 +1113,16 @@ async function follow() {
   }
 }
 
+/** Opens a copy, whose look is its own. */
+function opened(next) {
+  take(next);
+  look = state.look;
+  changed();
+}
 film.start({ tab, json, make, say, values, changed, state: () => state, look: () => look });
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
+  underlay.start({ tab, call, json, take, say, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;
   state = {};

@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::catalogue::Shelf;
 
 use super::super::answer::Refusal;
-use super::super::{library, vary, write};
+use super::super::{library, vary};
 use super::{Answer, Shared, Tab, apart};
 
 #[derive(Deserialize)]
@@ -122,17 +122,8 @@ pub(super) struct Written {
 /// Writes the value of a parameter that is set into the text.
 pub(super) async fn write_value(State(app): Shared, Json(asked): Json<Written>) -> Answer {
     let Written { tab, name } = asked;
-    app.change(tab, move |session| {
-        let Some(value) = session.look.set.get(&name).cloned() else {
-            return Err(Refusal::wrong(format!("{name} is not set")));
-        };
-        let checked = write::write(&session.reader(), session.text(), &name, &value)?;
-        let revision = session.revision;
-        session.set_text(checked, revision)?;
-        session.look.set.remove(&name);
-        Ok(())
-    })
-    .await
+    app.change(tab, move |session| session.write_value(&name))
+        .await
 }
 
 #[derive(Deserialize)]

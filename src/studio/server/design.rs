@@ -47,6 +47,23 @@ fn check(now: u64, asked: Option<u64>) -> Result<(), Refusal> {
     }
 }
 
+/// View of figures in space, from a tab.
+#[derive(Deserialize)]
+pub(super) struct Viewed {
+    #[serde(default)]
+    tab: String,
+    view: design::View,
+}
+
+pub(super) async fn view(State(app): Shared, Json(Viewed { tab, view }): Json<Viewed>) -> Answer {
+    app.change(tab, move |session| {
+        session.drop_draft();
+        session.hand.view = view;
+        Ok(())
+    })
+    .await
+}
+
 /// A gesture, from a tab.
 #[derive(Deserialize)]
 pub(super) struct Gesture {

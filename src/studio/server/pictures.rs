@@ -22,7 +22,7 @@ use super::super::look::Look;
 use super::super::shots::Quality;
 use super::super::sight::Sight;
 use super::super::view::Gesture;
-use super::{Answer, Shared};
+use super::{Answer, Shared, Tab};
 
 /// Request for a picture.
 #[derive(Deserialize)]
@@ -170,6 +170,22 @@ pub(super) async fn map(State(app): Shared, Json(asked): Json<Map>) -> Result<Re
     }
     .await?;
     Ok(([(header::CONTENT_TYPE, "image/png")], bytes).into_response())
+}
+
+/// Draws the figure of the rule.
+pub(super) async fn figure(
+    State(app): Shared,
+    Query(Tab { tab }): Query<Tab>,
+) -> Result<Response, Refusal> {
+    let shot = {
+        let session = app.session();
+        session.shot(&session.look, [1; 2], Quality::Full)?
+    };
+    let held = Arc::new(Held::new(MOST_BYTES, PngEncoding::default()));
+    let own = Arc::clone(&held);
+    let name = format!("figure {tab}");
+    let bytes = app.thumbs.run(&name, held, move || shot.figure(&own));
+    Ok(([(header::CONTENT_TYPE, "image/svg+xml")], bytes.await?).into_response())
 }
 
 /// Request for the frames of a film.

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use crate::cli::animate::Ease;
 use crate::cli::held::Held;
+use crate::fit::Method;
 use crate::render::space::Shade;
 use crate::style::{Cap, ColorBy, Join, Named, Palette, Tone};
 
@@ -51,6 +52,7 @@ pub(super) async fn choices() -> Json<Value> {
         "shade": names::<Shade>(),
         "tone": names::<Tone>(),
         "ease": names::<Ease>(),
+        "methods": Method::ALL.map(Method::name),
     }))
 }
 
