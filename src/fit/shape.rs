@@ -123,12 +123,12 @@ impl Silhouette {
     }
 
     /// Returns the shape in a picture of at most `most` pixels along its longer side, whose pixels are those at their centres, and
-    /// the factor of its coordinates. `None` if too little is left of it.
-    pub(crate) fn reduced(&self, most: usize) -> Option<(Self, f64)> {
+    /// the factor of its coordinates. A shape of which nothing is left, or no complement, stays as it is.
+    pub(crate) fn reduced(&self, most: usize) -> (Self, f64) {
         let size = self.size();
         let longer = size[0].max(size[1]);
         if longer <= most {
-            return Some((self.clone(), 1.0));
+            return (self.clone(), 1.0);
         }
         let factor = real(most) / real(longer);
         let [width, height] = size.map(|side| whole((real(side) * factor).ceil()));
@@ -140,7 +140,10 @@ impl Silhouette {
                 && row < size[1]
                 && self.bits.get(column, row)
         });
-        Some((Self::new(bits).ok()?, factor))
+        match Self::new(bits) {
+            Ok(reduced) => (reduced, factor),
+            Err(_) => (self.clone(), 1.0),
+        }
     }
 
     /// Returns the pixels, in rows from the top.

@@ -48,7 +48,7 @@ pub(super) struct Underlay {
 pub(super) struct Shape {
     pub(super) silhouette: Arc<Silhouette>,
     /// The shape in fewer pixels, with the factor of its coordinates.
-    reduced: Option<Arc<(Silhouette, f64)>>,
+    reduced: Arc<(Silhouette, f64)>,
 }
 
 /// Place of a picture in the plane: its lower left corner, and its width.
@@ -147,7 +147,7 @@ impl Underlay {
     /// Returns the shape, in few pixels, and the maps and disks of the system in its coordinates. `None` where the text is
     /// no system of maps that any map may follow, with disks as condensation sets.
     pub(super) fn collage(&self, good: &Good, look: &Look) -> Option<Collage> {
-        let shape = self.shape.as_ref().ok()?.reduced.clone()?;
+        let shape = Arc::clone(&self.shape.as_ref().ok()?.reduced);
         let candidate = candidate(good, look)?;
         let factor = real(self.size[0]) / self.place.width * shape.1;
         let there = DAffine2::from_scale(DVec2::splat(factor))
@@ -171,10 +171,9 @@ impl Underlay {
 impl Shape {
     fn of(set: &PixelSet) -> Result<Self, String> {
         let silhouette = Silhouette::new(set.bits.clone()).map_err(|error| error.to_string())?;
-        let reduced = silhouette.reduced(MEASURED).map(Arc::new);
         Ok(Self {
+            reduced: Arc::new(silhouette.reduced(MEASURED)),
             silhouette: Arc::new(silhouette),
-            reduced,
         })
     }
 }
