@@ -124,7 +124,8 @@ impl Silhouette {
 
     /// Returns the shape in a picture of at most `most` pixels along its longer side, whose pixels are those at their centres, and
     /// the factor of its coordinates. A shape of which nothing is left, or no complement, stays as it is.
-    pub(crate) fn reduced(&self, most: usize) -> (Self, f64) {
+    #[must_use]
+    pub fn reduced(&self, most: usize) -> (Self, f64) {
         let size = self.size();
         let longer = size[0].max(size[1]);
         if longer <= most {
