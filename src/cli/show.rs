@@ -2,12 +2,14 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "studio")]
 use std::sync::Arc;
 
 use clap::ValueHint;
 
 use super::readable;
 use crate::catalogue::{Catalogue, Shelf};
+#[cfg(feature = "studio")]
 use crate::diagnostic::Source;
 use crate::figure::rule::{self, Topology};
 use crate::model::Kind;
@@ -16,6 +18,7 @@ use crate::render::{self, Size};
 use crate::style::{ColorBy, Named};
 
 use super::component::Component;
+#[cfg(feature = "studio")]
 use super::held::{self, Held, Memory};
 use super::labels::labels;
 use super::picture;
@@ -140,6 +143,7 @@ pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Fa
 }
 
 /// Draws the figure of a rule in memory, with the arguments of `kfrac show`.
+#[cfg(feature = "studio")]
 pub(crate) fn hold(
     arguments: &[String],
     source: &Arc<Source>,

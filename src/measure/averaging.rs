@@ -37,6 +37,9 @@ const LOGARITHM_COSTS: f64 = 1.5;
 /// Lower bound of the error of a growth.
 const MIN_ERROR: f64 = 0.001;
 
+/// Fraction of the mean growth below which counts do not grow.
+const GAP: f64 = 0.25;
+
 /// Minimum number of sizes in every range.
 const MIN_SIZES: usize = 4;
 
@@ -72,7 +75,7 @@ pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     if readings.len() < MIN_SIZES + 1 {
         return None;
     }
-    let growths: Vec<Growth> = readings.windows(2).map(Growth::between).collect();
+    let growths = growths(readings);
     let corrections = corrections(readings);
     let last = growths.len() + 1 - MIN_SIZES;
     let starts = (0..=last).flat_map(|from| {
@@ -111,16 +114,27 @@ pub(super) fn averaged(readings: &[Reading], most: f64) -> Option<Estimate> {
     })
 }
 
-impl Growth {
-    fn between(pair: &[Reading]) -> Self {
-        let [coarse, fine] = [pair[0], pair[1]];
-        let error = fine.growth_error;
-        Self {
-            step: libm::log(coarse.size / fine.size),
-            log: fine.growth,
-            weight: 1.0 / (error * error + MIN_ERROR * MIN_ERROR),
+/// Returns the growths between sizes, weighted by their variances. In a set with strong gaps, counts do not grow at some sizes,
+/// wherever the grid lies, and grow unevenly at the others. A size without growth has the larger of the variances of the
+/// nearest sizes with growth: by its own, it would outweigh them.
+fn growths(readings: &[Reading]) -> Vec<Growth> {
+    let step = |pair: &[Reading]| libm::log(pair[0].size / pair[1].size);
+    let pairs = || readings.windows(2);
+    let mean = pairs().map(|pair| pair[1].growth).sum::<f64>() / pairs().map(step).sum::<f64>();
+    let grows = |pair: &[Reading]| pair[1].growth >= GAP * mean * step(pair);
+    let variance =
+        |pair: &[Reading]| pair[1].growth_error * pair[1].growth_error + MIN_ERROR * MIN_ERROR;
+    let of = |nearest: Option<&[Reading]>| nearest.map_or(0.0, variance);
+    let growth = |(at, pair): (usize, &[Reading])| {
+        let before = of(readings[..at + 2].windows(2).rfind(|pair| grows(pair)));
+        let after = of(readings[at..].windows(2).find(|pair| grows(pair)));
+        Growth {
+            step: step(pair),
+            log: pair[1].growth,
+            weight: 1.0 / variance(pair).max(before).max(after),
         }
-    }
+    };
+    pairs().enumerate().map(growth).collect()
 }
 
 impl Fit {
@@ -268,6 +282,26 @@ mod tests {
             (estimate.value - 1.3).abs() < 2.0 * estimate.std_error,
             "{estimate:?}"
         );
+    }
+
+    #[test]
+    fn sizes_without_growth_do_not_outweigh_the_others() {
+        // Two copies by a ratio between 1/4 and 1/1024: counts grow at the sizes of the copies, on some grids earlier.
+        for period in [2, 3, 4, 6, 10] {
+            let mut readings = readings(40, 0.0, |_| 0.0);
+            let mut log = 0.0;
+            for (level, reading) in readings.iter_mut().enumerate() {
+                let grows = level % period == 0;
+                reading.growth = if grows { std::f64::consts::LN_2 } else { 0.0 };
+                reading.growth_error = if grows { 0.1 } else { 0.0 };
+                log += reading.growth;
+                reading.log = log;
+            }
+            let estimate = averaged(&readings, 2.0).unwrap();
+            let off = (estimate.value - 1.0 / period as f64).abs();
+            assert!(off < 2.0 * estimate.std_error, "{period}: {estimate:?}");
+            assert!(estimate.std_error < 0.2, "{period}: {estimate:?}");
+        }
     }
 
     #[test]
