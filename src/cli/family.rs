@@ -6,6 +6,7 @@ use crate::document::Setting;
 use crate::expression::{Expression, PARTS};
 use crate::family::ParameterRange;
 
+#[cfg(feature = "studio")]
 pub(crate) use written::value;
 pub(super) use written::{assignment, ranges};
 

@@ -280,7 +280,7 @@ setters!(PngEncoding {
     grey: bool
 });
 
-#[cfg(feature = "studio")]
+#[cfg(feature = "cli")]
 impl PngEncoding {
     /// Returns the encoding that leaves pixels as they are.
     pub(crate) fn raw() -> Self {

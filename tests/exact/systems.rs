@@ -388,6 +388,50 @@ fn affine_maps_are_bounded_by_the_affinity_dimension() {
 }
 
 #[test]
+fn dimensions_are_at_most_those_of_affine_hulls() {
+    // On a line: ratios that are no powers of one number, and turns by 180 degrees.
+    let along = |ratio: f64, shift: f64| {
+        let (sin, cos) = 0.5f64.sin_cos();
+        similarity(ratio, 0.0, false, [shift * cos, shift * sin])
+    };
+    let bound = |maps: &[DAffine2]| {
+        let found = of(maps);
+        assert_eq!(found.hausdorff.value, None, "{found:?}");
+        assert!(found.similarity.is_none_or(|it| it.value > 1.3));
+        found.hausdorff.upper_bound
+    };
+    let on_line = [along(0.6, 0.0), along(0.55, 0.45), along(-0.37, 0.68)];
+    assert_eq!(bound(&on_line), Some(1.0));
+    let off = [
+        on_line[0],
+        on_line[1],
+        similarity(0.37, 0.0, false, [0.0, 0.3]),
+    ];
+    assert!(bound(&off).unwrap() > 1.6);
+    // Maps that are no similarities, of a set on the x axis.
+    let flat = |x: f64, y: f64, shift: f64| {
+        let shape = DMat2::from_diagonal(DVec2::new(x, y));
+        DAffine2::from_mat2_translation(shape, DVec2::new(shift, 0.0))
+    };
+    let on_axis = [flat(0.7, 0.2, 0.0), flat(0.6, 0.3, 0.4)];
+    assert!(of(&on_axis).affinity.unwrap().upper_bound > 1.0);
+    assert_eq!(bound(&on_axis), Some(1.0));
+    // A set in a plane of space.
+    let copies = [[0.0, 0.0, 0.0], [0.3, 0.3, 0.0], [0.3, 0.0, 0.3]].map(|shift| {
+        let axis = DVec3::new(-1.0, 1.0, 1.0).normalize();
+        let turn = DMat3::from_axis_angle(axis, 1.0);
+        (
+            0,
+            0,
+            DAffine3::from_mat3_translation(0.75 * turn, DVec3::from(shift)),
+        )
+    });
+    let found = dimensions(&GraphDirectedSystem::space(copies).unwrap()).unwrap();
+    assert!(found.similarity.unwrap().value > 3.0);
+    assert_eq!(found.hausdorff.upper_bound, Some(2.0));
+}
+
+#[test]
 fn bad_numbers_are_refused() {
     assert!(GraphDirectedSystem::plane([(0, 0, line(f64::NAN, 0.0))]).is_none());
     assert_eq!(

@@ -195,7 +195,7 @@ pub fn dimensions_within(system: &GraphDirectedSystem, effort: Effort) -> Option
         return None;
     }
     if !system.is_similar() {
-        return of_affine(&parts, system.space, effort);
+        return of_affine(&parts, effort);
     }
     if !system.shrinks() {
         return None;
@@ -287,14 +287,19 @@ fn rank(part: &PartDimension) -> f64 {
 }
 
 /// Returns the dimensions of a system whose maps are not similarities, as far as they are known.
-fn of_affine(parts: &[&GraphDirectedSystem], space: usize, effort: Effort) -> Option<Dimensions> {
+fn of_affine(parts: &[&GraphDirectedSystem], effort: Effort) -> Option<Dimensions> {
     let carpet = match parts {
         [part] => carpet(part),
         _ => None,
     };
     let all: Option<Vec<Affinity>> = parts.iter().map(|part| affinity(part, effort)).collect();
-    let all = all?.into_iter();
-    let affinity = all.max_by(|a, b| a.upper_bound.total_cmp(&b.upper_bound))?;
+    let all = all?;
+    let bounds = all.iter().zip(parts).map(|(affinity, part)| {
+        let hull = real(Flat::of(part).dimension);
+        affinity.upper_bound.min(hull)
+    });
+    let bound = bounds.fold(0.0, f64::max);
+    let affinity = { all.into_iter() }.max_by(|a, b| a.upper_bound.total_cmp(&b.upper_bound))?;
     let hausdorff = match &carpet {
         Some(carpet) => Hausdorff {
             value: Some(settled(carpet.hausdorff)),
@@ -306,13 +311,17 @@ fn of_affine(parts: &[&GraphDirectedSystem], space: usize, effort: Effort) -> Op
             },
             method: format!("self-affine {}", carpet.described()),
         },
-        None => Hausdorff::unknown(
-            affinity.upper_bound.min(real(space)),
-            format!(
-                "maps are not similarities: bounded by the affinity dimension, from products of {} maps (Falconer 1988)",
-                affinity.length
-            ),
-        ),
+        None => {
+            let reason = if bound < affinity.upper_bound {
+                "bounded by the affine hull".into()
+            } else {
+                format!(
+                    "bounded by the affinity dimension, from products of {} maps (Falconer 1988)",
+                    affinity.length
+                )
+            };
+            Hausdorff::unknown(bound, format!("maps are not similarities: {reason}"))
+        }
     };
     let box_dimension = carpet.map(|carpet| {
         let value = settled(carpet.box_dimension);

@@ -60,6 +60,7 @@ pub(super) fn part_dimension(system: &GraphDirectedSystem, effort: Effort) -> Pa
         return part;
     }
     let flat = Flat::of(system);
+    part.hausdorff.upper_bound = Some(value.min(real(flat.dimension)));
     match Generations::of(&flat) {
         Some(generations) => part.by_neighbours(&flat, &generations, effort),
         None => part.by_open_set(&flat, effort, "the ratios are not powers of one number"),
