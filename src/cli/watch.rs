@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+#[cfg(feature = "studio")]
+use std::sync::mpsc::Sender;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
@@ -15,6 +17,7 @@ pub(crate) struct Watch {
     watcher: RecommendedWatcher,
     /// Events; `None` ends the waiting.
     changes: Receiver<Option<notify::Result<notify::Event>>>,
+    #[cfg(feature = "studio")]
     sender: Sender<Option<notify::Result<notify::Event>>>,
     folders: BTreeSet<PathBuf>,
     files: BTreeSet<PathBuf>,
@@ -28,6 +31,7 @@ impl Watch {
     /// If the system gives none.
     pub(crate) fn new() -> notify::Result<Self> {
         let (send, changes) = channel();
+        #[cfg(feature = "studio")]
         let sender = send.clone();
         let watcher = notify::recommended_watcher(move |event| {
             // Nobody listens any more when the program ends.
@@ -36,6 +40,7 @@ impl Watch {
         Ok(Self {
             watcher,
             changes,
+            #[cfg(feature = "studio")]
             sender,
             folders: BTreeSet::new(),
             files: BTreeSet::new(),

@@ -211,10 +211,8 @@ fn ratios_that_are_no_powers_of_one_number() {
     assert_eq!(touching.boundary, None);
     let overlapping = of(&[line(0.7, 0.0), line(0.55, 0.45)]);
     assert_eq!(overlapping.hausdorff.overlap, Overlap::Unknown);
-    assert_eq!(
-        overlapping.hausdorff.upper_bound,
-        Some(2.0f64.min(overlapping.similarity.unwrap().value))
-    );
+    assert!(overlapping.similarity.unwrap().value > 1.4);
+    assert_eq!(overlapping.hausdorff.upper_bound, Some(1.0));
 }
 
 #[test]

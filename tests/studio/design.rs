@@ -649,6 +649,47 @@ generator:
     assert_eq!(hand.text(), text);
 }
 
+/// A copy follows what its map follows, and is followed by the same; numbers of the maps behind change.
+#[test]
+fn copies_of_maps_in_recurrent_systems_have_their_edges() {
+    let text = "\
+kind: ifs
+maps: [{scale: 1/2}, {scale: 1/2, translate: [1/2, 0]}, {scale: 1/2, translate: [0, 1/2]}]
+edges:
+  1: [1, 2]  # twice
+  2: [3]
+  3: {1: 3, 2: 1}
+";
+    let hand = Hand::of(text);
+    hand.act(json!({ "act": "add_map", "panel": "maps", "map": 0 }));
+    let edges = |hand: &Hand| hand.page.state()["design"]["edges"].clone();
+    let copied = json!({ "1": ["1", "2", "3"], "2": ["1", "2", "3"], "3": ["4"], "4": { "1": "3", "2": "3", "3": "1" } });
+    assert_eq!(edges(&hand), copied);
+    assert!(hand.text().contains("# twice"), "{}", hand.text());
+    hand.act(json!({ "act": "remove_map", "panel": "maps", "map": 0 }));
+    let once = json!({ "1": ["1", "2"], "2": ["3"], "3": { "1": "3", "2": "1" } });
+    assert_eq!(edges(&hand), once);
+    hand.undo();
+    hand.undo();
+    assert_eq!(hand.text(), text);
+    // Names stay; a number that stands for a map with a name is that of its place.
+    let text = "\
+kind: ifs
+maps:
+  left: {scale: 1/2}
+  right: {scale: 1/2, translate: [1/2, 0]}
+  top: {scale: 1/2, translate: [0, 1/2]}
+edges: {left: [left, 3], right: [2, top], top: [left, right]}
+";
+    let hand = Hand::of(text);
+    hand.act(json!({ "act": "add_map", "panel": "maps", "map": 1 }));
+    let followers = "edges: {left: [left, 3], right: [2, 4, top], right copy: [2, 4, top], top: [left, right, right copy]}";
+    assert!(hand.text().contains(followers), "{}", hand.text());
+    hand.act(json!({ "act": "remove_map", "panel": "maps", "map": 1 }));
+    let followers = "edges: {left: [left, 2], right copy: [3, top], top: [left, right copy]}";
+    assert!(hand.text().contains(followers), "{}", hand.text());
+}
+
 /// Maps that may follow each other, and the factor of maps towards vertices.
 #[test]
 fn edges_and_factors_are_shown_and_set() {

@@ -1,5 +1,7 @@
 //! Gestures that change more than a place: each becomes edits of the text.
 
+use std::iter::once;
+
 use serde::Deserialize;
 
 use crate::document::node::{Node, Value};
@@ -7,6 +9,7 @@ use crate::edit::{Edit, PathStep, find, steps};
 
 use super::super::answer::Refusal;
 use super::components::component;
+use super::followers;
 use super::nice;
 use super::scene::{Element, Panel, Role, Scene};
 use super::space::View;
@@ -181,13 +184,17 @@ impl Design<'_> {
                 let map = self.map(panel, *map)?;
                 let text = super::source_text(&map.node);
                 let mut list = map.at.clone();
-                Ok(vec![match list.pop() {
+                let copy = match list.pop() {
                     Some(PathStep::Item(item)) => Edit::insert(list, item + 1, text),
-                    _ => Edit::add(list, format!("{} copy", map.name), text),
-                }])
+                    _ => Edit::add(list, followers::copy_of(&map.name), text),
+                };
+                let edges = followers::copied(self.raw, &map.at);
+                Ok(once(copy).chain(edges).collect())
             }
             Act::RemoveMap { panel, map } => {
-                Ok(vec![Edit::remove(self.map(panel, *map)?.at.clone())])
+                let at = &self.map(panel, *map)?.at;
+                let edges = followers::removed(self.raw, at);
+                Ok(once(Edit::remove(at.clone())).chain(edges).collect())
             }
         }
     }

@@ -23,6 +23,7 @@ mod act;
 mod builder;
 mod components;
 mod drag;
+mod followers;
 mod generators;
 mod hit;
 mod instances;

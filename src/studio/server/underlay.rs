@@ -1,5 +1,6 @@
 //! Requests for the picture under the design, and for fits.
 
+use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -15,6 +16,7 @@ use serde_json::json;
 use crate::cli::held::Held;
 use crate::diagnostic::Source;
 use crate::fit::{FitOptions, FitProgress, Method};
+use crate::parallel::all_cores;
 
 use super::super::answer::Refusal;
 use super::super::jobs::Jobs;
@@ -200,7 +202,10 @@ pub(super) async fn fit(State(app): Shared, Json(asked): Json<Fitted>) -> Answer
     };
     let held = Arc::new(Held::default());
     let [least, most] = asked.maps;
+    // A core stays for pictures while the fit runs.
+    let threads = NonZero::new(all_cores().get() - 1).unwrap_or(NonZero::<usize>::MIN);
     let options = FitOptions::default()
+        .threads(threads)
         .maps(least..=most)
         .method(method)
         .similar(asked.similar)
