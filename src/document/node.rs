@@ -234,6 +234,11 @@ pub(crate) fn scalar(text: &str) -> String {
     yaml::scalar_text(text, true)
 }
 
+/// Writes a text as a key in flow style, with quotes where they are necessary.
+pub(crate) fn key(text: &str) -> String {
+    yaml::scalar_key(text, true)
+}
+
 fn nowhere(text: &str) -> Place {
     let source = Source::new("(made)", text);
     Place::new(&source, 0..source.text().len())

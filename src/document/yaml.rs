@@ -13,7 +13,7 @@ mod write;
 pub(super) use limits::{Budget, MAX_VALUES, Size};
 pub(super) use read::read;
 pub(super) use scalar::number;
-pub(super) use write::{scalar_text, write};
+pub(super) use write::{scalar_key, scalar_text, write};
 
 #[cfg(test)]
 mod tests;

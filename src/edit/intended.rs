@@ -157,7 +157,7 @@ pub(super) fn flow(node: &Node, is_json: bool) -> String {
         Value::Mapping(entries) => {
             let entries: Vec<_> = entries
                 .iter()
-                .map(|(key, node)| format!("{}: {}", text(&key.name), flow(node, is_json)))
+                .map(|(own, node)| format!("{}: {}", key(&own.name, is_json), flow(node, is_json)))
                 .collect();
             format!("{{{}}}", entries.join(", "))
         }
@@ -166,6 +166,14 @@ pub(super) fn flow(node: &Node, is_json: bool) -> String {
             Some(written) if !is_json && !written.is_empty() => written.to_owned(),
             _ => node.to_yaml().trim_end().to_owned(),
         },
+    }
+}
+
+/// Writes a key in flow style, or as JSON.
+pub(super) fn key(text: &str, is_json: bool) -> String {
+    match is_json {
+        true => json(text),
+        false => crate::document::node::key(text),
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::diagnostic::Source;
 use crate::document::node::{Key, Node, Value};
 
-use super::intended::flow;
+use super::intended::{self, flow};
 use super::{Edit, EditError, PathStep, find, joined, missing, remove};
 
 /// Changes of a text, from its end to its start.
@@ -75,10 +75,7 @@ pub(super) fn splices(
             if !text.is_own(&known.place) {
                 return Err(EditError::Unfaithful(joined(at)));
             }
-            let name = match text.is_json() {
-                true => flow(&Value::Text(key.clone()).into(), true),
-                false => crate::document::node::scalar(key),
-            };
+            let name = intended::key(key, text.is_json());
             Ok(vec![vec![(text.quoted(known.place.range()), name)]])
         }
     }
@@ -234,10 +231,7 @@ impl Text<'_> {
 
     /// Returns ways to put a value into a mapping: with its lines further in, or in braces.
     fn nested(&self, node: &Node, key: &str) -> Vec<Splice> {
-        let name = match self.is_json() {
-            true => flow(&Value::Text(key.to_owned()).into(), true),
-            false => crate::document::node::scalar(key),
-        };
+        let name = intended::key(key, self.is_json());
         let range = self.range(node);
         let braces = vec![
             (range.end..range.end, "}".to_owned()),
@@ -372,10 +366,7 @@ impl Text<'_> {
             None => entries.len(),
             Some(after) => entries.iter().position(|(known, _)| known.name == after)? + 1,
         };
-        let name = match self.is_json() {
-            true => flow(&Value::Text(key.to_owned()).into(), true),
-            false => crate::document::node::scalar(key),
-        };
+        let name = intended::key(key, self.is_json());
         let values = [value.to_owned(), flow(meant, self.is_json())];
         if self.is_flow(mapping) {
             let ranges: Vec<_> = entries

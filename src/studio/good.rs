@@ -33,6 +33,9 @@ pub(super) struct Good {
     pub(super) document: Arc<Document>,
 }
 
+/// Largest number of parameters of a text of which it is tried whether they take whole numbers alone.
+const TRIED: usize = 32;
+
 /// Parameter of a rule.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct ParameterState {
@@ -108,6 +111,7 @@ impl Good {
         let parameters = parameters.iter().zip(&heading.parameters);
         let hex = |colour: Option<crate::style::Colour>| colour.map(|it| format!("{it:#}"));
         let view = model.space_view();
+        let are_few = parameters.len() <= TRIED;
         Self {
             source: Arc::clone(source),
             revision: 0,
@@ -120,7 +124,9 @@ impl Good {
                     value: parameter.value,
                     min: parameter.min,
                     max: parameter.max,
-                    is_integer: written.whole.is_none() && is_integer(&document, parameter),
+                    is_integer: are_few
+                        && written.whole.is_none()
+                        && is_integer(&document, parameter),
                     about: parameter.about.clone(),
                 })
                 .collect(),

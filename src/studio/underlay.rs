@@ -24,6 +24,9 @@ use super::vary;
 /// Largest number of bytes of a picture.
 pub(super) const MOST_BYTES: usize = 64 << 20;
 
+/// Largest number of pixels of a picture.
+const MOST_PIXELS: usize = 100_000_000;
+
 /// Number of pixels of the longer side of the picture whose collage is measured.
 const MEASURED: usize = 512;
 
@@ -64,6 +67,10 @@ impl Underlay {
         let raster = Raster::read(bytes, None);
         let raster = raster.map_err(|error| Refusal::wrong(chain(&error)))?;
         let size = [raster.width, raster.height];
+        if size[0].saturating_mul(size[1]) > MOST_PIXELS {
+            let message = format!("a picture has {MOST_PIXELS} pixels at most");
+            return Err(Refusal::wrong(message));
+        }
         let shown = match browser_type(bytes) {
             Some(kind) => (bytes.into(), kind),
             None => {
@@ -106,6 +113,11 @@ impl Underlay {
     pub(super) fn stem(&self) -> &str {
         let (stem, _) = self.name.rsplit_once('.').unwrap_or((&self.name, ""));
         if stem.is_empty() { "picture" } else { stem }
+    }
+
+    /// Returns whether it shows the picture that another one shows.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.id == other.id
     }
 
     pub(super) fn name(&self) -> &str {

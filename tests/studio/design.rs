@@ -642,6 +642,10 @@ generator:
     hand.undo();
     hand.undo();
     assert_eq!(hand.text(), text);
+    // The least value goes up to the largest one.
+    let badge = hand.drag(panel, [0.45, 0.1], [0.45, 0.5], json!({}));
+    assert_eq!(badge, "up: uniform(0.3, 0.3)");
+    hand.undo();
     // A limit that keys have chosen, whatever lies nearer.
     let badge = hand.drag(panel, [0.75, 0.0], [0.75, 0.3], json!({ "limit": 1 }));
     assert!(badge.starts_with("up: "), "{badge}");
@@ -658,14 +662,26 @@ maps: [{scale: 1/2}, {scale: 1/2, translate: [1/2, 0]}, {scale: 1/2, translate: 
 edges:
   1: [1, 2]  # twice
   2: [3]
-  3: {1: 3, 2: 1}
+  3:  # back
+    1: 3
+    2: 1  # seldom
 ";
     let hand = Hand::of(text);
     hand.act(json!({ "act": "add_map", "panel": "maps", "map": 0 }));
     let edges = |hand: &Hand| hand.page.state()["design"]["edges"].clone();
     let copied = json!({ "1": ["1", "2", "3"], "2": ["1", "2", "3"], "3": ["4"], "4": { "1": "3", "2": "3", "3": "1" } });
     assert_eq!(edges(&hand), copied);
-    assert!(hand.text().contains("# twice"), "{}", hand.text());
+    let written = "\
+edges:
+  1: [1, 2, 3]  # twice
+  2: [1, 2, 3]
+  3: [4]
+  4:  # back
+    1: 3
+    2: 3
+    3: 1  # seldom
+";
+    assert!(hand.text().ends_with(written), "{}", hand.text());
     hand.act(json!({ "act": "remove_map", "panel": "maps", "map": 0 }));
     let once = json!({ "1": ["1", "2"], "2": ["3"], "3": { "1": "3", "2": "1" } });
     assert_eq!(edges(&hand), once);
@@ -683,10 +699,18 @@ edges: {left: [left, 3], right: [2, top], top: [left, right]}
 ";
     let hand = Hand::of(text);
     hand.act(json!({ "act": "add_map", "panel": "maps", "map": 1 }));
-    let followers = "edges: {left: [left, 3], right: [2, 4, top], right copy: [2, 4, top], top: [left, right, right copy]}";
+    let followers = "edges: {left: [left, 3], right: [2, right copy, top], right copy: [2, right copy, top], top: [left, right, right copy]}";
     assert!(hand.text().contains(followers), "{}", hand.text());
+    hand.act(json!({ "act": "add_map", "panel": "maps", "map": 1 }));
+    assert!(
+        hand.text().contains("  right copy 2: {scale"),
+        "{}",
+        hand.text()
+    );
+    hand.undo();
     hand.act(json!({ "act": "remove_map", "panel": "maps", "map": 1 }));
-    let followers = "edges: {left: [left, 2], right copy: [3, top], top: [left, right copy]}";
+    let followers =
+        "edges: {left: [left, 2], right copy: [right copy, top], top: [left, right copy]}";
     assert!(hand.text().contains(followers), "{}", hand.text());
 }
 

@@ -163,6 +163,48 @@ fn maps_of_space_are_dragged_in_views_along_an_axis() {
 }
 
 #[test]
+fn the_origin_of_a_map_stays_where_it_is_stretched() {
+    let page = Page::of(
+        "\
+kind: ifs
+space: 3
+maps:
+  - {scale: 1/2, fixed: [1, 0, 0]}
+  - {matrix: [[1/2, 0, 0], [0, 1/3, 0], [0, 0, 1/4]], fixed: [3, 4, 5]}
+",
+    );
+    let is_at = |map: usize, wanted: [[f64; 2]; 2]| {
+        let frame = page.panel("maps")["maps"][map]["frame"].clone();
+        let coordinate = |point: usize, axis: usize| frame[point][axis].as_f64().unwrap();
+        let all = [0, 1].map(|point| [0, 1].map(|axis| coordinate(point, axis)));
+        let far = { all.as_flattened().iter() }.zip(wanted.as_flattened());
+        let far = far.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far < 0.01, "{all:?} {wanted:?}");
+    };
+    let (text, _) = page.pull("maps", [1.0, 0.0], [0.8, 0.0]);
+    assert!(
+        text.contains("- {scale: 3/10, fixed: [5/7, 0, 0]}"),
+        "{text}"
+    );
+    is_at(0, [[0.5, 0.0], [0.8, 0.0]]);
+    page.undo();
+    let origin = [1.5, 8.0 / 3.0];
+    is_at(1, [origin, [2.0, origin[1]]]);
+    page.pull("maps", [2.0, origin[1]], [2.1, 2.717]);
+    is_at(1, [origin, [2.1, 2.717]]);
+    // Nothing is written before a translation that is the first key.
+    let text = "\
+kind: instancing
+space: 3
+objects: {brick: [{box: {}}]}
+scene: [brick, {translate: [3, 0, 0], object: brick}]
+";
+    let page = Page::of(text);
+    let (after, _) = page.pull("scene", [4.0, 0.0], [4.5, 0.0]);
+    assert_eq!(after, text);
+}
+
+#[test]
 fn points_of_space_keep_the_coordinate_that_is_not_seen() {
     let rule = "\
 space: 3

@@ -144,7 +144,7 @@ fn literal(text: &str, indent: usize) -> Option<String> {
     })
 }
 
-fn scalar_key(name: &str, flow: bool) -> String {
+pub(in crate::document) fn scalar_key(name: &str, flow: bool) -> String {
     if name == "<<" {
         quoted(name)
     } else {

@@ -184,11 +184,13 @@ impl Design<'_> {
                 let map = self.map(panel, *map)?;
                 let text = super::source_text(&map.node);
                 let mut list = map.at.clone();
-                let copy = match list.pop() {
+                let last = list.pop();
+                let name = followers::copy_of(self.raw, &list, &map.name);
+                let copy = match last {
                     Some(PathStep::Item(item)) => Edit::insert(list, item + 1, text),
-                    _ => Edit::add(list, followers::copy_of(&map.name), text),
+                    _ => Edit::add(list, name.clone(), text),
                 };
-                let edges = followers::copied(self.raw, &map.at);
+                let edges = followers::copied(self.raw, &map.at, &name);
                 Ok(once(copy).chain(edges).collect())
             }
             Act::RemoveMap { panel, map } => {

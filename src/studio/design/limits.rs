@@ -83,17 +83,8 @@ impl Functions {
         let texts: Vec<_> = changed
             .map(|(it, value)| (it.unknown.name.clone(), it.text(value, pixel)))
             .collect();
-        let is_quoted = |name: &str| {
-            let node = self.node.get(name);
-            node.is_some_and(|node| node.place.text().starts_with(['"', '\'']))
-        };
-        let edits = texts.iter().map(|(name, text)| {
-            let written = match is_quoted(name) {
-                true => format!("\"{text}\""),
-                false => text.clone(),
-            };
-            Edit::set(below(&self.at, name.as_str()), written)
-        });
+        let edits = { texts.iter() }
+            .map(|(name, text)| Edit::set(below(&self.at, name.as_str()), text.clone()));
         let badge = texts.iter().map(|(name, text)| format!("{name}: {text}"));
         Some((edits.collect(), badge.collect::<Vec<_>>().join(", ")))
     }
@@ -127,13 +118,22 @@ impl Function {
             Some(mean) => mean + number,
             None => number,
         };
+        // The least value stays below the largest one, and both on their side of a mean.
+        let other = match mean {
+            Some(mean) => mean,
+            None => names.evaluate(arguments.get(1 - side)?)?,
+        };
+        let [min, max] = match side {
+            0 => [f64::NEG_INFINITY, other.max(value)],
+            _ => [other.min(value), f64::INFINITY],
+        };
         // A formula is no number that can be replaced.
         argument.names().is_empty().then(|| Self {
             unknown: Unknown {
                 name: name.to_owned(),
                 value,
-                min: f64::NEG_INFINITY,
-                max: f64::INFINITY,
+                min,
+                max,
             },
             range: argument.range(),
             text,

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::document::node::{Node, Value};
-use crate::edit::{Edit, PathStep};
+use crate::edit::Edit;
 use crate::geometry::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 
 use super::act::below;
@@ -157,10 +157,15 @@ fn turn(node: &Node, names: &Names) -> Option<(DMat3, Basis)> {
             (axis, angle, basis)
         }
     };
+    Some((about(axis, angle), basis))
+}
+
+/// Returns the turn about an axis by an angle in degrees, by the right-hand rule.
+fn about(axis: DVec3, angle: f64) -> DMat3 {
     let (sin, cos) = libm::sincos(angle.to_radians());
     let image = |of: DVec3| of * cos + axis.cross(of) * sin + axis * (axis.dot(of) * (1.0 - cos));
     let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(image);
-    Some((DMat3::from_cols(x, y, z), basis))
+    DMat3::from_cols(x, y, z)
 }
 
 /// Returns an angle, of which the number before parameters is the map's own.
@@ -209,11 +214,10 @@ pub(super) fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Ve
         return None;
     }
     let (old, _) = affine(&handle.node, names, handle.is_instance)?;
-    let (seen, _) = seen(&handle.node, names, handle.is_instance)?;
     let edits = match pull.grip {
-        Grip::Body => shifted(handle, names, old, pull.to - seen.translation, pull.pixel),
-        Grip::X => stretched(handle, names, seen, 0, pull),
-        Grip::Y => stretched(handle, names, seen, 1, pull),
+        Grip::Body => shifted(handle, names, old, pull),
+        Grip::X => stretched(handle, names, old, 0, pull),
+        Grip::Y => stretched(handle, names, old, 1, pull),
     }?;
     if matches!(handle.node.value, Value::Mapping(_)) {
         return Some(edits);
@@ -230,56 +234,67 @@ pub(super) fn edits(handle: &MapHandle, names: &Names, pull: &Pull) -> Option<Ve
 }
 
 /// Adds a key. Linear transforms of an instance are done before its translation, a turn after a scale that is there or
-/// added before.
-fn added(handle: &MapHandle, key: &str, value: String, has_scale: bool) -> Edit {
+/// added before. `None` if the translation is the first key: nothing is added before it.
+fn added(handle: &MapHandle, key: &str, value: String, has_scale: bool) -> Option<Edit> {
     let is_translation = |name: &str| ["translate", "shift"].contains(&name);
     let after = match &handle.node.value {
         Value::Mapping(entries) if handle.is_instance && !is_translation(key) => {
             let first = { entries.iter() }.position(|(key, _)| is_translation(&key.name));
-            let before = first.and_then(|first| first.checked_sub(1));
-            before.map(|before| match has_scale {
-                true => "scale".to_owned(),
-                false => entries[before].0.name.clone(),
-            })
+            match first {
+                Some(first) => {
+                    let before = first.checked_sub(1)?;
+                    Some(match has_scale {
+                        true => "scale".to_owned(),
+                        false => entries[before].0.name.clone(),
+                    })
+                }
+                None => None,
+            }
         }
         _ => None,
     };
-    Edit::Add {
+    Some(Edit::Add {
         to: handle.at.clone(),
         key: key.into(),
         value,
         after,
-    }
+    })
 }
 
 /// Writes a movement.
-fn shifted(
-    handle: &MapHandle,
-    names: &Names,
-    old: DAffine3,
-    by: DVec2,
-    pixel: f64,
-) -> Option<Vec<Edit>> {
+fn shifted(handle: &MapHandle, names: &Names, old: DAffine3, pull: &Pull) -> Option<Vec<Edit>> {
     let [right, up, _] = names.view().axes();
     let mut to = old.translation;
-    to[right] += by.x;
-    to[up] += by.y;
-    let (key, vector) = match handle.node.get("fixed") {
+    (to[right], to[up]) = (pull.to.x, pull.to.y);
+    match handle.node.get("fixed") {
         Some(_) if !handle.is_instance => {
-            let rest = DMat3::IDENTITY - old.matrix3;
-            if rest.determinant().abs() < 1e-9 {
-                return None;
-            }
-            ("fixed", rest.inverse() * to)
+            let vector = fixed_point(old.matrix3, to)?;
+            placed(handle, names, "fixed", vector, pull.pixel)
         }
-        _ if handle.node.get("shift").is_some() => ("shift", to),
-        _ => ("translate", to),
-    };
+        _ if handle.node.get("shift").is_some() => placed(handle, names, "shift", to, pull.pixel),
+        _ => placed(handle, names, "translate", to, pull.pixel),
+    }
+}
+
+/// Returns the fixed point of a map.
+fn fixed_point(linear: DMat3, translation: DVec3) -> Option<DVec3> {
+    let rest = DMat3::IDENTITY - linear;
+    (rest.determinant().abs() > 1e-9).then(|| rest.inverse() * translation)
+}
+
+/// Writes a vector in a key.
+fn placed(
+    handle: &MapHandle,
+    names: &Names,
+    key: &str,
+    vector: DVec3,
+    pixel: f64,
+) -> Option<Vec<Edit>> {
     let text = vector.to_array().map(|value| number(value, pixel));
     let at = below(&handle.at, key);
     let Some(node) = handle.node.get(key) else {
         let value = format!("[{}]", text.join(", "));
-        return Some(vec![added(handle, key, value, false)]);
+        return Some(vec![added(handle, key, value, false)?]);
     };
     match &node.value {
         // Coordinates that stay are written as they are.
@@ -296,26 +311,59 @@ fn shifted(
     }
 }
 
-/// Writes a stretch, and a turn about the axis along the view where nothing but such a turn is written.
+/// Writes a stretch, and a turn about the axis along the view where nothing but such a turn is written. The origin stays.
 fn stretched(
     handle: &MapHandle,
     names: &Names,
-    seen: DAffine2,
+    old: DAffine3,
     side: usize,
     pull: &Pull,
 ) -> Option<Vec<Edit>> {
+    let (mut edits, linear) = match handle.node.get("matrix") {
+        Some(_) => rewritten(handle, names, old, side, pull),
+        None => rescaled(handle, names, old, side, pull)?,
+    };
+    if handle.node.get("fixed").is_some() && !handle.is_instance {
+        let fixed = fixed_point(linear, old.translation)?;
+        edits.extend(placed(handle, names, "fixed", fixed, pull.pixel)?);
+    }
+    Some(edits)
+}
+
+/// Writes the image of a unit vector in the matrix; returns the edits and the new matrix.
+fn rewritten(
+    handle: &MapHandle,
+    names: &Names,
+    old: DAffine3,
+    side: usize,
+    pull: &Pull,
+) -> (Vec<Edit>, DMat3) {
     let axes = names.view().axes();
-    let (before, after) = (seen.matrix2.col(side), pull.to - seen.translation);
+    let mut linear = old.matrix3;
+    let edits = [(axes[0], pull.to.x), (axes[1], pull.to.y)].map(|(row, to)| {
+        let value = to - old.translation[row];
+        linear.col_mut(axes[side])[row] = value;
+        let at = below(&below(&handle.at, "matrix"), row);
+        Edit::set(below(&at, axes[side]), number(value, pull.pixel))
+    });
+    (edits.to_vec(), linear)
+}
+
+/// Writes the length of the image of a unit vector in the scale, and its angle in the turn; returns the edits and the new
+/// linear part.
+fn rescaled(
+    handle: &MapHandle,
+    names: &Names,
+    old: DAffine3,
+    side: usize,
+    pull: &Pull,
+) -> Option<(Vec<Edit>, DMat3)> {
+    let axes = names.view().axes();
+    let shown = |vector: DVec3| DVec2::new(vector[axes[0]], vector[axes[1]]);
+    let before = shown(old.matrix3.col(axes[side]));
+    let after = pull.to - shown(old.translation);
     let step = |key: &str| below(&handle.at, key);
     let node = &handle.node;
-    if node.get("matrix").is_some() {
-        let rows = [(axes[0], after.x), (axes[1], after.y)];
-        let entry = |(row, value): (usize, f64)| {
-            let at: Vec<PathStep> = below(&below(&step("matrix"), row), axes[side]);
-            Edit::set(at, number(value, pull.pixel))
-        };
-        return Some(rows.map(entry).to_vec());
-    }
     let ratio = after.length() / before.length();
     if !ratio.is_finite() || ratio == 0.0 {
         return None;
@@ -328,10 +376,15 @@ fn stretched(
     };
     let is_one = scale.is_none_or(|node| names.value(node).is_some());
     let rounded = |value: f64| number(value, pull.pixel);
+    let mut stretch = DVec3::ONE;
     if (ratio - 1.0).abs() > 1e-12 {
         let axis = axes[side];
+        match scale {
+            Some(_) if !is_one && !pull.similar => stretch[axis] = ratio,
+            _ => stretch *= ratio,
+        }
         edits.push(match scale {
-            None => added(handle, "scale", rounded(ratio), false),
+            None => added(handle, "scale", rounded(ratio), false)?,
             Some(_) if is_one => Edit::set(step("scale"), rounded(factors.x * ratio)),
             Some(_) if pull.similar => {
                 let all = (factors * ratio).to_array().map(rounded);
@@ -345,17 +398,15 @@ fn stretched(
     }
     let key = ["x", "y", "z"][axes[2]];
     let by = names.view().sign() * before.angle_to(after).to_degrees();
+    let mut turn_by = 0.0;
     match node.get("rotate") {
         None if is_one => {
             let text = turned(None, names, by);
             if text != "0" {
                 let has_scale = scale.is_some() || !edits.is_empty();
-                edits.push(added(
-                    handle,
-                    "rotate",
-                    format!("{{{key}: {text}}}"),
-                    has_scale,
-                ));
+                let text = format!("{{{key}: {text}}}");
+                edits.push(added(handle, "rotate", text, has_scale)?);
+                turn_by = by;
             }
         }
         Some(turn) if is_one => {
@@ -363,9 +414,12 @@ fn stretched(
                 let (now, _) = names.value(angle)?;
                 let at = below(&step("rotate"), key);
                 edits.push(Edit::set(at, turned(Some(angle), names, now + by)));
+                turn_by = by;
             }
         }
         _ => {}
     }
-    Some(edits)
+    let axis = [DVec3::X, DVec3::Y, DVec3::Z][axes[2]];
+    let linear = about(axis, turn_by) * old.matrix3 * DMat3::from_diagonal(stretch);
+    Some((edits, linear))
 }

@@ -97,7 +97,9 @@ async function load(now) {
   } catch (error) {
     page.say(error.message);
   }
-  if (known === mine) page.redraw();
+  if (known === mine) return page.redraw();
+  // Another picture was laid meanwhile.
+  for (const url of [mine.url, ...mine.inks]) if (url) URL.revokeObjectURL(url);
 }
 /** Returns the shape in the colours of the maps. */
 async function inks(blob) {
@@ -143,6 +145,6 @@ export function images(panel) {
     for (const [key, value] of Object.entries(all)) element.setAttribute(key, value);
     return element;
   };
-  const copies = known.inks.length ? panel.maps.map((map, at) => !map.is_instance && image(known.inks[at % known.inks.length], map.frame, opacity)) : [];
+  const copies = known.inks.length ? panel.maps.map((map, at) => !map.is_instance && !map.depth && image(known.inks[at % known.inks.length], map.frame, opacity)) : [];
   return [image(known.url, [[x, y], [x + now.width, y], [x, y + high]], opacity), ...copies.filter(Boolean)];
 }

@@ -226,8 +226,11 @@ pub(super) async fn fit(State(app): Shared, Json(asked): Json<Fitted>) -> Answer
         let stem = underlay.stem().to_owned();
         session.copy(&stem, &Source::new(format!("{stem}.yaml"), text));
         let good = session.good()?.clone();
-        if let Some(underlay) = &mut session.underlay {
-            underlay.align(&good);
+        // Another picture may have been laid meanwhile.
+        if let Some(laid) = &mut session.underlay
+            && laid.is(&underlay)
+        {
+            laid.align(&good);
         }
         Ok(())
     })
