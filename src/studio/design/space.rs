@@ -276,7 +276,7 @@ fn shifted(handle: &MapHandle, names: &Names, old: DAffine3, pull: &Pull) -> Opt
     }
 }
 
-/// Returns the fixed point of a map.
+/// Returns the fixed point of a map; `None` if there is none, or more than one.
 fn fixed_point(linear: DMat3, translation: DVec3) -> Option<DVec3> {
     let rest = DMat3::IDENTITY - linear;
     (rest.determinant().abs() > 1e-9).then(|| rest.inverse() * translation)
