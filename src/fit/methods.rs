@@ -46,8 +46,20 @@ impl Found {
     }
 }
 
+/// Largest number of pixels around a shape in which an attractor is compared with it.
+const MOST_AROUND: f64 = 1e8;
+
+/// Returns how far around a picture an attractor counts, in pixels: twice the long side, or less where more than
+/// [`MOST_AROUND`] pixels would be compared.
+fn reach(size: DVec2) -> f64 {
+    // (width + 2 reach) (height + 2 reach) is their number.
+    let most = (size.x - size.y).hypot(2.0 * MOST_AROUND.sqrt()) - (size.x + size.y);
+    let most = (most / 4.0).floor().max(0.0);
+    most.min(2.0 * size.max_element())
+}
+
 /// Compares a shape with an attractor that leaves its picture: in a picture that holds both, or all of the attractor within
-/// twice the long side of the shape's picture.
+/// [`reach`].
 fn score_around(
     shape: &Silhouette,
     candidate: &Candidate,
@@ -56,7 +68,7 @@ fn score_around(
     let [width, height] = shape.size();
     let size = DVec2::new(real(width), real(height));
     let [middle, half] = candidate.bounds().ok_or(FitError::DoesNotContract)?;
-    let most = DVec2::splat(2.0 * size.max_element());
+    let most = DVec2::splat(reach(size));
     let outside = |by: DVec2| by.ceil().clamp(DVec2::ZERO, most);
     let [low, high] = [outside(half - middle), outside(middle + half - size)];
     let [left, bottom, right, top] = [low.x, low.y, high.x, high.y].map(whole);
@@ -178,6 +190,16 @@ mod tests {
     use crate::Bits;
     use crate::geometry::DMat2;
     use crate::ifs::about;
+
+    #[test]
+    fn large_pictures_have_less_around_them() {
+        assert_eq!(reach(DVec2::new(300.0, 100.0)), 600.0);
+        let size = DVec2::new(8000.0, 3000.0);
+        let count = |reach: f64| (size + 2.0 * reach).element_product();
+        let found = reach(size);
+        assert!(count(found) <= MOST_AROUND && count(found + 1.0) > MOST_AROUND);
+        assert_eq!(reach(DVec2::splat(20_000.0)), 0.0);
+    }
 
     #[test]
     fn the_part_of_an_attractor_outside_the_picture_counts() {
