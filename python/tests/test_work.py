@@ -6,6 +6,7 @@ import signal
 import sys
 import sysconfig
 import threading
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -22,7 +23,16 @@ def interrupt_soon() -> None:
     threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 
 
+@pytest.fixture
+def interrupts() -> Iterator[None]:
+    """Interrupts raise exceptions, also where the tests run in the background and ignore them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of Unix")
+@pytest.mark.usefixtures("interrupts")
 def test_an_interrupt_ends_work(fern: kfrac.Fractal) -> None:
     interrupt_soon()
     with pytest.raises(KeyboardInterrupt):

@@ -385,7 +385,8 @@ fn luma(red: u8, green: u8, blue: u8) -> u8 {
     u8::try_from(sum >> 16).unwrap_or(255)
 }
 
-#[cfg(all(test, feature = "jpeg"))]
+#[cfg(test)]
+#[cfg(feature = "jpeg")]
 mod tests {
     use super::*;
 
