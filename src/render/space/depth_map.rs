@@ -1,6 +1,7 @@
 //! Depth maps: the nearest depth of every pixel of a picture in space.
 
 use std::io;
+use std::ops::Range;
 
 use crate::geometry::DVec3;
 
@@ -8,31 +9,62 @@ use super::TILE_SIZE;
 use super::buffer::{SAMPLES, STEPS, TILE};
 use super::camera::{Placement, Projection};
 
-/// Depth of a pixel that shows nothing.
-pub(super) const NOTHING: u32 = u32::MAX;
+/// Depth of a pixel that shows nothing, of 24 bits.
+pub(super) const NOTHING: u32 = (1 << 24) - 1;
 
 /// Depths of the pixels of a picture: those of the nearest point that each shows.
 #[derive(Clone, Debug)]
 pub struct DepthMap {
-    /// In multiples of 2⁻²² of the range, from the near end.
-    depths: Vec<u32>,
+    /// The low 16 bits of depths in multiples of 2⁻²² of the range, from the near end.
+    low: Vec<u16>,
+    /// Their high 8 bits.
+    high: Vec<u8>,
     placement: Placement,
+}
+
+/// Depths of the pixels of a row.
+#[derive(Clone, Copy)]
+pub(super) struct DepthRow<'a> {
+    low: &'a [u16],
+    high: &'a [u8],
+}
+
+impl<'a> DepthRow<'a> {
+    /// Returns the depths of a range of columns.
+    pub(super) fn part(self, columns: Range<usize>) -> Self {
+        Self {
+            low: &self.low[columns.clone()],
+            high: &self.high[columns],
+        }
+    }
+
+    /// Returns the depths in steps, or [`NOTHING`].
+    #[inline]
+    pub(super) fn iter(self) -> impl ExactSizeIterator<Item = u32> + 'a {
+        let parts = self.low.iter().zip(self.high);
+        parts.map(|(low, high)| u32::from(*low) | u32::from(*high) << 16)
+    }
 }
 
 impl DepthMap {
     /// Creates a map that shows nothing.
     pub(super) fn new(placement: &Placement) -> Self {
         let [width, height] = placement.size;
+        let count = width as usize * height as usize;
+        let (low, high) = parts(None);
         Self {
-            depths: vec![NOTHING; width as usize * height as usize],
+            low: vec![low; count],
+            high: vec![high; count],
             placement: *placement,
         }
     }
 
     /// Creates a map of depths in rows.
     pub(super) fn of(placement: &Placement, depths: impl Iterator<Item = Option<u32>>) -> Self {
+        let (low, high) = depths.map(parts).unzip();
         Self {
-            depths: depths.map(|depth| depth.unwrap_or(NOTHING)).collect(),
+            low,
+            high,
             placement: *placement,
         }
     }
@@ -45,8 +77,10 @@ impl DepthMap {
         for row in 0..TILE_SIZE.min(height - top) as usize {
             let start = (top as usize + row) * width as usize + left as usize;
             let from = &depths[row * TILE..row * TILE + columns];
-            for (depth, own) in self.depths[start..start + columns].iter_mut().zip(from) {
-                *depth = own.unwrap_or(NOTHING);
+            let range = start..start + columns;
+            let to = { self.low[range.clone()].iter_mut() }.zip(&mut self.high[range]);
+            for ((low, high), depth) in to.zip(from) {
+                (*low, *high) = parts(*depth);
             }
         }
     }
@@ -70,14 +104,22 @@ impl DepthMap {
         if x >= width || y >= height {
             return None;
         }
-        let depth = self.depths[y * width + x];
+        let at = y * width + x;
+        let depth = u32::from(self.low[at]) | u32::from(self.high[at]) << 16;
         (depth != NOTHING).then_some(depth)
     }
 
-    /// Returns the depths of a row in steps, or [`NOTHING`].
-    pub(super) fn row(&self, y: usize) -> &[u32] {
+    /// Returns the depths of a row.
+    pub(super) fn row(&self, y: usize) -> DepthRow<'_> {
         let width = self.placement.size[0] as usize;
-        &self.depths[y * width..(y + 1) * width]
+        self.all().part(y * width..(y + 1) * width)
+    }
+
+    fn all(&self) -> DepthRow<'_> {
+        DepthRow {
+            low: &self.low,
+            high: &self.high,
+        }
     }
 
     /// Returns the point that a pixel shows, in view coordinates: x to the right, y upwards, z towards the viewer;
@@ -122,9 +164,8 @@ impl DepthMap {
             NOTHING => 0,
             depth => grey(f64::from(depth) / STEPS),
         };
-        let bytes: Vec<u8> = { self.depths.iter() }
-            .flat_map(|depth| grey(*depth).to_be_bytes())
-            .collect();
+        let greys = self.all().iter().map(grey);
+        let bytes: Vec<u8> = greys.flat_map(u16::to_be_bytes).collect();
         // The encoder does not pass on why writing to `out` fails, so it writes to memory.
         let mut png = Vec::new();
         let mut encoder = png::Encoder::new(&mut png, width, height);
@@ -135,6 +176,13 @@ impl DepthMap {
         writer.finish().map_err(io::Error::other)?;
         out.write_all(&png)
     }
+}
+
+/// Returns the low and the high bits of a depth.
+#[expect(clippy::cast_possible_truncation, reason = "the bits are divided")]
+fn parts(depth: Option<u32>) -> (u16, u8) {
+    let depth = depth.unwrap_or(NOTHING);
+    (depth as u16, (depth >> 16) as u8)
 }
 
 /// Returns the grey level of a depth from 0, the nearest, to 1.

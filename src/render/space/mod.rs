@@ -58,7 +58,7 @@ use tiny_skia::{Pixmap, PremultipliedColorU8};
 use crate::geometry::Frame3;
 use crate::graph::Graph;
 use crate::grow::WalkError;
-use crate::parallel::with_team;
+use crate::parallel::{for_each, with_team};
 use crate::style::{ColorBy, Colour};
 
 use self::buffer::{SAMPLES, TILE};
@@ -382,19 +382,23 @@ fn finish(
     options: &Options,
     space: &SpaceOptions,
 ) -> Result<(), RenderError> {
+    let threads = options.threads.get();
     if let Some(depths) = depths {
-        let threads = options.threads.get();
         relief::light(pixmap, depths, shadows, has_faces, space, threads)
             .map_err(SpaceError::from)?;
     }
     let background = Some(options.style.background.unwrap_or(PAPER));
     let empty = shade::over(background, PremultipliedColorU8::TRANSPARENT);
-    for pixel in pixmap.pixels_mut() {
-        *pixel = match pixel.alpha() {
-            0 => empty,
-            _ => shade::over(background, *pixel),
-        };
-    }
+    let width = pixmap.width() as usize;
+    let rows = pixmap.pixels_mut().chunks_mut(width);
+    for_each(rows, threads, |row| {
+        for pixel in row {
+            *pixel = match pixel.alpha() {
+                0 => empty,
+                _ => shade::over(background, *pixel),
+            };
+        }
+    });
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use super::buffer::{SAMPLES, STEPS};
 use super::camera::{Placement, Projection};
-use super::depth_map::{DepthMap, NOTHING};
+use super::depth_map::{DepthMap, DepthRow, NOTHING};
 
 /// Columns and rows of the directions to one side of a pixel in which surroundings are looked at; those to the other side
 /// are opposite. Multiples of them are pixels, so that what is seen of a plane lies on a line.
@@ -49,7 +49,7 @@ struct Row {
 
 /// A row beside another.
 struct Beside<'a> {
-    depths: &'a [u32],
+    depths: DepthRow<'a>,
     /// Columns and rows from the pixels of the row.
     way: [isize; 2],
     /// z of the depth 0, and its change with each step of depth.
@@ -125,7 +125,7 @@ impl<'a> Occlusion<'a> {
     /// Returns what the pixels of a row show.
     #[expect(clippy::cast_possible_truncation, reason = "horizons are rough")]
     fn own(&self, y: usize) -> Row {
-        let depth = self.depths.row(y);
+        let depth: Vec<u32> = self.depths.row(y).iter().collect();
         let points = (0..depth.len()).map(|x| self.depths.point(x, y).unwrap_or_default());
         let points: Vec<_> = points.collect();
         let columns = (0..depth.len()).map(|x| self.depths.ray([x, y])[0] as f32);
@@ -137,10 +137,10 @@ impl<'a> Occlusion<'a> {
             x: points.iter().map(|point| point.x as f32).collect(),
             y: points.iter().map(|point| point.y as f32).collect(),
             z: points.iter().map(|point| point.z as f32).collect(),
-            depth: depth.to_vec(),
             reach: { points.iter() }
                 .map(|point| reach(point.z).powi(-2) as f32)
                 .collect(),
+            depth,
             across: columns.collect(),
         }
     }
@@ -182,10 +182,9 @@ fn raise<const CENTRAL: bool>(horizon: &mut [f32], row: &Row, beside: &Beside<'_
         &row.z[own.clone()],
     );
     let (reach, own) = (&row.reach[own.clone()], &row.depth[own]);
-    let (across, depths) = (&row.across[there.clone()], &beside.depths[there]);
+    let (across, depths) = (&row.across[there.clone()], beside.depths.part(there));
     let side = [right, -down].map(|way| way as f32 * SAMPLES as f32);
-    for at in 0..horizon.len() {
-        let depth = depths[at];
+    for (at, depth) in depths.iter().enumerate() {
         let [x, y, z] = if CENTRAL {
             let z = beside.near - depth as i32 as f32 * beside.step;
             [

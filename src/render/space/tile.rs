@@ -27,8 +27,8 @@ pub(super) struct Tile<'a> {
     pub(super) drawn: u64,
     /// Greatest number of steps of a solid that was drawn.
     pub(super) deepest: u32,
-    /// Premultiplied colours of the pixels, in rows, if the scene has inks.
-    colours: Vec<[f64; 4]>,
+    /// Colours of the pixels, in rows, if the scene has inks.
+    colours: Vec<PremultipliedColorU8>,
     /// Depths of the pixels.
     pub(super) depths: Vec<Option<u32>>,
 }
@@ -143,7 +143,7 @@ impl<'a> Tile<'a> {
                 let samples = shade::samples(rows, x);
                 let tints = tints.map(|rows| shade::samples(rows, x));
                 let (colour, depth) = inks.pixel(samples, tints);
-                self.colours.push(colour);
+                self.colours.push(shade::premultiplied(colour));
                 self.depths.push(depth);
             }
         }
@@ -158,9 +158,7 @@ impl<'a> Tile<'a> {
         for row in 0..TILE_SIZE.min(height - top) as usize {
             let start = (top as usize + row) * width as usize + left as usize;
             let colours = &self.colours[row * TILE..row * TILE + columns];
-            for (pixel, colour) in pixels[start..start + columns].iter_mut().zip(colours) {
-                *pixel = shade::premultiplied(*colour);
-            }
+            pixels[start..start + columns].copy_from_slice(colours);
         }
     }
 }

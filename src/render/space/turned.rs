@@ -40,8 +40,8 @@ const TURNS: usize = 10;
 /// Number of orientations: in each of four charts one component of the quaternion is the largest.
 const ORIENTATIONS: usize = 4 * TURNS * TURNS * TURNS;
 
-/// Number of stamps of an object: orientations, mirrored or not, and sizes.
-const CELLS: usize = 2 * ORIENTATIONS * SIZES;
+/// Number of stamps of an object, or of its mirror image: orientations and sizes.
+const CELLS: usize = ORIENTATIONS * SIZES;
 
 /// Limit of the number of objects that have stamps.
 const MAX_OBJECTS: usize = 16;
@@ -62,24 +62,27 @@ const NOTHING: u16 = u16::MAX;
 /// Number of steps of depth of a stamp between its near and its far end.
 const FINE: u16 = NOTHING - 1;
 
+/// Stamps in all orientations and sizes.
+type Stamps = Box<[OnceLock<Box<TurnedStamp>>]>;
+
 /// The stamps of all objects, which are drawn when they are needed.
 pub(super) struct Turned {
     /// Number of the stamps of each object.
     sets: Vec<usize>,
     least_sizes: [f64; SIZES],
-    stamps: Vec<OnceLock<Box<TurnedStamp>>>,
+    /// Stamps of objects and of their mirror images.
+    stamps: Vec<[OnceLock<Stamps>; 2]>,
 }
 
 /// Picture of an object in an orientation. There may be many thousands of them: numbers take little room.
 pub(super) struct TurnedStamp {
-    /// Depths, in steps of its own range, in rows, [`NOTHING`] where nothing is shown; then the classes of these samples, unless
-    /// all are 0.
-    samples: Box<[u16]>,
+    /// The pieces of every row from the first to the last that show something; then the depths of their samples, in steps of
+    /// its own range, [`NOTHING`] where nothing is shown; then the classes of these samples, unless all are 0.
+    content: Box<[u16]>,
     /// The least depth.
     nearest: u16,
     has_classes: bool,
-    columns: u8,
-    /// Corner of what is stored, and the end of what shows something, in samples.
+    /// Corner of the first row, and the end of what shows something, in samples.
     corner: [u8; 2],
     end: [u8; 2],
     /// Number of solids.
@@ -145,7 +148,7 @@ impl Turned {
         (names.len() <= MAX_OBJECTS).then(|| Self {
             sets,
             least_sizes: least_sizes(),
-            stamps: (0..CELLS * names.len()).map(|_| OnceLock::new()).collect(),
+            stamps: names.iter().map(|_| Default::default()).collect(),
         })
     }
 
@@ -163,10 +166,11 @@ impl Turned {
             return None;
         }
         let cell = Cell::of(&form.linear, form.length, size, &self.least_sizes)?;
-        let number = self.sets[form.object] * CELLS + cell.number();
+        let stamps = &self.stamps[self.sets[form.object]][usize::from(cell.is_mirrored)];
+        let stamps = stamps.get_or_init(|| (0..CELLS).map(|_| OnceLock::new()).collect());
         // Stamps have the hull in their middle.
         let at = at - form.middle + form.centre;
-        let stamp = self.stamps[number].get_or_init(|| {
+        let stamp = stamps[cell.number()].get_or_init(|| {
             let length = cell.size() / roots.end.unit;
             let form = Form::new(roots.parts, (form.object, 0), cell.turn() * length, length);
             Box::new(Builder::build(roots, &form))
@@ -192,7 +196,7 @@ impl Turned {
         let scale = 2.0 * REACH * view.depths.steps() / f64::from(FINE);
         let copy = Copy::new(base, scale, class);
         let area = [corner[0], corner[1], end[0], end[1]];
-        if !stamp.samples.is_empty() && buffer.shows_with_margin(area, copy.depth(stamp.nearest)) {
+        if !stamp.content.is_empty() && buffer.shows_with_margin(area, copy.depth(stamp.nearest)) {
             let keys = &mut buffer.with_margin()[corner[1] * STRIDE + corner[0]..];
             let is_seen = match stamp.has_classes {
                 false => blit::<false>(keys, stamp, &copy),
@@ -241,10 +245,11 @@ impl Cell {
         })
     }
 
+    /// Returns the number of the stamp among those of an object, or of its mirror image.
     fn number(&self) -> usize {
         let [a, b, c] = self.turn;
         let turn = ((self.chart * TURNS + a) * TURNS + b) * TURNS + c;
-        (turn * SIZES + self.size) * 2 + usize::from(self.is_mirrored)
+        turn * SIZES + self.size
     }
 
     /// Returns the orientation in the middle of the cell.
@@ -313,17 +318,19 @@ impl Copy {
 #[cfg_attr(feature = "simd", multiversion::multiversion(targets = "simd"))]
 fn blit<const CLASSED: bool>(keys: &mut [u32], stamp: &TurnedStamp, copy: &Copy) -> bool {
     let mut seen = 0;
-    let columns = usize::from(stamp.columns);
-    let size = stamp.samples.len() / if CLASSED { 2 } else { 1 };
-    let (depths, classes) = stamp.samples.split_at(size);
-    let rows = keys.chunks_mut(STRIDE).zip(depths.chunks_exact(columns));
-    for (y, (row, depths)) in rows.enumerate() {
-        let classes = if CLASSED {
-            &classes[y * columns..(y + 1) * columns]
-        } else {
-            depths
-        };
+    let count = usize::from(stamp.end[1] - stamp.corner[1]);
+    let (ranges, samples) = stamp.content.split_at(count);
+    let size = samples.len() / if CLASSED { 2 } else { 1 };
+    let (depths, classes) = samples.split_at(size);
+    let mut start = 0;
+    for (row, range) in keys.chunks_mut(STRIDE).zip(ranges) {
+        let [first, last] = range.to_le_bytes().map(|piece| usize::from(piece) * PIECE);
+        let own = start..start + (last - first);
+        start = own.end;
+        let depths = &depths[own.clone()];
+        let classes = if CLASSED { &classes[own] } else { depths };
         let own = depths.chunks_exact(PIECE).zip(classes.chunks_exact(PIECE));
+        let row = &mut row[first..last];
         for (keys, (depths, classes)) in row.chunks_exact_mut(PIECE).zip(own) {
             for (key, (own, class)) in keys.iter_mut().zip(depths.iter().zip(classes)) {
                 let class = if CLASSED { u32::from(*class) } else { 0 };
@@ -429,26 +436,35 @@ impl<'a> Builder<'a> {
         let corner = [corner[0].min(WIDTH - columns), corner[1]];
         let rows = { self.keys.chunks_exact(WIDTH) }
             .take(end[1])
-            .skip(corner[1]);
-        let keys = rows.flat_map(|row| &row[corner[0]..corner[0] + columns]);
-        let depths = keys.clone().map(|key| depth_in_stamp(*key));
-        let classes = keys.map(|key| match *key {
+            .skip(corner[1])
+            .map(|row| &row[corner[0]..corner[0] + columns]);
+        let (mut ranges, mut keys) = (Vec::new(), Vec::new());
+        for row in rows {
+            let shows = |piece: &[u32]| piece.iter().any(is_shown);
+            let pieces = row.chunks_exact(PIECE);
+            let first = pieces.clone().position(shows).unwrap_or(0);
+            let last = pieces.clone().rposition(shows).map_or(0, |last| last + 1);
+            ranges.push(u16::from_le_bytes([first as u8, last as u8]));
+            keys.extend_from_slice(&row[first * PIECE..last * PIECE]);
+        }
+        let depths = keys.iter().map(|key| depth_in_stamp(*key));
+        let classes = keys.iter().map(|key| match *key {
             EMPTY => 0,
             key => key as u16 & MAX_CLASS,
         });
         let nearest = depths.clone().fold(NOTHING, u16::min);
         let has_classes = classes.clone().any(|class| class > 0);
-        let size = columns * (end[1] - corner[1]);
-        let mut samples = Vec::with_capacity(if has_classes { 2 * size } else { size });
-        samples.extend(depths);
+        let kinds = if has_classes { 2 } else { 1 };
+        let mut content = Vec::with_capacity(ranges.len() + kinds * keys.len());
+        content.extend(ranges);
+        content.extend(depths);
         if has_classes {
-            samples.extend(classes);
+            content.extend(classes);
         }
         TurnedStamp {
-            samples: samples.into(),
+            content: content.into(),
             nearest,
             has_classes,
-            columns: columns as u8,
             corner: corner.map(|at| at as u8),
             end: end.map(|at| at as u8),
             elements: u32::try_from(self.elements).unwrap_or(u32::MAX),
