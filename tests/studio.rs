@@ -833,6 +833,35 @@ fn the_library_opens_as_a_copy() {
 }
 
 #[test]
+fn a_file_of_every_kind_is_begun() {
+    let page = Page::of(KOCH);
+    for kind in ["rule", "ifs", "instancing", "lsystem"] {
+        for space in [false, true] {
+            let begun = json!({ "kind": kind, "space": space });
+            let state = page.call("POST", "/new", &begun).json();
+            assert_eq!(
+                [&state["path"], &state["isSaved"], &state["isGood"]],
+                [&Value::Null, &false.into(), &true.into()],
+                "{kind} {space}"
+            );
+            let text = state["text"].as_str().unwrap();
+            assert!(text.contains(&format!("kind: {kind}")), "{text}");
+            assert!(text.contains("\"My fractal\""), "{text}");
+            assert_eq!(text.contains("space: 3"), space, "{text}");
+            page.draw(json!({})).picture();
+        }
+    }
+    for wrong in [json!({ "kind": "figure" }), json!({})] {
+        assert_eq!(page.call("POST", "/new", &wrong).status, 422);
+    }
+    for _ in 0..8 {
+        page.call("POST", "/undo", &json!({}));
+    }
+    let state = page.call("GET", "/state", &Value::Null).json();
+    assert_eq!(state["text"], KOCH);
+}
+
+#[test]
 fn every_kind_of_file_is_drawn_stepped_turned_and_moved() {
     for (name, is_in_space) in [
         ("koch", false),

@@ -32,7 +32,7 @@ pub(crate) mod list;
 mod man;
 pub(crate) mod map;
 mod morph;
-mod new;
+pub(crate) mod new;
 mod number;
 mod output;
 mod palette;

@@ -43,9 +43,9 @@ fn kind() -> impl TypedValueParser<Value = Kind> {
     })
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { file, kind, space } = arguments;
-    let template = match (kind, space == "3") {
+/// Returns a commented file to begin with, whose comments call it by a path, and whose title is made of a name.
+pub(crate) fn content(kind: Kind, is_in_space: bool, path: &str, name: &str) -> String {
+    let template = match (kind, is_in_space) {
         (Kind::Rule, false) => include_str!("new/rule.yaml"),
         (Kind::Rule, true) => include_str!("new/rule-in-space.yaml"),
         (Kind::Ifs, false) => include_str!("new/ifs.yaml"),
@@ -55,6 +55,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Kind::LSystem, false) => include_str!("new/lsystem.yaml"),
         (Kind::LSystem, true) => include_str!("new/lsystem-in-space.yaml"),
     };
+    template
+        .replace("FILE", &path.replace(char::is_control, " "))
+        .replace("TITLE", &title(name))
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { file, kind, space } = arguments;
     let is_file = file != Path::new("-");
     if is_file && file.exists() {
         let message = format!(
@@ -70,9 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         "FILE".into()
     };
-    let content = template
-        .replace("FILE", &path.replace(char::is_control, " "))
-        .replace("TITLE", &title(&name));
+    let content = content(*kind, space == "3", &path, &name);
     if !is_file {
         return Ok(output::print(&content)?);
     }

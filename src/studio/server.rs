@@ -220,6 +220,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/library", get(reports::entries))
         .route("/thumb", get(pictures::thumb))
         .route("/open", post(changes::open))
+        .route("/new", post(changes::begin))
         .route("/save", post(changes::save))
         .route("/component", post(changes::component))
         .route("/export", post(pictures::export))

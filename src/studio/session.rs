@@ -281,7 +281,7 @@ impl Session {
         true
     }
 
-    /// Opens an entry of the library as a copy that is not saved.
+    /// Opens a text as a copy that is not saved.
     pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
         self.drop_draft();
         self.name = name.to_owned();

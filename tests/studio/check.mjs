@@ -446,6 +446,18 @@ try {
     await shoot(name);
   }
 
+  // A file of one's own, from nothing.
+  await changes(async () => {
+    await browser.click("#new");
+    await browser.until("document.querySelector('#ask').open");
+    await browser.value("(() => { document.querySelector('#ask select').value = 'ifs'; })()");
+    await browser.click("#ask input[type=checkbox]");
+    await browser.click("#ask-go");
+    await browser.until("!document.querySelector('#ask').open");
+  }, "a system of space is begun");
+  const begun = await browser.value("[document.querySelector('#code').value, document.querySelector('#file').textContent, document.querySelector('#tab-design').getAttribute('aria-selected')]");
+  check(begun[0].includes("kind: ifs") && begun[0].includes("space: 3") && begun[1].startsWith("my-fractal") && begun[2] === "true", "it is a copy that is not saved, and is designed");
+
   // Design by hand: drag, grid, draw, keys, Escape, and a table.
   const MINE = "title: Mine # my own\ninitiator: segment\ngenerator:\n  - [0, 0]\n  - [1/2, 0.2] # apex\n  - [1, 0]\n";
   writeFileSync(join(folder, "mine.yaml"), MINE);

@@ -859,6 +859,21 @@ async function openEntry(id) {
   if (state.isSaved || !state.canUndo) return open().catch((error) => say(error.message));
   ask("Open a copy", [make("p", {}, "The text is not saved. Undo brings it back.")], { go: "Open", act: open });
 }
+/** Begins a file as `kfrac new` does. */
+function begin() {
+  const kind = make("select", {}, ...choices.kinds.map((it) => make("option", { value: it.name }, it.about.replace(/^an? /, ""))));
+  const space = tick();
+  const isKept = state.isSaved || !state.canUndo;
+  ask("New", [
+    make("label", {}, "Kind", kind),
+    make("label", {}, space, " In space"),
+    isKept ? null : make("p", {}, "The text is not saved. Undo brings it back."),
+  ].filter(Boolean), { go: "Begin", act: async () => {
+    opened(await json("POST", "/new", { tab, kind: kind.value, space: space.checked }));
+    openTab($("tab-design"));
+  } });
+}
+$("new").onclick = begin;
 $("search").oninput = list;
 $("shelf").onchange = list;
 

@@ -7,6 +7,9 @@ use serde::Deserialize;
 use serde_json::json;
 
 use crate::catalogue::Shelf;
+use crate::cli::new;
+use crate::diagnostic::Source;
+use crate::kind::Kind;
 
 use super::super::answer::Refusal;
 use super::super::{library, vary};
@@ -138,6 +141,32 @@ pub(super) async fn open(State(app): Shared, Json(Open { tab, id }): Json<Open>)
         let source = library::source(&session.catalogue.clone(), &id)?;
         let name = id.rsplit('/').next().unwrap_or(&id);
         session.copy(name, &source);
+        Ok(())
+    })
+    .await
+}
+
+/// Request for a file to begin with.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Begin {
+    #[serde(default)]
+    tab: String,
+    kind: String,
+    /// Whether it lies in space.
+    #[serde(default)]
+    space: bool,
+}
+
+/// Opens the file that `kfrac new` writes as a copy that is not saved.
+pub(super) async fn begin(State(app): Shared, Json(asked): Json<Begin>) -> Answer {
+    const NAME: &str = "my-fractal";
+    let named = Kind::ALL.into_iter().find(|it| it.name() == asked.kind);
+    let kind = named.ok_or_else(|| Refusal::wrong("there is no such kind of fractal"))?;
+    let file = format!("{NAME}.yaml");
+    let text = new::content(kind, asked.space, &file, NAME);
+    app.change(asked.tab, move |session| {
+        session.copy(NAME, &Source::new(file, text));
         Ok(())
     })
     .await

@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use crate::cli::animate::Ease;
 use crate::cli::held::Held;
 use crate::fit::Method;
+use crate::kind::Kind;
 use crate::render::space::Shade;
 use crate::style::{Cap, ColorBy, Join, Named, Palette, Tone};
 
@@ -44,7 +45,9 @@ pub(super) async fn choices() -> Json<Value> {
             Some(json!({ "name": name, "colours": colours }))
         })
         .collect();
+    let kinds = Kind::ALL.map(|kind| json!({ "name": kind.name(), "about": kind.full_name() }));
     Json(json!({
+        "kinds": kinds,
         "palettes": palettes,
         "color-by": names::<ColorBy>(),
         "cap": names::<Cap>(),
