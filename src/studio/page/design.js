@@ -218,7 +218,7 @@ function fill(block, panel) {
     if (!panel.why) head.push(button("Save…", () => name("Save as a component", "mine", (to) => saveComponent(panel.id, to)), { title: "Save as a component, in your library" }));
   }
   if (generator) {
-    head.push(button("Copy", () => name("A further generator", generator === "generator" ? "second" : `${generator}-2`, (to) => act({ act: "add_generator", from: generator === "generator" ? "first" : generator, name: to })), { title: "Add a generator: a copy of this one" }));
+    head.push(button("Add a copy", () => name("A further generator", generator === "generator" ? "second" : `${generator}-2`, (to) => act({ act: "add_generator", from: generator === "generator" ? "first" : generator, name: to })), { title: "Add a generator: a copy of this one" }));
     if (scene().generators.length > 1) head.push(
       button("Rename", () => name("Another name", generator, (to) => act({ act: "rename_generator", from: generator, to }))),
       button("Remove", () => act({ act: "remove_generator", name: generator })));
@@ -368,7 +368,7 @@ function selection() {
   const followers = rule ? null : edges();
   box.hidden = !rule && !followers;
   if (!rule) return box.replaceChildren(...(followers ?? []));
-  const parts = [make("h3", {}, "Selection")];
+  const parts = generators.length > 1 ? [make("h3", {}, "Selection")] : [];
   const set = (at, value) => act({ act: "set", at, value });
   const choice = (now, change) => make("select", { "aria-label": "generator", onchange: (event) => change(event.target.value) }, ...generators.map((name) => make("option", { value: name, selected: name === now }, name)));
   if (Array.isArray(select)) {
@@ -380,13 +380,16 @@ function selection() {
   } else if (select?.at_random) {
     for (const [name, weight] of Object.entries(select.at_random)) {
       const range = make("input", { type: "range", min: 0.1, max: Math.max(10, 2 * weight), step: 0.1, value: weight, "aria-label": `weight of ${name}`, onchange: (event) => set(`select/at_random/${name}`, event.target.value) });
-      parts.push(make("label", { className: "row" }, make("span", {}, `${name} ${weight}`), range));
+      parts.push(make("label", { className: "row" }, make("span", {}, `${name}: ${weight}`), range));
     }
   } else if (generators.length > 1) parts.push(make("p", { className: "quiet" }, "Elements name their generators themselves."));
   if (generators.length > 1) {
     const all = generators.map((it) => it);
     const write = { by_index: `{by_index: [${all.join(", ")}]}`, at_random: `{at_random: {${all.map((it) => `${it}: 1`).join(", ")}}}`, when: `[{when: odd(step), use: ${all[1]}}, {use: ${all[0]}}]` };
-    parts.push(make("div", { className: "row wrap" }, ...[["by_index", "By index"], ["at_random", "At random"], ["when", "By condition"]].map(([kind, text]) => button(text, () => set("select", write[kind])))));
+    parts.push(make("div", { className: "row wrap" }, ...[["by_index", "By index"], ["at_random", "At random"], ["when", "By condition"]].map(([kind, text]) => {
+      const isNow = kind === "when" ? Array.isArray(select) : select?.[kind] !== undefined;
+      return button(text, () => isNow || set("select", write[kind]), { "aria-pressed": String(isNow) });
+    })));
   }
   if (!scene().panels.some((it) => it.role === "base_element")) parts.push(make("label", {}, "Base element ", exchange("base_element", "base_element", "Base element from the library")));
   parts.push(button("From here on another rule", () => name("From here on another rule", generators.length ? `rule-${generators.length + 1}` : "second", (to) => act({ act: "from_here", step: page.stepNow(), name: to })), { title: "Elements of later steps are replaced by a copy, which can be changed" }));
