@@ -845,7 +845,11 @@ fn a_file_of_every_kind_is_begun() {
                 "{kind} {space}"
             );
             let text = state["text"].as_str().unwrap();
-            assert!(text.contains(&format!("kind: {kind}")), "{text}");
+            let sign = match kind {
+                "rule" => "\ninitiator:".to_owned(),
+                kind => format!("\nkind: {kind}\n"),
+            };
+            assert!(text.contains(&sign), "{text}");
             assert!(text.contains("\"My fractal\""), "{text}");
             assert_eq!(text.contains("space: 3"), space, "{text}");
             page.draw(json!({})).picture();
