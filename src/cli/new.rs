@@ -37,7 +37,10 @@ Examples:
 /// Returns a parser for the names of kinds.
 fn kind() -> impl TypedValueParser<Value = Kind> {
     let names = Kind::ALL.map(Kind::name);
-    PossibleValuesParser::new(names).try_map(|name| Kind::named(&name).ok_or("unknown"))
+    PossibleValuesParser::new(names).map(|name| {
+        let named = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+        named.unwrap_or(Kind::Rule)
+    })
 }
 
 /// Returns a commented file to begin with, whose comments call it by a path, and whose title is made of a name.

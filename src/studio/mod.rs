@@ -45,7 +45,6 @@ mod jobs;
 mod library;
 mod look;
 mod numbers;
-mod origin;
 mod problems;
 mod server;
 mod session;

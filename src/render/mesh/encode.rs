@@ -13,8 +13,6 @@ const MAX_CORNERS: usize = 255;
 /// Mesh of a base element, prepared for a format.
 pub(super) struct Shape {
     mesh: Mesh,
-    /// Triangles of PLY without a colour, as they are and in a reflection; none for other formats.
-    triangles: [Vec<Triangle>; 2],
 }
 
 impl Shape {
@@ -24,14 +22,7 @@ impl Shape {
         if format != MeshFormat::Obj || mesh.faces.iter().any(is_long) {
             mesh.faces = mesh.triangles().into_iter().map(Vec::from).collect();
         }
-        let is_ply = format == MeshFormat::Ply;
-        let faces = mesh.faces.iter().filter(|_| is_ply);
-        let triangles = faces.filter_map(|face| <[usize; 3]>::try_from(face.as_slice()).ok());
-        let reflected = triangles.clone().map(|[a, b, c]| Triangle::of([a, c, b]));
-        Self {
-            triangles: [triangles.map(Triangle::of).collect(), reflected.collect()],
-            mesh,
-        }
+        Self { mesh }
     }
 
     pub(super) fn corners(&self) -> &[DVec3] {
@@ -48,32 +39,8 @@ impl Shape {
     }
 }
 
-/// A triangle of PLY: the number of corners in 8 bits, their indices in 32 each, and the colour in 24, from the lowest.
-#[derive(Clone, Copy)]
-struct Triangle(u128);
-
-impl Triangle {
-    /// Number of bytes.
-    const BYTES: usize = size_of::<u128>();
-
-    /// Creates a black triangle.
-    fn of(corners: [usize; 3]) -> Self {
-        let [a, b, c] = corners.map(|corner| corner as u128);
-        Self(3 | a << 8 | b << 40 | c << 72)
-    }
-
-    /// Returns the triangle behind `before` other corners, whose number fits with its own into 32 bits.
-    fn behind(self, before: u32) -> Self {
-        const ONE_EACH: u128 = 1 << 8 | 1 << 40 | 1 << 72;
-        Self(self.0 + u128::from(before) * ONE_EACH)
-    }
-
-    /// Returns the triangle in a colour.
-    fn coloured(self, [red, green, blue]: [u8; 3]) -> Self {
-        let colour = u32::from_le_bytes([red, green, blue, 0]);
-        Self(self.0 | u128::from(colour) << 104)
-    }
-}
+/// Bytes of a triangle in PLY: the number of corners, their indices, and the colour.
+const TRIANGLE: usize = 1 + 3 * 4 + 3;
 
 /// Part of a file that is encoded by one walk.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -133,7 +100,7 @@ pub(super) fn head(format: MeshFormat, title: &str, size: &Meshed) -> Result<Vec
 pub(super) struct Encoder {
     format: MeshFormat,
     pass: Pass,
-    /// Bytes of the file; for the faces of OBJ, lists as in PLY.
+    /// Bytes of the file; for [`Pass::Faces`], lists as in PLY.
     bytes: Vec<u8>,
     /// Number of corners that faces may refer to.
     corners: u32,
@@ -172,30 +139,18 @@ impl Encoder {
                     self.triangle(face, is_mirrored);
                 }
             }
-            Pass::Corners if self.format == MeshFormat::Obj => {
+            Pass::Corners => {
                 for image in images {
                     is_finite &= image.as_vec3().is_finite();
-                    push_line(&mut self.bytes, image);
-                }
-            }
-            Pass::Corners => {
-                let places = add_chunks(&mut self.bytes, corners.len());
-                for (place, image) in places.iter_mut().zip(images) {
-                    is_finite &= image.as_vec3().is_finite();
-                    *place = single(image);
-                }
-            }
-            Pass::Faces if self.format == MeshFormat::Ply => {
-                let triangles = &shape.triangles[usize::from(is_mirrored)];
-                let places = add_chunks(&mut self.bytes, triangles.len());
-                for (number, (place, triangle)) in places.iter_mut().zip(triangles).enumerate() {
-                    let triangle = triangle.behind(self.corners).coloured(colour(number));
-                    *place = triangle.0.to_le_bytes();
+                    match self.format {
+                        MeshFormat::Obj => push_line(&mut self.bytes, image),
+                        _ => push(&mut self.bytes, image),
+                    }
                 }
             }
             Pass::Faces => {
-                for face in faces {
-                    self.face(face, is_mirrored);
+                for (number, face) in faces.iter().enumerate() {
+                    self.face(face, is_mirrored, colour(number));
                 }
             }
         }
@@ -205,19 +160,30 @@ impl Encoder {
         is_finite
     }
 
-    /// Adds a list of corners.
+    /// Adds a list of corners with its colour.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "lists have no more than 255 corners, and the number of all corners fits into 32 bits"
     )]
-    fn face(&mut self, face: &[usize], is_mirrored: bool) {
+    fn face(&mut self, face: &[usize], is_mirrored: bool, colour: [u8; 3]) {
         let before = self.corners;
         let index = |corner: &usize| (before + *corner as u32).to_le_bytes();
+        if let &[a, b, c] = face {
+            let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
+            let mut triangle = [3; TRIANGLE];
+            for (bytes, corner) in triangle[1..].chunks_exact_mut(4).zip([a, b, c]) {
+                bytes.copy_from_slice(&index(&corner));
+            }
+            triangle[TRIANGLE - 3..].copy_from_slice(&colour);
+            self.bytes.extend_from_slice(&triangle);
+            return;
+        }
         self.bytes.push(face.len() as u8);
         match is_mirrored {
             false => self.bytes.extend(face.iter().flat_map(index)),
             true => self.bytes.extend(face.iter().rev().flat_map(index)),
         }
+        self.bytes.extend(colour);
     }
 
     /// Adds a triangle of STL, with its normal.
@@ -227,7 +193,7 @@ impl Encoder {
         let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
         let normal = (b - a).cross(c - a).normalize_or_zero();
         for vector in [normal, a, b, c] {
-            self.bytes.extend_from_slice(&single(vector));
+            push(&mut self.bytes, vector);
         }
         self.bytes.extend([0, 0]);
     }
@@ -246,10 +212,13 @@ impl Encoder {
 
     /// Lets faces refer to corners behind `before` others, in the way of the format.
     fn refer(&mut self, before: u32) {
-        if self.format == MeshFormat::Ply {
-            for bytes in self.bytes.as_chunks_mut::<{ Triangle::BYTES }>().0 {
-                let triangle = Triangle(u128::from_le_bytes(*bytes));
-                *bytes = triangle.behind(before).0.to_le_bytes();
+        let of = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
+        if self.format != MeshFormat::Obj {
+            // All are triangles.
+            for triangle in self.bytes.chunks_exact_mut(TRIANGLE) {
+                for index in triangle[1..TRIANGLE - 3].chunks_exact_mut(4) {
+                    index.copy_from_slice(&(before + of(index)).to_le_bytes());
+                }
             }
             return;
         }
@@ -257,16 +226,16 @@ impl Encoder {
         let mut number = itoa::Buffer::new();
         let mut at = 0;
         while let Some(&corners) = self.bytes.get(at) {
-            let (first, end) = (at + 1, at + 1 + 4 * usize::from(corners));
+            let end = at + 1 + 4 * usize::from(corners);
             text.push(b'f');
-            for index in self.bytes[first..end].as_chunks().0 {
+            for index in self.bytes[at + 1..end].chunks_exact(4) {
                 // Corners are counted from 1.
                 text.push(b' ');
-                let corner = u64::from(before) + u64::from(u32::from_le_bytes(*index)) + 1;
+                let corner = u64::from(before) + u64::from(of(index)) + 1;
                 text.extend_from_slice(number.format(corner).as_bytes());
             }
             text.push(b'\n');
-            at = end;
+            at = end + 3;
         }
         self.bytes = text;
     }
@@ -285,23 +254,14 @@ fn push_line(bytes: &mut Vec<u8>, point: DVec3) {
     bytes.push(b'\n');
 }
 
-/// Adds chunks of zeros, and returns them.
-fn add_chunks<const BYTES: usize>(bytes: &mut Vec<u8>, count: usize) -> &mut [[u8; BYTES]] {
-    let start = bytes.len();
-    bytes.resize(start + count * BYTES, 0);
-    bytes[start..].as_chunks_mut().0
-}
-
-/// Returns the coordinates of a point in single precision.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "rounded to single precision"
 )]
-fn single(point: DVec3) -> [u8; 12] {
-    let mut bytes = [0; 12];
-    for (bytes, number) in bytes.as_chunks_mut().0.iter_mut().zip(point.to_array()) {
-        // Adding zero turns −0 into 0.
-        *bytes = (number as f32 + 0.0).to_le_bytes();
+fn push(bytes: &mut Vec<u8>, point: DVec3) {
+    let mut place = [0; 12];
+    for (bytes, number) in place.chunks_exact_mut(4).zip(point.to_array()) {
+        bytes.copy_from_slice(&(number as f32 + 0.0).to_le_bytes());
     }
-    bytes
+    bytes.extend_from_slice(&place);
 }

@@ -860,23 +860,20 @@ async function openEntry(id) {
   ask("Open a copy", [make("p", {}, "The text is not saved. Undo brings it back.")], { go: "Open", act: open });
 }
 /** Begins a file as `kfrac new` does. */
-function beginFile() {
-  const name = make("input", { type: "text", value: "my-fractal", required: true });
+function begin() {
   const kind = make("select", {}, ...choices.kinds.map((it) => make("option", { value: it.name }, it.about.replace(/^an? /, ""))));
   const space = tick();
   const isKept = state.isSaved || !state.canUndo;
   ask("New", [
-    make("label", {}, "Name", name),
     make("label", {}, "Kind", kind),
     make("label", {}, space, " In space"),
     isKept ? null : make("p", {}, "The text is not saved. Undo brings it back."),
   ].filter(Boolean), { go: "Begin", act: async () => {
-    opened(await json("POST", "/new", { tab, name: name.value, kind: kind.value, space: space.checked }));
-    // The design of an L-system is its text.
-    openTab($(kind.value === "lsystem" ? "tab-text" : "tab-design"));
+    opened(await json("POST", "/new", { tab, kind: kind.value, space: space.checked }));
+    openTab($("tab-design"));
   } });
-  name.select();
 }
+$("new").onclick = begin;
 $("search").oninput = list;
 $("shelf").onchange = list;
 
@@ -1141,7 +1138,6 @@ film.start({ tab, json, make, say, values, changed, state: () => state, look: ()
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
   underlay.start({ tab, call, json, take, say, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
-  $("new").onclick = beginFile;
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;
   state = {};

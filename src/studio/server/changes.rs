@@ -1,7 +1,5 @@
 //! Changes of the text and of its file.
 
-use std::path::PathBuf;
-
 use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Query, State};
@@ -14,7 +12,6 @@ use crate::diagnostic::Source;
 use crate::kind::Kind;
 
 use super::super::answer::Refusal;
-use super::super::files::is_rule;
 use super::super::{library, vary};
 use super::{Answer, Shared, Tab, apart};
 
@@ -155,29 +152,21 @@ pub(super) async fn open(State(app): Shared, Json(Open { tab, id }): Json<Open>)
 pub(super) struct Begin {
     #[serde(default)]
     tab: String,
-    /// Name of the file, with or without its extension.
-    name: String,
     kind: String,
-    /// Whether the fractal lies in space.
+    /// Whether it lies in space.
     #[serde(default)]
     space: bool,
 }
 
 /// Opens the file that `kfrac new` writes as a copy that is not saved.
 pub(super) async fn begin(State(app): Shared, Json(asked): Json<Begin>) -> Answer {
-    let kind = Kind::named(&asked.kind)
-        .ok_or_else(|| Refusal::wrong("there is no such kind of fractal"))?;
-    let mut file = PathBuf::from(asked.name.trim());
-    if !is_rule(&file) {
-        file.as_mut_os_string().push(".yaml");
-    }
-    let stem = file.file_stem().filter(|_| !asked.name.trim().is_empty());
-    let name = stem.ok_or_else(|| Refusal::wrong("a file has a name"))?;
-    let name = name.to_string_lossy().into_owned();
-    let path = file.display().to_string();
-    let text = new::content(kind, asked.space, &path, &name);
+    const NAME: &str = "my-fractal";
+    let named = Kind::ALL.into_iter().find(|it| it.name() == asked.kind);
+    let kind = named.ok_or_else(|| Refusal::wrong("there is no such kind of fractal"))?;
+    let file = format!("{NAME}.yaml");
+    let text = new::content(kind, asked.space, &file, NAME);
     app.change(asked.tab, move |session| {
-        session.copy(&name, &Source::new(path, text));
+        session.copy(NAME, &Source::new(file, text));
         Ok(())
     })
     .await
