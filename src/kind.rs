@@ -19,6 +19,12 @@ macro_rules! kinds {
                 match self { $(Self::$kind => $name,)* }
             }
 
+            /// Returns the kind with a [name](Self::name).
+            #[must_use]
+            pub fn named(name: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|kind| kind.name() == name)
+            }
+
             /// Returns the name of the folder of such files in a library.
             #[must_use]
             pub const fn folder(self) -> &'static str {

@@ -322,21 +322,63 @@ fn all_formats_hold_the_same_surface() {
 
 #[test]
 fn faces_of_mirrored_elements_turn_outwards() {
-    let text = "{kind: ifs, space: 3, maps: [{matrix: [[-1/2, 0, 0], [0, 1/2, 0], [0, 0, 1/2]]}, \
-                {scale: 1/2, translate: [2, 1, 1]}]}";
-    let model = common::document_of(text).resolve(&[]).unwrap().0;
-    let graph = model.compile_in_space(false).unwrap();
-    let options = Options::default().threads(NonZero::<usize>::MIN);
     for steps in [1, 2] {
-        let mut bytes = Vec::new();
-        let mesh = MeshOptions::default().format(MeshFormat::Obj);
-        write_mesh(&graph, &Growth::steps(steps), &options, mesh, &mut bytes).unwrap();
-        let (corners, faces) = read_obj(&bytes);
-        for faces in faces.chunks(6) {
-            let [volume, _] = sizes(&(corners.clone(), faces.to_vec()));
-            assert!(volume > 0.0, "step {steps}: {volume}");
+        let obj = read_obj(&write_mirrored(steps, MeshFormat::Obj, 1));
+        let (ply, _) = read_ply(&write_mirrored(steps, MeshFormat::Ply, 1));
+        for ((corners, faces), sides) in [(obj, 6), (ply, 12)] {
+            for faces in faces.chunks(sides) {
+                let volume = volume(&corners, faces);
+                assert!(volume > 0.0, "step {steps}: {volume}");
+            }
         }
     }
+}
+
+/// Writes a system of two maps, of which the first mirrors, in colours by the last map.
+fn write_mirrored(steps: u32, format: MeshFormat, threads: usize) -> Vec<u8> {
+    let text = "{kind: ifs, space: 3, maps: [{matrix: [[-1/2, 0, 0], [0, 1/2, 0], [0, 0, 1/2]]}, \
+                {scale: 1/2, translate: [2, 1, 1]}], style: {color_by: last-map, palette: viridis}}";
+    let model = common::document_of(text).resolve(&[]).unwrap().0;
+    let graph = model.compile_in_space(false).unwrap();
+    let threads = NonZero::new(threads).unwrap();
+    let options = Options::of(model.metadata()).threads(threads);
+    let mut bytes = Vec::new();
+    let mesh = MeshOptions::default().format(format);
+    write_mesh(&graph, &Growth::steps(steps), &options, mesh, &mut bytes).unwrap();
+    bytes
+}
+
+/// Returns the volume of an element from its faces.
+fn volume(corners: &[DVec3], faces: &[Vec<usize>]) -> f64 {
+    sizes(&(corners.to_vec(), faces.to_vec()))[0]
+}
+
+/// Each of the elements differs from the one before it: those of step 17 are too many to note how their faces differ, and
+/// a second walk writes the faces.
+#[test]
+fn faces_do_not_depend_on_how_they_are_written() {
+    const SIDES: usize = 12;
+    const CORNERS: usize = 8;
+    let (few, few_colours) = read_ply(&write_mirrored(3, MeshFormat::Ply, 1));
+    let many = write_mirrored(17, MeshFormat::Ply, 1);
+    assert!(many == write_mirrored(17, MeshFormat::Ply, 3));
+    let (many, many_colours) = read_ply(&many);
+    assert_eq!((few.1.len(), many.1.len()), (8 * SIDES, SIDES << 17));
+    // The last map of an element, and how often the first one, which mirrors, is applied.
+    let kind = |element: usize, steps: u32| (element % 2, (steps - element.count_ones()) % 2);
+    for element in 0..1 << 17 {
+        let alike = (0..8).find(|other| kind(*other, 3) == kind(element, 17));
+        let alike = alike.unwrap();
+        for side in 0..SIDES {
+            let [own, other] = [element, alike].map(|it| it * SIDES + side);
+            let moved = few.1[other]
+                .iter()
+                .map(|it| it + (element - alike) * CORNERS);
+            assert!(moved.eq(many.1[own].iter().copied()), "{element}");
+            assert_eq!(many_colours[own], few_colours[other], "{element}");
+        }
+    }
+    assert!(few_colours[0] != few_colours[SIDES]);
 }
 
 #[test]

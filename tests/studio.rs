@@ -127,8 +127,13 @@ impl Page {
         format!("127.0.0.1:{}", self.port)
     }
 
-    /// Sends a request as the page does.
+    /// Sends a request as the page does before it knows a file.
     fn call(&self, method: &str, path: &str, body: &Value) -> Reply {
+        self.call_about("", method, path, body)
+    }
+
+    /// Sends a request about a file as the page does.
+    fn call_about(&self, file: &str, method: &str, path: &str, body: &Value) -> Reply {
         let text = match body {
             Value::Null => String::new(),
             Value::String(text) => text.clone(),
@@ -141,6 +146,7 @@ impl Page {
             ("origin", &origin),
             ("sec-fetch-site", "same-origin"),
             ("x-kfrac-key", &self.key),
+            ("x-kfrac-file", file),
             ("content-type", "application/json"),
         ];
         self.send(method, path, &headers, text.as_bytes())
@@ -837,32 +843,167 @@ fn a_file_of_every_kind_is_begun() {
     let page = Page::of(KOCH);
     for kind in ["rule", "ifs", "instancing", "lsystem"] {
         for space in [false, true] {
-            let begun = json!({ "kind": kind, "space": space });
+            // The extension may be left out.
+            let name = format!("odd-{kind}{}", if space { ".json" } else { "" });
+            let begun = json!({ "name": name, "kind": kind, "space": space });
             let state = page.call("POST", "/new", &begun).json();
             assert_eq!(
                 [&state["path"], &state["isSaved"], &state["isGood"]],
                 [&Value::Null, &false.into(), &true.into()],
                 "{kind} {space}"
             );
+            let file = format!("odd-{kind}.{}", if space { "json" } else { "yaml" });
+            assert_eq!(state["name"], file);
             let text = state["text"].as_str().unwrap();
             let sign = match kind {
                 "rule" => "\ninitiator:".to_owned(),
                 kind => format!("\nkind: {kind}\n"),
             };
             assert!(text.contains(&sign), "{text}");
-            assert!(text.contains("\"My fractal\""), "{text}");
+            assert!(text.contains(&format!("\"Odd {kind}\"")), "{text}");
+            assert!(text.contains(&format!("grow {file}")), "{text}");
             assert_eq!(text.contains("space: 3"), space, "{text}");
             page.draw(json!({})).picture();
         }
     }
-    for wrong in [json!({ "kind": "figure" }), json!({})] {
+    let long = "long".repeat(51);
+    for name in [
+        " ", ".yaml", ".mine", "-mine", "a/b", "a\\b", "a\nb", "../mine", &long,
+    ] {
+        let wrong = json!({ "name": name, "kind": "rule" });
+        let reply = page.call("POST", "/new", &wrong);
+        assert_eq!(reply.status, 422, "{name}");
+    }
+    for wrong in [
+        json!({ "name": "mine", "kind": "figure" }),
+        json!({ "kind": "rule" }),
+        json!({}),
+    ] {
         assert_eq!(page.call("POST", "/new", &wrong).status, 422);
     }
-    for _ in 0..8 {
-        page.call("POST", "/undo", &json!({}));
+    // Words of the template in a name.
+    let begun = json!({ "name": "TITLE of FILE", "kind": "rule" });
+    let state = page.call("POST", "/new", &begun).json();
+    let text = state["text"].as_str().unwrap();
+    assert!(text.contains("\ntitle: \"TITLE of FILE\"\n"), "{text}");
+    assert!(text.contains("grow TITLE of FILE.yaml"), "{text}");
+    page.draw(json!({})).picture();
+}
+
+#[test]
+fn undo_leads_back_to_the_file_that_was_left_and_to_its_look() {
+    let page = Page::of(KOCH);
+    let back = || page.call("POST", "/undo", &json!({})).json();
+    let path = page.state()["path"].clone();
+    let name = page.state()["name"].clone();
+    page.draw(json!({ "look": { "steps": 2 } })).picture();
+    let changed = format!("title: Mine\n{KOCH}");
+    assert_eq!(page.put(&changed).status, 200);
+    let opened = json!({ "id": "rules/pythagoras" });
+    let state = page.call("POST", "/open", &opened).json();
+    assert_eq!([&state["path"], &state["look"]["steps"]], [&Value::Null; 2]);
+    page.draw(json!({ "look": { "steps": 5 } })).picture();
+
+    let state = back();
+    assert_eq!(state["text"], changed);
+    assert_eq!([&state["path"], &state["name"]], [&path, &name]);
+    assert_eq!(state["isSaved"], false);
+    assert_eq!(state["look"]["steps"], 2);
+    page.draw(json!({})).picture();
+    assert_eq!(page.call("POST", "/save", &json!({})).status, 200);
+    assert_eq!(page.read("rule.yaml"), changed);
+
+    // Forth again, to the copy, which is saved.
+    let state = page.call("POST", "/redo", &json!({})).json();
+    assert_eq!(state["path"], Value::Null);
+    assert_eq!(state["name"], "pythagoras");
+    assert_eq!(state["look"]["steps"], 5);
+    let to = json!({ "path": "copy.yaml" });
+    assert_eq!(page.call("POST", "/save", &to).status, 200);
+
+    // Another program changes both files meanwhile, which is settled; neither the own texts nor the other file are lost.
+    let saved = page.state()["text"].clone();
+    fs::write(page.folder.path().join("rule.yaml"), TREE).unwrap();
+    let state = back();
+    let is = |state: &Value, text: &str, theirs: Value| {
+        assert_eq!((&state["text"], &state["theirs"]), (&text.into(), &theirs));
+    };
+    is(&state, &changed, TREE.into());
+    assert_eq!([&state["path"], &state["canRedo"]], [&path, &true.into()]);
+    assert_eq!(page.call("POST", "/save", &json!({})).status, 409);
+    // A change that arrives while it is shown is settled, too.
+    let bush = TREE.replace("Tree", "Bush");
+    until("the conflict", || {
+        fs::write(page.folder.path().join("rule.yaml"), &bush).unwrap();
+        thread::sleep(Duration::from_millis(150));
+        page.state()["theirs"] == *bush
+    });
+    is(&back(), KOCH, bush.into());
+    assert_eq!(page.state()["canUndo"], false);
+    fs::write(page.folder.path().join("copy.yaml"), KOCH).unwrap();
+    let forth = || page.call("POST", "/redo", &json!({})).json();
+    assert_eq!(forth()["text"], changed);
+    let state = forth();
+    assert_eq!(state["text"], KOCH, "the text of the saved copy is taken");
+    assert_eq!(state["isSaved"], true);
+    assert_eq!(back()["text"], saved, "and the one before is not lost");
+}
+
+/// Requests that were sent while another file was shown change nothing.
+#[test]
+fn what_was_asked_of_a_file_that_was_left_has_no_effect() {
+    let page = Page::of(KOCH);
+    page.draw(json!({ "look": { "steps": 2 } })).picture();
+    let opened = json!({ "id": "rules/pythagoras" });
+    let left = page.call("POST", "/open", &opened).json();
+    let back = page.call("POST", "/undo", &json!({})).json();
+    assert!(left["file"] != back["file"]);
+    assert_eq!(back["isSaved"], true);
+    let place = format!("/text?revision={}", left["revision"]);
+    let replaced = page.call("PUT", &place, &left["text"]);
+    assert_eq!(replaced.status, 409);
+    let pointer =
+        json!({ "phase": "double", "panel": "generator", "x": 0.5, "y": 0.1, "pixel": 0.01 });
+    for (path, status, asked) in [
+        (
+            "/edit",
+            409,
+            json!({ "gesture": { "act": "split", "panel": "generator", "element": 0 } }),
+        ),
+        ("/pointer", 409, json!({ "pointer": pointer })),
+        ("/write", 409, json!({ "name": "angle" })),
+        ("/take", 409, json!({ "variant": 0 })),
+        ("/save", 409, json!({ "path": "other.yaml" })),
+        ("/settle", 409, json!({ "theirs": true })),
+        (
+            "/component",
+            409,
+            json!({ "panel": "generator", "name": "mine" }),
+        ),
+        (
+            "/picture",
+            410,
+            json!({ "tab": "a", "width": 30, "height": 20, "look": { "steps": 5 } }),
+        ),
+    ] {
+        let file = left["file"].to_string();
+        let reply = page.call_about(&file, "POST", path, &asked);
+        assert_eq!(reply.status, status, "{path}");
     }
-    let state = page.call("GET", "/state", &Value::Null).json();
+    let state = page.state();
     assert_eq!(state["text"], KOCH);
+    assert_eq!(state["look"]["steps"], 2);
+    assert!(!page.folder.path().join("other.yaml").exists());
+    // Members near a text that has changed.
+    page.call("POST", "/vary", &json!({ "seed": 5 })).json();
+    assert_eq!(page.put(TREE).status, 200);
+    assert_eq!(
+        page.call("POST", "/take", &json!({ "variant": 3 })).status,
+        409
+    );
+    let preview = json!({ "tab": "p", "width": 120, "height": 90, "variant": 3 });
+    assert_eq!(page.call("POST", "/preview", &preview).status, 409);
+    assert_eq!(page.state()["text"], TREE);
 }
 
 #[test]

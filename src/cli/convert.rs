@@ -46,10 +46,7 @@ Examples:
 
 fn kind() -> impl TypedValueParser<Value = Kind> {
     let kinds = Kind::ALL.map(|kind| PossibleValue::new(kind.name()).help(described(kind)));
-    PossibleValuesParser::new(kinds).try_map(|name| {
-        let mut kinds = Kind::ALL.into_iter();
-        kinds.find(|kind| kind.name() == name).ok_or("unknown")
-    })
+    PossibleValuesParser::new(kinds).try_map(|name| Kind::named(&name).ok_or("unknown"))
 }
 
 pub(super) fn run(arguments: &Arguments, catalogue: &Catalogue) -> Result<(), Failure> {

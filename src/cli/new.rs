@@ -37,10 +37,7 @@ Examples:
 /// Returns a parser for the names of kinds.
 fn kind() -> impl TypedValueParser<Value = Kind> {
     let names = Kind::ALL.map(Kind::name);
-    PossibleValuesParser::new(names).map(|name| {
-        let named = Kind::ALL.into_iter().find(|kind| kind.name() == name);
-        named.unwrap_or(Kind::Rule)
-    })
+    PossibleValuesParser::new(names).try_map(|name| Kind::named(&name).ok_or("unknown"))
 }
 
 /// Returns a commented file to begin with, whose comments call it by a path, and whose title is made of a name.
@@ -55,9 +52,13 @@ pub(crate) fn content(kind: Kind, is_in_space: bool, path: &str, name: &str) -> 
         (Kind::LSystem, false) => include_str!("new/lsystem.yaml"),
         (Kind::LSystem, true) => include_str!("new/lsystem-in-space.yaml"),
     };
-    template
-        .replace("FILE", &path.replace(char::is_control, " "))
-        .replace("TITLE", &title(name))
+    // A name may contain either word.
+    let title = title(name);
+    let parts = template
+        .split("FILE")
+        .map(|part| part.replace("TITLE", &title));
+    let parts: Vec<String> = parts.collect();
+    parts.join(&path.replace(char::is_control, " "))
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {

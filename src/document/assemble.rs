@@ -171,20 +171,24 @@ impl Assembly<'_> {
     /// it.
     fn kind_of(&mut self, entries: &Entries) -> Option<Kind> {
         let written = entries.iter().find(|(key, _)| key.name == "kind");
-        let known = |name: &str| Kind::ALL.into_iter().find(|kind| kind.name() == name);
         let written_kind = match written {
             None => Kind::Rule,
-            Some((_, node)) => match &node.value {
-                Value::Text(name) if known(name).is_some() => known(name)?,
-                _ => {
+            Some((_, node)) => {
+                let known = match &node.value {
+                    Value::Text(name) => Kind::named(name),
+                    _ => None,
+                };
+                if known.is_none() {
                     let message = format!("kind '{}' is not known", node.place.text());
                     let names = listed(Kind::ALL.into_iter().map(Kind::name));
                     let hint = format!("the kinds are: {names}; without `kind` it is a rule");
                     self.error(&node.place, message, &hint);
-                    // The keys of a file of unknown kind cannot be checked.
-                    known(nearest(node.place.text(), Kind::ALL.map(Kind::name))?)?
                 }
-            },
+                // The keys of a file of unknown kind cannot be checked.
+                known.or_else(|| {
+                    Kind::named(nearest(node.place.text(), Kind::ALL.map(Kind::name))?)
+                })?
+            }
         };
         match self.kind {
             Some(kind) if kind != written_kind => {

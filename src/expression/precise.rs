@@ -33,12 +33,12 @@ impl Precise {
         Self { near, exact }
     }
 
-    /// Returns the number times 2^`bits`, rounded to an integer.
     #[cfg(test)]
     pub(crate) fn near(&self) -> f64 {
         self.near
     }
 
+    /// Returns the number times 2^`bits`, rounded to an integer.
     pub(crate) fn fixed(&self, bits: usize) -> IBig {
         let shift = isize::try_from(bits).unwrap_or(isize::MAX);
         (self.exact.clone() << shift).to_int().value()

@@ -5,6 +5,7 @@
 //! [shell](MeshOptions::shell) is collected first.
 
 mod encode;
+mod runs;
 mod shell;
 
 use std::io::{self, Write};
@@ -19,6 +20,7 @@ use super::error::RenderError;
 use super::options::Options;
 use super::space::SpaceError;
 use encode::{Encoder, Pass, Shape};
+use runs::{Faces, Runs};
 use shell::Shell;
 
 /// Format of a mesh.
@@ -121,14 +123,22 @@ pub fn write_mesh(
         None => walk.counted()?,
     };
     out.write_all(&encode::head(format, &options.labels.title, &size)?)?;
+    let mut runs = Runs::new(options.style.color_by != ColorBy::Normal);
     for &pass in Pass::of(format) {
+        if pass == Pass::Faces && runs.are_kept() {
+            runs.write(&shapes, Encoder::new(format, pass), growth.cancel, out)?;
+            continue;
+        }
+        let are_kept = pass == Pass::Corners && runs.are_kept();
         // Corners of the elements before a span.
         let mut before = 0;
         let fresh = || Collector {
             walk: &walk,
             encoder: Encoder::new(format, pass),
+            runs: Runs::new(are_kept),
         };
         walk.each(fresh, |collector| {
+            runs.append(&mut collector.runs);
             before = collector.encoder.give(before, out)?;
             Ok(())
         })?;
@@ -198,15 +208,15 @@ impl Walk<'_> {
         Ok(size)
     }
 
-    /// Returns the shape of an element and its colour, if it is visible.
-    fn shape(&self, element: &Element<Frame3>) -> Option<(&Shape, [u8; 3])> {
+    /// Returns the index of the shape of an element and its colour, if it is visible.
+    fn shape(&self, element: &Element<Frame3>) -> Option<(usize, [u8; 3])> {
         let object = &self.graph.objects()[element.object];
         object.visible.then(|| {
             let [red, green, blue, _] = self
                 .colours
                 .at(object, element.born, element.appearance)
                 .rgba();
-            (&self.shapes[object.base_element], [red, green, blue])
+            (object.base_element, [red, green, blue])
         })
     }
 }
@@ -260,16 +270,25 @@ impl Visitor<Frame3> for Sizes<'_> {
 struct Collector<'a> {
     walk: &'a Walk<'a>,
     encoder: Encoder,
+    runs: Runs,
 }
 
 impl Visitor<Frame3> for Collector<'_> {
     type Error = io::Error;
 
     fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
-        if let Some((shape, colour)) = self.walk.shape(element) {
+        if let Some((number, own)) = self.walk.shape(element) {
+            let shape = &self.walk.shapes[number];
             let map = element.frame.map();
-            let colour = |face| self.walk.colour_of_face(shape, face, map, colour);
-            let is_finite = self.encoder.add(shape, map, colour);
+            let is_mirrored = map.matrix3.determinant() < 0.0;
+            let colour = |face| self.walk.colour_of_face(shape, face, map, own);
+            let is_finite = self.encoder.add(shape, map, is_mirrored, colour);
+            let faces = Faces {
+                shape: number,
+                is_mirrored,
+                colour: own,
+            };
+            self.runs.add(faces, 1);
             if !is_finite {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
             }

@@ -37,6 +37,11 @@ impl Refusal {
         Self::new(StatusCode::CONFLICT, message)
     }
 
+    /// Refuses a change of a text that has changed since the page showed it.
+    pub(super) fn changed() -> Self {
+        Self::conflict("the text has changed in the meantime")
+    }
+
     /// Answers a request that a newer one has replaced.
     pub(super) fn replaced() -> Self {
         Self::new(StatusCode::GONE, "a newer request has replaced this one")

@@ -81,9 +81,7 @@ fn split(text: &str) -> (Option<&str>, &str) {
 fn kind(text: &str) -> Kind {
     let line = text.lines().find_map(|line| line.strip_prefix("kind:"));
     let name = line.map(|rest| rest.split('#').next().unwrap_or_default().trim());
-    let mut all = Kind::ALL.into_iter();
-    all.find(|kind| Some(kind.name()) == name)
-        .unwrap_or(Kind::Rule)
+    name.and_then(Kind::named).unwrap_or(Kind::Rule)
 }
 
 /// Returns whether a key stands in a text with this indentation.

@@ -127,13 +127,10 @@ impl Shot {
 
     fn arguments(&self, view: &[String]) -> Vec<String> {
         let [width, height] = self.size;
-        let mut arguments = self.look.clone();
+        let mut arguments = vec![self.rule.clone()];
+        arguments.extend(self.look.iter().cloned());
         arguments.push(format!("--size={width}x{height}"));
         arguments.extend(view.iter().cloned());
-        arguments.extend(["--".into(), self.rule.clone()]);
-        // Options may follow the rule, but not what separates it from them.
-        arguments.rotate_right(2);
-        arguments.remove(0);
         arguments
     }
 

@@ -1,7 +1,11 @@
-//! Texts that undo and redo bring back, byte for byte, with the set values of parameters that they replace.
+//! Texts that undo and redo bring back, byte for byte, with the set values of parameters that they replace, and with
+//! their files.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
+
+use super::look::Look;
+use super::origin::Origin;
 
 /// Largest number of texts.
 const MOST: usize = 2_000;
@@ -24,15 +28,30 @@ pub(super) struct History {
 #[derive(Debug)]
 struct Entry {
     text: Arc<str>,
+    change: Change,
+}
+
+/// Change beside a text, from the text before.
+#[derive(Debug, Default)]
+pub(super) struct Change {
     /// Values that were set before, and that this text has.
-    written: Settings,
+    pub(super) written: Settings,
+    /// File that was left for the one of this text; after undo, the one of this text.
+    pub(super) left: Option<Box<Left>>,
+}
+
+/// A file that is left, and the look that it had.
+#[derive(Debug)]
+pub(super) struct Left {
+    pub(super) origin: Origin,
+    pub(super) look: Look,
 }
 
 impl From<Arc<str>> for Entry {
     fn from(text: Arc<str>) -> Self {
         Self {
             text,
-            written: Settings::new(),
+            change: Change::default(),
         }
     }
 }
@@ -54,24 +73,35 @@ impl History {
 
     /// Adds a text after the present one, in place of those that undo has left; returns whether it differs.
     pub(super) fn push(&mut self, text: Arc<str>) -> bool {
-        if *text == **self.text() {
-            return false;
+        let is_other = *text != **self.text();
+        if is_other {
+            self.add(text.into());
         }
-        let left = self.entries.drain(self.now + 1..);
-        self.bytes -= left.map(|entry| entry.text.len()).sum::<usize>();
-        self.bytes += text.len();
-        self.entries.push_back(text.into());
+        is_other
+    }
+
+    /// Adds a text of another file.
+    pub(super) fn open(&mut self, text: Arc<str>, left: Left) {
+        let mut entry = Entry::from(text);
+        entry.change.left = Some(left.into());
+        self.add(entry);
+    }
+
+    fn add(&mut self, entry: Entry) {
+        let undone = self.entries.drain(self.now + 1..);
+        self.bytes -= undone.map(|entry| entry.text.len()).sum::<usize>();
+        self.bytes += entry.text.len();
+        self.entries.push_back(entry);
         while self.entries.len() > MOST || (self.bytes > MOST_BYTES && self.entries.len() > 2) {
             let first = self.entries.pop_front();
             self.bytes -= first.map_or(0, |entry| entry.text.len());
         }
         self.now = self.entries.len() - 1;
-        true
     }
 
     /// Notes values that were set before the present text was added, and that it has.
     pub(super) fn note_written(&mut self, values: Settings) {
-        self.entries[self.now].written = values;
+        self.entries[self.now].change.written = values;
     }
 
     /// Returns whether there is a text before the present one.
@@ -84,17 +114,23 @@ impl History {
         self.now + 1 < self.entries.len()
     }
 
-    /// Goes back to the text before, if there is one; returns the values that were set beside it.
-    pub(super) fn undo(&mut self) -> Option<&Settings> {
-        let written = self.can_undo().then_some(self.now)?;
-        self.now -= 1;
-        Some(&self.entries[written].written)
+    /// Returns whether redo leads to another file.
+    pub(super) fn leads_to_another(&self) -> bool {
+        let mut later = self.entries.range(self.now + 1..);
+        later.any(|entry| entry.change.left.is_some())
     }
 
-    /// Goes forward to the text after, if there is one; returns the values that it has in place of those that are set.
-    pub(super) fn redo(&mut self) -> Option<&Settings> {
+    /// Goes back to the text before, if there is one; returns the change that is undone.
+    pub(super) fn undo(&mut self) -> Option<&mut Change> {
+        let undone = self.can_undo().then_some(self.now)?;
+        self.now -= 1;
+        Some(&mut self.entries[undone].change)
+    }
+
+    /// Goes forward to the text after, if there is one; returns the change that is done again.
+    pub(super) fn redo(&mut self) -> Option<&mut Change> {
         self.can_redo().then(|| self.now += 1)?;
-        Some(&self.entries[self.now].written)
+        Some(&mut self.entries[self.now].change)
     }
 }
 
@@ -140,9 +176,9 @@ mod tests {
         assert!(history.push("a: 2".into()));
         history.note_written(values.clone());
         assert!(history.push("a: 2 # two".into()));
-        assert_eq!(history.undo(), Some(&Settings::new()));
-        assert_eq!(history.undo(), Some(&values));
-        assert_eq!(history.redo(), Some(&values));
-        assert_eq!(history.redo(), Some(&Settings::new()));
+        assert_eq!(history.undo().unwrap().written, Settings::new());
+        assert_eq!(history.undo().unwrap().written, values);
+        assert_eq!(history.redo().unwrap().written, values);
+        assert_eq!(history.redo().unwrap().written, Settings::new());
     }
 }

@@ -45,6 +45,7 @@ mod jobs;
 mod library;
 mod look;
 mod numbers;
+mod origin;
 mod problems;
 mod server;
 mod session;

@@ -6,13 +6,15 @@ mod pictures;
 mod reports;
 mod underlay;
 
+use std::convert::Infallible;
 use std::io;
 use std::net::TcpListener;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use axum::extract::{DefaultBodyLimit, State};
+use axum::extract::{DefaultBodyLimit, FromRequestParts, State};
+use axum::http::request::Parts;
 use axum::http::{StatusCode, header};
 use axum::routing::{get, post, put};
 use axum::{Json, Router, middleware};
@@ -61,6 +63,20 @@ type Answer = Result<Json<Value>, Refusal>;
 #[serde(default)]
 struct Tab {
     tab: String,
+}
+
+/// File that a request is about: `file` of the state that the page shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen(pub(super) Option<u64>);
+
+impl<S: Sync> FromRequestParts<S> for Seen {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Infallible> {
+        let file = parts.headers.get("x-kfrac-file");
+        let file = file.and_then(|file| file.to_str().ok()?.parse().ok());
+        Ok(Self(file))
+    }
 }
 
 /// Runs work that may take its time on a thread of its own.

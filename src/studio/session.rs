@@ -1,25 +1,26 @@
 //! The session: what the page shows, and what a reload finds again.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::catalogue::{Catalogue, read_file};
+use crate::catalogue::Catalogue;
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::kind::Kind;
-use crate::output_file::OutputFile;
 
 use super::StudioOptions;
 use super::answer::Refusal;
 use super::design::{self, Act, Hand, Scene};
 use super::drawing::Wholes;
-use super::files::{Roots, is_rule};
+use super::files::Roots;
 use super::good::{Checked, Good, Reader};
-use super::history::{History, Settings};
+use super::history::{History, Left, Settings};
 use super::look::Look;
 use super::numbers::Numbers;
+use super::origin::{Origin, read_text};
 use super::problems::Problem;
+use super::server::Seen;
 use super::shots::Pace;
 use super::sight::Sight;
 use super::underlay::Underlay;
@@ -31,12 +32,8 @@ use super::view::View;
 pub(super) struct Session {
     pub(super) catalogue: Catalogue,
     pub(super) roots: Roots,
-    /// Name of the rule on the command line, and of its source in messages.
-    pub(super) name: String,
-    source_name: String,
-    /// File of the rule; `None` for a copy that is not saved.
-    path: Option<PathBuf>,
-    history: History,
+    pub(super) origin: Origin,
+    pub(super) history: History,
     /// Text while a hand drags, which is no entry of the history yet.
     draft: Option<Arc<str>>,
     /// State before a hand dragged.
@@ -44,10 +41,10 @@ pub(super) struct Session {
     pub(super) hand: Hand,
     /// Number of changes of the text.
     pub(super) revision: u64,
-    /// Text of the file when it was last read or written.
-    saved: Option<Arc<str>>,
+    /// Revision with which the present file was opened.
+    pub(super) file: u64,
     /// Text that another program has written while this one was not saved.
-    theirs: Option<Arc<str>>,
+    pub(super) theirs: Option<Arc<str>>,
     pub(super) look: Look,
     /// The last text without mistakes.
     good: Option<Good>,
@@ -59,7 +56,8 @@ pub(super) struct Session {
     pub(super) numbers: Option<(Key, Arc<Numbers>)>,
     pub(super) pace: Pace,
     pub(super) wholes: Arc<Wholes>,
-    pub(super) variants: Vec<Variant>,
+    /// Members near a revision of the text.
+    pub(super) variants: (u64, Vec<Variant>),
     /// Picture under the figures of the design.
     pub(super) underlay: Option<Underlay>,
 }
@@ -102,15 +100,18 @@ impl Session {
         let mut session = Self {
             catalogue,
             roots: Roots { start, library },
-            name: rule.to_string_lossy().into_owned(),
-            source_name: source.name().to_owned(),
-            saved: path.is_some().then(|| Arc::clone(&text)),
-            path,
+            origin: Origin {
+                name: rule.to_string_lossy().into_owned(),
+                source_name: source.name().to_owned(),
+                saved: path.is_some().then(|| Arc::clone(&text)),
+                path,
+            },
             history: History::new(Arc::clone(&text)),
             draft: None,
             kept: None,
             hand: Hand::default(),
             revision: 0,
+            file: 0,
             theirs: None,
             look,
             good: None,
@@ -120,7 +121,7 @@ impl Session {
             numbers: None,
             pace: Pace::default(),
             wholes: Arc::default(),
-            variants: Vec::new(),
+            variants: Default::default(),
             underlay: None,
         };
         let checked = session.reader().check(text);
@@ -132,11 +133,12 @@ impl Session {
     pub(super) fn reader(&self) -> Reader {
         Reader {
             catalogue: self.catalogue.clone(),
-            name: self.source_name.clone(),
+            name: self.origin.source_name.clone(),
         }
     }
 
-    fn take(&mut self, checked: Checked) {
+    /// Shows a text that has been read.
+    pub(super) fn take(&mut self, checked: Checked) {
         self.revision += 1;
         self.problems = checked.problems;
         if let Some(good) = checked.good {
@@ -245,11 +247,11 @@ impl Session {
     /// A text that another program has saved in the meantime is in conflict with it. Any other change is an error.
     pub(super) fn set_text(&mut self, checked: Checked, revision: u64) -> Result<(), Refusal> {
         if revision != self.revision {
-            if !self.is_saved() {
-                return Err(Refusal::conflict("the text has changed in the meantime"));
+            if revision < self.file || !self.is_saved() {
+                return Err(Refusal::changed());
             }
-            if self.saved.as_ref() != Some(&checked.text) {
-                self.theirs = self.saved.take();
+            if self.origin.saved.as_ref() != Some(&checked.text) {
+                self.theirs = self.origin.saved.take();
             }
         }
         self.drop_draft();
@@ -260,158 +262,87 @@ impl Session {
     }
 
     /// Goes back or forth in the history; returns whether there is such a text.
+    ///
+    /// A text of another file has that file, and its look.
     pub(super) fn travel(&mut self, is_back: bool) -> bool {
         self.drop_draft();
-        let set = &mut self.look.set;
-        if is_back {
-            let Some(values) = self.history.undo() else {
-                return false;
-            };
-            for (name, value) in values {
-                set.entry(name.clone()).or_insert_with(|| value.clone());
+        let change = match is_back {
+            true => self.history.undo(),
+            false => self.history.redo(),
+        };
+        let Some(change) = change else {
+            return false;
+        };
+        let is_other = change.left.is_some();
+        if let Some(left) = &mut change.left {
+            std::mem::swap(&mut left.origin, &mut self.origin);
+            std::mem::swap(&mut left.look, &mut self.look);
+        } else if is_back {
+            for (name, value) in &change.written {
+                let value = || value.clone();
+                self.look.set.entry(name.clone()).or_insert_with(value);
             }
         } else {
-            let Some(values) = self.history.redo() else {
-                return false;
-            };
-            set.retain(|name, _| !values.contains_key(name));
+            let is_set = |name: &String, _: &mut String| !change.written.contains_key(name);
+            self.look.set.retain(is_set);
         }
         let checked = self.reader().check(Arc::clone(self.history.text()));
+        if is_other {
+            self.forget_file();
+        }
         self.take(checked);
+        if is_other {
+            // Another program may have changed the file meanwhile.
+            self.reread();
+        }
         true
     }
 
     /// Opens a text as a copy that is not saved.
     pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
         self.drop_draft();
-        self.name = name.to_owned();
-        self.source_name = source.name().to_owned();
-        self.path = None;
-        self.saved = None;
-        self.theirs = None;
-        self.window = None;
-        self.sight = None;
-        self.look = Look::default();
-        self.good = None;
+        self.forget_file();
         let text: Arc<str> = source.text().into();
+        let origin = Origin {
+            name: name.to_owned(),
+            source_name: source.name().to_owned(),
+            path: None,
+            saved: None,
+        };
+        let left = Left {
+            origin: std::mem::replace(&mut self.origin, origin),
+            look: std::mem::take(&mut self.look),
+        };
         let checked = self.reader().check(Arc::clone(&text));
-        self.history.push(text);
+        self.history.open(text, left);
         self.take(checked);
     }
 
-    /// Returns the files whose changes matter.
-    pub(super) fn watched(&self) -> Vec<PathBuf> {
-        self.path.iter().cloned().collect()
-    }
-
-    /// Reads the file again, after another program may have changed it; returns whether the page has to know.
-    pub(super) fn reread(&mut self) -> bool {
-        let Some(theirs) = self.path.as_deref().and_then(|path| read_text(path).ok()) else {
-            return false;
-        };
-        if self.saved.as_ref() == Some(&theirs) {
-            return self.theirs.take().is_some();
-        }
-        self.drop_draft();
-        if self.is_saved() || theirs == *self.text() {
-            self.saved = Some(Arc::clone(&theirs));
-            self.theirs = None;
-            if self.history.push(Arc::clone(&theirs)) {
-                let checked = self.reader().check(theirs);
-                self.take(checked);
-            }
-            return true;
-        }
-        let is_new = self.theirs.as_ref() != Some(&theirs);
-        self.theirs = Some(theirs);
-        is_new
-    }
-
-    /// Settles a conflict: takes the text of the other program, or keeps the own one.
-    pub(super) fn settle(&mut self, takes_theirs: bool) {
-        let Some(theirs) = self.theirs.take() else {
-            return;
-        };
-        self.saved = Some(Arc::clone(&theirs));
-        if takes_theirs && self.history.push(Arc::clone(&theirs)) {
-            let checked = self.reader().check(theirs);
-            self.take(checked);
-        }
-    }
-
-    fn is_saved(&self) -> bool {
-        self.saved.as_deref() == Some(&**self.text())
-    }
-
-    /// Writes the text: to its own file, or to another one.
-    pub(super) fn save(&mut self, to: Option<&str>, replaces: bool) -> Result<PathBuf, Refusal> {
-        let own = self.path.clone();
-        let asked = to.map(PathBuf::from).or_else(|| own.clone());
-        let asked = asked.ok_or_else(|| Refusal::wrong("the copy has no file yet: give a name"))?;
-        if !is_rule(&asked) {
-            return Err(Refusal::wrong("a rule is saved as a .yaml, .yml or .json"));
-        }
-        // The own path is relative to the folder in which the program was started.
-        let full = match to {
-            None => std::path::absolute(&asked).unwrap_or(asked),
-            Some(_) => asked,
-        };
-        let path = self.roots.allowed(&full)?;
-        let is_own = own.is_some_and(|own| is_same(&own, &path));
-        if is_own && !replaces && path.exists() {
-            let Ok(on_disk) = read_text(&path) else {
-                return Err(Refusal::conflict(
-                    "another program has changed the file, which is no text of a rule now: save this one under another name",
-                ));
-            };
-            if self.saved.as_ref() != Some(&on_disk) {
-                self.theirs = Some(on_disk);
-                return Err(Refusal::conflict(
-                    "another program has changed the file: take its text, or save this one under another name",
-                ));
-            }
-        }
-        if !is_own && !replaces && path.exists() {
-            return Err(Refusal::conflict(format!("'{}' exists", path.display())));
-        }
-        write(&path, self.text())?;
-        self.saved = Some(Arc::clone(self.text()));
+    /// Forgets what depends on the file that is left. The next revision is the first one of another file.
+    fn forget_file(&mut self) {
+        self.file = self.revision + 1;
         self.theirs = None;
-        if !is_own {
-            self.name = self.relative(&path);
-            self.source_name = path.display().to_string();
-            self.path = Some(path.clone());
-            let checked = self.reader().check(Arc::clone(self.text()));
-            self.take(checked);
-        }
-        Ok(path)
+        self.window = None;
+        self.sight = None;
+        self.good = None;
     }
 
-    /// Saves a component of the rule in the library of the person, under a new name.
-    pub(super) fn save_component(&self, panel: &str, name: &str) -> Result<(), Refusal> {
-        let is_plain = |it: char| it.is_alphanumeric() || it == '-' || it == '_';
-        if name.is_empty() || !name.chars().all(is_plain) {
-            let message = "the name of a component consists of letters, digits, '-' and '_'";
-            return Err(Refusal::wrong(message));
+    /// Refuses a request about another file than the present one.
+    pub(super) fn check_file(&self, seen: Seen) -> Result<(), Refusal> {
+        match seen.0.is_none_or(|file| file == self.file) {
+            true => Ok(()),
+            false => Err(Refusal::changed()),
         }
-        let new = design::component(&self.reader(), self.good()?, &self.look, panel, name)?;
-        let path = self.roots.in_library(&format!("{name}.yaml"), new.shelf)?;
-        if path.exists() {
-            return Err(Refusal::conflict(format!("'{}' exists", path.display())));
-        }
-        write(&path, &new.text)
     }
 
-    /// Returns a path from the folder in which the program was started, where it leads there.
-    fn relative(&self, path: &Path) -> String {
-        let here = std::env::current_dir().and_then(|here| here.canonicalize());
-        let from_here = here
-            .ok()
-            .and_then(|here| path.strip_prefix(here).ok().map(PathBuf::from));
-        from_here
-            .unwrap_or_else(|| path.into())
-            .display()
-            .to_string()
+    /// Returns a member near the present text.
+    pub(super) fn variant(&self, number: usize) -> Result<&Variant, Refusal> {
+        let (revision, variants) = &self.variants;
+        if *revision != self.revision {
+            return Err(Refusal::changed());
+        }
+        let none = || Refusal::wrong("there is no such member");
+        variants.get(number).ok_or_else(none)
     }
 
     /// Returns the kind of the last good text.
@@ -443,8 +374,9 @@ impl Session {
         let good = self.good.as_ref();
         json!({
             "revision": self.revision,
-            "name": self.name,
-            "path": self.path,
+            "file": self.file,
+            "name": self.origin.name,
+            "path": self.origin.path,
             "start": self.roots.start,
             "library": self.roots.library,
             "isSaved": self.is_saved(),
@@ -469,32 +401,4 @@ impl Session {
             "underlay": self.underlay.as_ref().map(Underlay::state),
         })
     }
-}
-
-/// Reads a file as text, byte for byte.
-fn read_text(path: &Path) -> Result<Arc<str>, Diagnostic> {
-    // Its mistakes are those of reading any rule.
-    read_file(path)?;
-    let bytes =
-        std::fs::read(path).map_err(|error| crate::catalogue::cannot_be_read(path, &error))?;
-    let text = String::from_utf8(bytes);
-    Ok(text
-        .map_err(|_| Diagnostic::error(format!("'{}' is no text", path.display())))?
-        .into())
-}
-
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
-}
-
-/// Writes a file, all of it or nothing.
-fn write(path: &Path, text: &str) -> Result<(), Refusal> {
-    let mut file = OutputFile::create(path)?;
-    let written = std::io::Write::write_all(&mut file, text.as_bytes());
-    written.map_err(|error| Refusal::wrong(error.to_string()))?;
-    file.finish()?;
-    Ok(())
 }

@@ -129,7 +129,7 @@ impl Session {
         Ok(Shot {
             catalogue: self.catalogue.clone(),
             source: Arc::clone(source),
-            rule: self.name.clone(),
+            rule: self.origin.name.clone(),
             look: look.arguments(good.is_in_space),
             turn: look.turn(),
             view,

@@ -450,13 +450,22 @@ try {
   await changes(async () => {
     await browser.click("#new");
     await browser.until("document.querySelector('#ask').open");
-    await browser.value("(() => { document.querySelector('#ask select').value = 'ifs'; })()");
+    await browser.value("(() => { document.querySelector('#ask input[type=text]').value = 'coral'; document.querySelector('#ask select').value = 'ifs'; })()");
     await browser.click("#ask input[type=checkbox]");
     await browser.click("#ask-go");
     await browser.until("!document.querySelector('#ask').open");
   }, "a system of space is begun");
   const begun = await browser.value("[document.querySelector('#code').value, document.querySelector('#file').textContent, document.querySelector('#tab-design').getAttribute('aria-selected')]");
-  check(begun[0].includes("kind: ifs") && begun[0].includes("space: 3") && begun[1].startsWith("my-fractal") && begun[2] === "true", "it is a copy that is not saved, and is designed");
+  check(begun[0].includes("kind: ifs") && begun[0].includes("space: 3") && begun[1].startsWith("coral") && begun[2] === "true", "it is a copy that is not saved, and is designed");
+  const left = await browser.value("document.querySelector('#file').textContent");
+  await browser.click("#new");
+  await browser.until("document.querySelector('#ask').open");
+  await browser.value("(() => { document.querySelector('#ask select').value = 'lsystem'; })()");
+  await browser.click("#ask-go");
+  await browser.until("document.querySelector('#file').textContent.startsWith('my-fractal')");
+  check(await browser.value("document.querySelector('#tab-text').getAttribute('aria-selected') === 'true'"), "an L-system is begun as a text");
+  await changes(() => browser.click("#undo"), "undo leads back");
+  check((await browser.value("document.querySelector('#file').textContent")) === left, "undo leads back to the file that was left");
 
   // Design by hand: drag, grid, draw, keys, Escape, and a table.
   const MINE = "title: Mine # my own\ninitiator: segment\ngenerator:\n  - [0, 0]\n  - [1/2, 0.2] # apex\n  - [1, 0]\n";

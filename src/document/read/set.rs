@@ -295,7 +295,7 @@ impl FromNode for FractalFile {
             }
         }
         let kind = match node.get("kind").map(|kind| &kind.value) {
-            Some(Value::Text(name)) => Kind::ALL.into_iter().find(|kind| kind.name() == name)?,
+            Some(Value::Text(name)) => Kind::named(name)?,
             _ => Kind::Rule,
         };
         let mut inside = reader.inside();

@@ -29,6 +29,11 @@ impl Shape {
         &self.mesh.corners
     }
 
+    /// Returns the number of corners.
+    fn count(&self) -> u32 {
+        u32::try_from(self.mesh.corners.len()).unwrap_or(u32::MAX)
+    }
+
     /// Returns the number of faces.
     pub(super) fn faces(&self) -> usize {
         self.mesh.faces.len()
@@ -124,11 +129,11 @@ impl Encoder {
         &mut self,
         shape: &Shape,
         map: &DAffine3,
+        is_mirrored: bool,
         colour: impl Fn(usize) -> [u8; 3],
     ) -> bool {
         let Mesh { corners, faces } = &shape.mesh;
         let images = corners.iter().map(|corner| map.transform_point3(*corner));
-        let is_mirrored = map.matrix3.determinant() < 0.0;
         let mut is_finite = true;
         match self.pass {
             Pass::Triangles => {
@@ -149,15 +154,63 @@ impl Encoder {
                 }
             }
             Pass::Faces => {
-                for (number, face) in faces.iter().enumerate() {
-                    self.face(face, is_mirrored, colour(number));
-                }
+                self.faces(shape, is_mirrored, colour);
+                return true;
             }
         }
-        #[expect(clippy::cast_possible_truncation, reason = "a shape has few corners")]
-        let own = corners.len() as u32;
-        self.corners += own;
+        self.corners += shape.count();
         is_finite
+    }
+
+    /// Adds the faces of `count` elements of a shape and a colour.
+    pub(super) fn repeat(&mut self, shape: &Shape, is_mirrored: bool, colour: [u8; 3], count: u64) {
+        if self.format == MeshFormat::Obj {
+            for _ in 0..count {
+                self.faces(shape, is_mirrored, |_| colour);
+            }
+            return;
+        }
+        /// A one at the place of each number of a triangle.
+        const ONES: u128 = 1 << 8 | 1 << 40 | 1 << 72;
+        let start = self.bytes.len();
+        self.faces(shape, is_mirrored, |_| colour);
+        let first = { self.bytes[start..].as_chunks::<TRIANGLE>().0.iter() }.copied();
+        let mut triangles: Vec<u128> = first.map(u128::from_le_bytes).collect();
+        let further = ONES * u128::from(shape.count());
+        for _ in 1..count {
+            for triangle in &mut triangles {
+                *triangle += further;
+                self.bytes.extend_from_slice(&triangle.to_le_bytes());
+            }
+            self.corners += shape.count();
+        }
+    }
+
+    /// Adds the faces of a shape, which refer to the corners that follow.
+    fn faces(&mut self, shape: &Shape, is_mirrored: bool, colour: impl Fn(usize) -> [u8; 3]) {
+        for (number, face) in shape.mesh.faces.iter().enumerate() {
+            self.face(face, is_mirrored, colour(number));
+        }
+        self.corners += shape.count();
+    }
+
+    /// Writes the bytes once there are many, where the numbers of corners need no change.
+    pub(super) fn pass_on(&mut self, out: &mut impl Write) -> io::Result<()> {
+        const MANY_BYTES: usize = 1 << 16;
+        match self.bytes.len() < MANY_BYTES {
+            true => Ok(()),
+            false => self.write(0, out),
+        }
+    }
+
+    /// Writes the bytes, with faces that refer to corners behind `before` others.
+    pub(super) fn write(&mut self, before: u32, out: &mut impl Write) -> io::Result<()> {
+        if self.pass == Pass::Faces {
+            self.refer(before);
+        }
+        out.write_all(&self.bytes)?;
+        self.bytes.clear();
+        Ok(())
     }
 
     /// Adds a list of corners with its colour.
@@ -201,11 +254,7 @@ impl Encoder {
     /// Writes the bytes of a span, behind `before` corners of earlier ones, and starts another; returns the number
     /// of corners with those of the span.
     pub(super) fn give(&mut self, before: u32, out: &mut impl Write) -> io::Result<u32> {
-        if self.pass == Pass::Faces {
-            self.refer(before);
-        }
-        out.write_all(&self.bytes)?;
-        self.bytes.clear();
+        self.write(before, out)?;
         // STL, which has no corners apart, may have more than are counted here.
         Ok(before.wrapping_add(std::mem::take(&mut self.corners)))
     }
@@ -214,6 +263,9 @@ impl Encoder {
     fn refer(&mut self, before: u32) {
         let of = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
         if self.format != MeshFormat::Obj {
+            if before == 0 {
+                return;
+            }
             // All are triangles.
             for triangle in self.bytes.chunks_exact_mut(TRIANGLE) {
                 for index in triangle[1..TRIANGLE - 3].chunks_exact_mut(4) {

@@ -212,6 +212,7 @@ impl Visitor<Frame3> for Collector<'_> {
         let Some((shape, colour)) = self.walk.shape(element) else {
             return Ok(());
         };
+        let shape = &self.walk.shapes[shape];
         self.elements += 1;
         let map = element.frame.map();
         let is_mirrored = map.matrix3.determinant() < 0.0;

@@ -8,6 +8,7 @@ let held = null; // panel and window while a pointer is down
 let drawing = null; // panel and points of a polyline that is drawn
 let waiting = null; // the latest movement that is not sent yet
 let isSending = false;
+let file = null; // number of the file that is designed
 let components = null; // those of the library, once they are asked for
 
 const svg = (name, properties = {}, ...children) => {
@@ -84,6 +85,10 @@ async function settled() {
 /** Shows the design of a state. */
 export function show() {
   const all = scene();
+  if (file !== page.state().file) {
+    file = page.state().file;
+    chosen = held = drawing = waiting = null;
+  }
   $("design-why").textContent = all?.why ?? (all ? "" : "The text has mistakes: there is nothing to take hold of.");
   $("design-tools").hidden = !all || Boolean(all.why);
   $("design-figure").hidden = !all?.why;

@@ -19,7 +19,7 @@ let drawn = null; // numbers of the last picture
 async function call(method, path, body, kind = "application/json", signal) {
   const answer = await fetch(path, {
     method,
-    headers: { "x-kfrac-key": key, ...(body === undefined ? {} : { "content-type": kind }) },
+    headers: { "x-kfrac-key": key, "x-kfrac-file": state.file ?? "", ...(body === undefined ? {} : { "content-type": kind }) },
     body: body === undefined || typeof body === "string" || body instanceof Blob ? body : JSON.stringify(body),
     signal,
   });
@@ -399,7 +399,7 @@ $("vary").onclick = async () => {
   try {
     choose("Members near this one", await next(), async (item) => {
       if (item.isNow) return;
-      take(await json("POST", "/take", { tab, variant: item.at }));
+      await json("POST", "/take", { tab, variant: item.at }).then(take, (error) => say(error.message));
     }, { label: "Others", next });
   } catch (error) {
     say(error.message);
@@ -681,7 +681,7 @@ function hex(text) {
 
 const code = $("code");
 let typing = 0;
-let base = null; // the text that is typed upon, with its revision
+let upon = null; // the text that is typed upon, with its revision
 const toPage = (text) => text.replace(/\r\n?/g, "\n");
 /** Returns a position of the page's text for one of the file's. */
 const inPage = (at) => at - (state.text.slice(0, at).match(/\r\n/g) ?? []).length;
@@ -742,15 +742,20 @@ function goToPlace({ range }) {
 code.onscroll = () => ([$("marks").scrollTop, $("marks").scrollLeft] = [code.scrollTop, code.scrollLeft]);
 code.oninput = (event) => {
   clearTimeout(typing);
-  base ??= state;
+  upon ??= state;
   typing = setTimeout(sendText, 220);
   mark();
   if (event.inputType === "insertText") suggest();
   else hideWords();
 };
+/** Sends what is typed, before anything else happens to the text. */
+async function flush() {
+  clearTimeout(typing);
+  await sendText();
+}
 async function sendText() {
-  const on = base;
-  [typing, base] = [0, null];
+  const on = upon;
+  [typing, upon] = [0, null];
   if (!on) return;
   const text = toFile(code.value, on.text);
   if (text === state.text) return;
@@ -761,7 +766,7 @@ async function sendText() {
     await refresh();
   }
   // More may have been typed in the meantime.
-  if (base) base = state;
+  if (upon) upon = state;
 }
 let suggested = [];
 async function suggest() {
@@ -855,25 +860,32 @@ function list() {
   if (!found.length) $("entries").append(make("li", { className: "quiet" }, "Nothing has this in its name, title or tags."));
 }
 async function openEntry(id) {
-  const open = async () => opened(await json("POST", "/open", { tab, id }));
+  const open = async () => {
+    await flush();
+    opened(await json("POST", "/open", { tab, id }));
+  };
   if (state.isSaved || !state.canUndo) return open().catch((error) => say(error.message));
   ask("Open a copy", [make("p", {}, "The text is not saved. Undo brings it back.")], { go: "Open", act: open });
 }
 /** Begins a file as `kfrac new` does. */
-function begin() {
+function beginFile() {
+  const name = make("input", { type: "text", value: "my-fractal", required: true });
   const kind = make("select", {}, ...choices.kinds.map((it) => make("option", { value: it.name }, it.about.replace(/^an? /, ""))));
   const space = tick();
   const isKept = state.isSaved || !state.canUndo;
   ask("New", [
+    make("label", {}, "Name", name),
     make("label", {}, "Kind", kind),
     make("label", {}, space, " In space"),
     isKept ? null : make("p", {}, "The text is not saved. Undo brings it back."),
   ].filter(Boolean), { go: "Begin", act: async () => {
-    opened(await json("POST", "/new", { tab, kind: kind.value, space: space.checked }));
-    openTab($("tab-design"));
+    await flush();
+    opened(await json("POST", "/new", { tab, name: name.value, kind: kind.value, space: space.checked }));
+    // The design of an L-system is its text.
+    openTab($(kind.value === "lsystem" ? "tab-text" : "tab-design"));
   } });
+  name.select();
 }
-$("new").onclick = begin;
 $("search").oninput = list;
 $("shelf").onchange = list;
 
@@ -898,9 +910,11 @@ function ask(heading, body, { go = "", act = null } = {}) {
   };
   if (!dialog.open) dialog.showModal();
 }
-const stem = () => state.name.split(/[\\/]/).at(-1).replace(/\.(ya?ml|json)$/, "");
+const isFile = /\.(ya?ml|json)$/;
+const base = () => state.name.split(/[\\/]/).at(-1);
+const stem = () => base().replace(isFile, "");
 function saveAs() {
-  const name = make("input", { type: "text", value: `${stem()}.yaml`, required: true });
+  const name = make("input", { type: "text", value: isFile.test(state.name) ? base() : `${base()}.yaml`, required: true });
   const inLibrary = tick();
   const replace = tick();
   ask("Save as", [
@@ -908,7 +922,7 @@ function saveAs() {
     state.library ? make("label", {}, inLibrary, ` In my library, ${state.library}`) : null,
     make("label", {}, replace, " Replace a file of this name"),
   ].filter(Boolean), { go: "Save", act: async () => {
-    await sendText();
+    await flush();
     take(await json("POST", "/save", { tab, path: name.value.trim(), library: inLibrary.checked, replace: replace.checked }));
     entries = null;
   } });
@@ -916,7 +930,7 @@ function saveAs() {
 async function save() {
   if (!state.path) return saveAs();
   try {
-    await sendText();
+    await flush();
     take(await json("POST", "/save", { tab }));
     say("");
     $("status").textContent = `Saved ${state.path}`;
@@ -980,10 +994,7 @@ document.querySelectorAll("[data-settle]").forEach((button) => (button.onclick =
 // Undo, tabs and keys.
 
 async function travel(path) {
-  if (typing) {
-    clearTimeout(typing);
-    await sendText();
-  }
+  await flush();
   take(await json("POST", path, { tab }));
 }
 $("undo").onclick = () => travel("/undo");
@@ -1039,11 +1050,12 @@ tabs.forEach((button, at) => {
 document.addEventListener("keydown", (event) => {
   const command = event.ctrlKey || event.metaKey;
   const name = event.key.toLowerCase();
-  if (command && name === "s") save();
+  if ($("ask").open && !(command && name === "s")) return;
+  if (command && name === "s") $("ask").open || save();
   else if (command && name === "z") travel(event.shiftKey ? "/redo" : "/undo");
   else if (command && name === "y") travel("/redo");
   else {
-    if (command || event.altKey || $("ask").open || event.target.matches("input, textarea, select")) return;
+    if (command || event.altKey || event.target.matches("input, textarea, select")) return;
     const act = { "[": () => $("back").click(), "]": () => $("forward").click(), "+": () => $("zoom-in").click(), "=": () => $("zoom-in").click(), "-": () => $("zoom-out").click(), 0: whole, r: () => $("seeds").hidden || another(), "?": () => $("help").click() }[name];
     if (!act) return;
     act();
@@ -1053,10 +1065,17 @@ document.addEventListener("keydown", (event) => {
 
 // State.
 
+/** Forgets what was begun in the file that has been left. */
+function leave() {
+  clearTimeout(typing);
+  [typing, upon] = [0, null];
+  [pending, asked, isStale] = [still(), null, false];
+}
 /** Takes the state of the server. */
 function take(next) {
   const before = state;
   state = next;
+  if (before.file !== state.file) leave();
   const isNew = before.revision !== state.revision;
   document.title = `${title()} – kfrac studio`;
   $("title").textContent = title();
@@ -1138,6 +1157,7 @@ film.start({ tab, json, make, say, values, changed, state: () => state, look: ()
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
   underlay.start({ tab, call, json, take, say, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
+  $("new").onclick = beginFile;
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;
   state = {};

@@ -1,5 +1,7 @@
 //! Changes of the text and of its file.
 
+use std::path::Path;
+
 use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Query, State};
@@ -12,8 +14,9 @@ use crate::diagnostic::Source;
 use crate::kind::Kind;
 
 use super::super::answer::Refusal;
+use super::super::files::is_rule;
 use super::super::{library, vary};
-use super::{Answer, Shared, Tab, apart};
+use super::{Answer, Seen, Shared, Tab, apart};
 
 #[derive(Deserialize)]
 pub(super) struct TextQuery {
@@ -62,9 +65,11 @@ pub(super) struct Settle {
 
 pub(super) async fn settle(
     State(app): Shared,
+    seen: Seen,
     Json(Settle { tab, theirs }): Json<Settle>,
 ) -> Answer {
     app.change(tab, move |session| {
+        session.check_file(seen)?;
         session.settle(theirs);
         Ok(())
     })
@@ -85,13 +90,15 @@ pub(super) async fn vary_all(State(app): Shared, Json(Vary { seed }): Json<Vary>
     let seeds = (0..AROUND).map(|number| u64::from(seed) * AROUND + number);
     let set = session.look.set.clone();
     let all = seeds.filter_map(|seed| vary::variant(&good.source, &good.parameters, &set, seed));
-    session.variants = all.collect();
-    if session.variants.is_empty() {
+    let variants: Vec<_> = all.collect();
+    if variants.is_empty() {
         return Err(Refusal::wrong(
             "there is no number to vary: only whole ones",
         ));
     }
-    Ok(Json(json!({ "variants": session.variants })))
+    let answer = json!({ "variants": variants });
+    session.variants = (session.revision, variants);
+    Ok(Json(answer))
 }
 
 #[derive(Deserialize)]
@@ -101,11 +108,14 @@ pub(super) struct Take {
     variant: usize,
 }
 
-pub(super) async fn take(State(app): Shared, Json(Take { tab, variant }): Json<Take>) -> Answer {
+pub(super) async fn take(
+    State(app): Shared,
+    seen: Seen,
+    Json(Take { tab, variant }): Json<Take>,
+) -> Answer {
     app.change(tab, move |session| {
-        let Some(variant) = session.variants.get(variant).cloned() else {
-            return Err(Refusal::wrong("there is no such member"));
-        };
+        session.check_file(seen)?;
+        let variant = session.variant(variant)?.clone();
         session.look.set = variant.set;
         let checked = session.reader().check(variant.text);
         let revision = session.revision;
@@ -123,10 +133,16 @@ pub(super) struct Written {
 }
 
 /// Writes the value of a parameter that is set into the text.
-pub(super) async fn write_value(State(app): Shared, Json(asked): Json<Written>) -> Answer {
-    let Written { tab, name } = asked;
-    app.change(tab, move |session| session.write_value(&name))
-        .await
+pub(super) async fn write_value(
+    State(app): Shared,
+    seen: Seen,
+    Json(Written { tab, name }): Json<Written>,
+) -> Answer {
+    app.change(tab, move |session| {
+        session.check_file(seen)?;
+        session.write_value(&name)
+    })
+    .await
 }
 
 #[derive(Deserialize)]
@@ -152,21 +168,43 @@ pub(super) async fn open(State(app): Shared, Json(Open { tab, id }): Json<Open>)
 pub(super) struct Begin {
     #[serde(default)]
     tab: String,
+    /// Name of the file, with or without its extension.
+    name: String,
     kind: String,
-    /// Whether it lies in space.
+    /// Whether the fractal lies in space.
     #[serde(default)]
     space: bool,
 }
 
+/// Returns the name of a file with its extension, and without it.
+fn named(name: &str) -> Result<(String, String), Refusal> {
+    const LONGEST: usize = 200;
+    let name = name.trim();
+    let is_odd = |it: char| it.is_control() || matches!(it, '/' | '\\');
+    if name.is_empty()
+        || name.len() > LONGEST
+        || name.starts_with(['.', '-'])
+        || name.contains(is_odd)
+    {
+        return Err(Refusal::wrong(format!(
+            "a file has a name of up to {LONGEST} bytes, without a folder, which does not begin with '.' or '-'"
+        )));
+    }
+    let (name, extension) = match name.rsplit_once('.') {
+        Some((stem, extension)) if is_rule(Path::new(name)) => (stem, extension),
+        _ => (name, "yaml"),
+    };
+    Ok((format!("{name}.{extension}"), name.to_owned()))
+}
+
 /// Opens the file that `kfrac new` writes as a copy that is not saved.
 pub(super) async fn begin(State(app): Shared, Json(asked): Json<Begin>) -> Answer {
-    const NAME: &str = "my-fractal";
-    let named = Kind::ALL.into_iter().find(|it| it.name() == asked.kind);
-    let kind = named.ok_or_else(|| Refusal::wrong("there is no such kind of fractal"))?;
-    let file = format!("{NAME}.yaml");
-    let text = new::content(kind, asked.space, &file, NAME);
+    let kind = Kind::named(&asked.kind)
+        .ok_or_else(|| Refusal::wrong("there is no such kind of fractal"))?;
+    let (file, stem) = named(&asked.name)?;
+    let text = new::content(kind, asked.space, &file, &stem);
     app.change(asked.tab, move |session| {
-        session.copy(NAME, &Source::new(file, text));
+        session.copy(&file, &Source::new(file.clone(), text));
         Ok(())
     })
     .await
@@ -184,7 +222,7 @@ pub(super) struct Save {
     library: bool,
 }
 
-pub(super) async fn save(State(app): Shared, Json(asked): Json<Save>) -> Answer {
+pub(super) async fn save(State(app): Shared, seen: Seen, Json(asked): Json<Save>) -> Answer {
     let Save {
         tab,
         path,
@@ -192,6 +230,7 @@ pub(super) async fn save(State(app): Shared, Json(asked): Json<Save>) -> Answer 
         library,
     } = asked;
     app.change(tab, move |session| {
+        session.check_file(seen)?;
         let path = match (library, path) {
             (false, path) => path,
             (true, Some(name)) => {
@@ -216,8 +255,14 @@ pub(super) struct SaveComponent {
     name: String,
 }
 
-pub(super) async fn component(State(app): Shared, Json(asked): Json<SaveComponent>) -> Answer {
-    let SaveComponent { tab, panel, name } = asked;
-    app.change(tab, move |session| session.save_component(&panel, &name))
-        .await
+pub(super) async fn component(
+    State(app): Shared,
+    seen: Seen,
+    Json(SaveComponent { tab, panel, name }): Json<SaveComponent>,
+) -> Answer {
+    app.change(tab, move |session| {
+        session.check_file(seen)?;
+        session.save_component(&panel, &name)
+    })
+    .await
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::super::answer::Refusal;
 use super::super::design::{self, Act, Pointer};
-use super::{Answer, Shared};
+use super::{Answer, Seen, Shared};
 
 /// An event of a pointer, from a tab.
 #[derive(Deserialize)]
@@ -19,10 +19,11 @@ pub(super) struct Event {
     revision: Option<u64>,
 }
 
-pub(super) async fn pointer(State(app): Shared, Json(event): Json<Event>) -> Answer {
+pub(super) async fn pointer(State(app): Shared, seen: Seen, Json(event): Json<Event>) -> Answer {
     let at = std::sync::Arc::new(std::sync::Mutex::new(None));
     let own = std::sync::Arc::clone(&at);
     let answer = app.change(event.tab, move |session| {
+        session.check_file(seen)?;
         check(session.revision, event.revision)?;
         let place = design::pointer(session, &event.pointer)?;
         *own.lock()
@@ -43,7 +44,7 @@ pub(super) async fn pointer(State(app): Shared, Json(event): Json<Event>) -> Ans
 fn check(now: u64, asked: Option<u64>) -> Result<(), Refusal> {
     match asked.is_none_or(|asked| asked == now) {
         true => Ok(()),
-        false => Err(Refusal::conflict("the text has changed in the meantime")),
+        false => Err(Refusal::changed()),
     }
 }
 
@@ -73,8 +74,9 @@ pub(super) struct Gesture {
     revision: Option<u64>,
 }
 
-pub(super) async fn act(State(app): Shared, Json(asked): Json<Gesture>) -> Answer {
+pub(super) async fn act(State(app): Shared, seen: Seen, Json(asked): Json<Gesture>) -> Answer {
     app.change(asked.tab, move |session| {
+        session.check_file(seen)?;
         check(session.revision, asked.revision)?;
         session.act(&asked.gesture)
     })

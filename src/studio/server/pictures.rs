@@ -22,7 +22,7 @@ use super::super::look::Look;
 use super::super::shots::Quality;
 use super::super::sight::Sight;
 use super::super::view::Gesture;
-use super::{Answer, Shared, Tab};
+use super::{Answer, Seen, Shared, Tab};
 
 /// Request for a picture.
 #[derive(Deserialize)]
@@ -64,11 +64,13 @@ impl Picture {
 /// Draws the picture of the session, with a look that it keeps.
 pub(super) async fn picture(
     State(app): Shared,
+    seen: Seen,
     Json(asked): Json<Picture>,
 ) -> Result<Response, Refusal> {
     let size = asked.size()?;
-    let (shot, look) = {
+    let (shot, look, file) = {
         let mut session = app.session();
+        session.check_file(seen).map_err(|_| Refusal::replaced())?;
         let before = session.look.clone();
         if let Some(look) = asked.look.clone() {
             look.check()?;
@@ -88,7 +90,11 @@ pub(super) async fn picture(
         if look != before {
             app.announce(&asked.tab);
         }
-        (session.shot(&look, size, asked.quality())?, look)
+        (
+            session.shot(&look, size, asked.quality())?,
+            look,
+            session.file,
+        )
     };
     let encoding = match asked.draft {
         true => PngEncoding::raw(),
@@ -99,7 +105,7 @@ pub(super) async fn picture(
     if asked.draft {
         session.note_draft(&drawn);
     }
-    if session.look == look {
+    if session.look == look && session.file == file {
         session.window = drawn.window;
         session.sight = { drawn.sight.as_ref() }.map(|drawn| Sight::of(drawn, &look));
     }
@@ -124,9 +130,7 @@ pub(super) async fn preview(
         match asked.variant {
             None => session.shot(&look, size, Quality::Draft)?,
             Some(number) => {
-                let Some(variant) = session.variants.get(number) else {
-                    return Err(Refusal::wrong("there is no such member"));
-                };
+                let variant = session.variant(number)?;
                 look.set.clone_from(&variant.set);
                 let source = session.reader().source(&variant.text);
                 session.shot_of(session.good()?, &source, &look, size, Quality::Draft)?

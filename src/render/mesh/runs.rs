@@ -1,0 +1,91 @@
+//! Elements that follow each other and have equal faces, of which a mesh is written without a further walk.
+
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::grow::WalkError;
+
+use super::encode::{Encoder, Shape};
+
+/// Largest number of runs that are kept, of 32 bytes each.
+const MAX_RUNS: usize = 1 << 16;
+
+/// Number of faces that are encoded at once, unless an element has more.
+const MANY: u64 = 1 << 12;
+
+/// Faces of an element, up to the numbers of their corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Faces {
+    /// Index of the shape.
+    pub(super) shape: usize,
+    pub(super) is_mirrored: bool,
+    pub(super) colour: [u8; 3],
+}
+
+/// Elements in order of traversal, as runs of equal faces.
+#[derive(Debug)]
+pub(super) struct Runs {
+    /// Faces, and the number of elements that have them; `None` if they are not kept.
+    kept: Option<Vec<(Faces, u64)>>,
+}
+
+impl Runs {
+    /// Returns no elements; elements that are added are kept if `are_kept`.
+    pub(super) fn new(are_kept: bool) -> Self {
+        Self {
+            kept: are_kept.then(Vec::new),
+        }
+    }
+
+    /// Adds `count` elements.
+    pub(super) fn add(&mut self, faces: Faces, count: u64) {
+        let Some(kept) = &mut self.kept else {
+            return;
+        };
+        match kept.last_mut() {
+            Some((last, number)) if *last == faces => *number += count,
+            _ if kept.len() < MAX_RUNS => kept.push((faces, count)),
+            _ => self.kept = None,
+        }
+    }
+
+    /// Moves the elements of a span behind those of the spans before.
+    pub(super) fn append(&mut self, span: &mut Self) {
+        match &mut span.kept {
+            Some(all) => all
+                .drain(..)
+                .for_each(|(faces, count)| self.add(faces, count)),
+            None => self.kept = None,
+        }
+    }
+
+    /// Returns whether all elements are kept.
+    pub(super) fn are_kept(&self) -> bool {
+        self.kept.is_some()
+    }
+
+    /// Writes the faces of all elements.
+    pub(super) fn write(
+        &self,
+        shapes: &[Shape],
+        mut encoder: Encoder,
+        cancel: Option<&AtomicBool>,
+        out: &mut impl Write,
+    ) -> Result<(), WalkError<io::Error>> {
+        for &(faces, count) in self.kept.iter().flatten() {
+            let shape = &shapes[faces.shape];
+            let most = (MANY / (shape.faces() as u64).max(1)).max(1);
+            let mut left = count;
+            while left > 0 {
+                if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                    return Err(WalkError::Cancelled);
+                }
+                let many = left.min(most);
+                encoder.repeat(shape, faces.is_mirrored, faces.colour, many);
+                encoder.pass_on(out).map_err(WalkError::Visitor)?;
+                left -= many;
+            }
+        }
+        encoder.write(0, out).map_err(WalkError::Visitor)
+    }
+}
