@@ -276,6 +276,10 @@ struct Collector<'a> {
 impl Visitor<Frame3> for Collector<'_> {
     type Error = io::Error;
 
+    fn takes_runs(&self) -> bool {
+        true
+    }
+
     fn element(&mut self, element: &Element<Frame3>) -> io::Result<()> {
         if let Some((number, own)) = self.walk.shape(element) {
             let shape = &self.walk.shapes[number];

@@ -10,6 +10,7 @@
 //! | module | content |
 //! |---|---|
 //! | `session`, `good` | text, last valid model, look, revision |
+//! | `origin` | file of the text, and changes of it by other programs |
 //! | `history` | texts that undo and redo bring back, byte for byte |
 //! | `look` | steps, seed, parameters, style and view, as arguments of `grow` |
 //! | `view`, `sight` | pan and zoom: in long decimals in the plane, and in space |

@@ -31,8 +31,16 @@ impl Session {
         self.origin.path.iter().cloned().collect()
     }
 
-    /// Reads the file again, after another program may have changed it; returns whether the page has to know.
+    /// Reads the file again, after another program has changed it; returns whether the page has to know.
     pub(super) fn reread(&mut self) -> bool {
+        // A text that is taken unasked ends what redo leads to, which must not be another file.
+        let takes = !self.history.leads_to_another();
+        self.compare(takes)
+    }
+
+    /// Compares the file with the text: in place of one that is saved, `takes` the text of another program, which is in
+    /// conflict otherwise. Returns whether the page has to know.
+    pub(super) fn compare(&mut self, takes: bool) -> bool {
         let Some(theirs) = self
             .origin
             .path
@@ -45,8 +53,7 @@ impl Session {
             return self.theirs.take().is_some();
         }
         self.drop_draft();
-        // A text that is taken unasked ends what redo leads to, which must not be another file.
-        if theirs == *self.text() || self.is_saved() && !self.history.leads_to_another() {
+        if theirs == *self.text() || takes && self.is_saved() {
             self.origin.saved = Some(Arc::clone(&theirs));
             self.theirs = None;
             if self.history.push(Arc::clone(&theirs)) {

@@ -266,18 +266,33 @@ impl Session {
     /// A text of another file has that file, and its look.
     pub(super) fn travel(&mut self, is_back: bool) -> bool {
         self.drop_draft();
+        let Some(is_other) = self.step(is_back) else {
+            return false;
+        };
+        let checked = self.reader().check(Arc::clone(self.history.text()));
+        if is_other {
+            self.forget_file();
+        }
+        self.take(checked);
+        if is_other {
+            // Another program may have changed the file meanwhile. The text is that of the history in any case.
+            self.compare(false);
+        }
+        true
+    }
+
+    /// Goes back or forth by a text that is not read yet; returns whether it is one of another file, if there is a text.
+    fn step(&mut self, is_back: bool) -> Option<bool> {
         let change = match is_back {
             true => self.history.undo(),
             false => self.history.redo(),
-        };
-        let Some(change) = change else {
-            return false;
-        };
-        let is_other = change.left.is_some();
+        }?;
         if let Some(left) = &mut change.left {
             std::mem::swap(&mut left.origin, &mut self.origin);
             std::mem::swap(&mut left.look, &mut self.look);
-        } else if is_back {
+            return Some(true);
+        }
+        if is_back {
             for (name, value) in &change.written {
                 let value = || value.clone();
                 self.look.set.entry(name.clone()).or_insert_with(value);
@@ -286,21 +301,16 @@ impl Session {
             let is_set = |name: &String, _: &mut String| !change.written.contains_key(name);
             self.look.set.retain(is_set);
         }
-        let checked = self.reader().check(Arc::clone(self.history.text()));
-        if is_other {
-            self.forget_file();
-        }
-        self.take(checked);
-        if is_other {
-            // Another program may have changed the file meanwhile.
-            self.reread();
-        }
-        true
+        Some(false)
     }
 
     /// Opens a text as a copy that is not saved.
     pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
         self.drop_draft();
+        // A copy that a fit opens, unasked, must not end the texts of a file to which redo leads.
+        while self.history.leads_to_another() {
+            self.step(false);
+        }
         self.forget_file();
         let text: Arc<str> = source.text().into();
         let origin = Origin {

@@ -467,6 +467,23 @@ try {
   await changes(() => browser.click("#undo"), "undo leads back");
   check((await browser.value("document.querySelector('#file').textContent")) === left, "undo leads back to the file that was left");
 
+  // Two letters that are typed just before undo and redo; a dialog about a file that is left meanwhile.
+  const whole = await browser.value("(() => { const code = document.querySelector('#code'); const add = () => { code.value += '#'; code.dispatchEvent(new InputEvent('input')); }; add(); setTimeout(add, 225); setTimeout(() => document.querySelector('#undo').click(), 226); return code.value; })()");
+  const reads = (text) => browser.until(`document.querySelector('#code').value === ${JSON.stringify(text)} && !document.querySelector('#redo').disabled`);
+  await reads(whole);
+  await browser.click("#redo");
+  await browser.until(`document.querySelector('#code').value === ${JSON.stringify(whole + "#")}`);
+  check(true, "what is typed is sent in its order, and is in the history");
+  await browser.click("#save-as");
+  await browser.until("document.querySelector('#ask').open");
+  check((await browser.value("document.querySelector('#ask input[type=text]').value")) === "coral.yaml", "the file is saved under the name that it was given");
+  for (let step = 0; step < 9 && (await browser.value("document.querySelector('#file').textContent")) === left; step += 1) {
+    const before = await value("#code");
+    await browser.value("document.querySelector('#undo').click()");
+    await browser.until(`document.querySelector('#code').value !== ${JSON.stringify(before)}`);
+  }
+  check((await browser.value("document.querySelector('#ask').open")) === false, "a dialog about a file is closed with the file");
+
   // Design by hand: drag, grid, draw, keys, Escape, and a table.
   const MINE = "title: Mine # my own\ninitiator: segment\ngenerator:\n  - [0, 0]\n  - [1/2, 0.2] # apex\n  - [1, 0]\n";
   writeFileSync(join(folder, "mine.yaml"), MINE);

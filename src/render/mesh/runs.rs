@@ -42,10 +42,14 @@ impl Runs {
         let Some(kept) = &mut self.kept else {
             return;
         };
-        match kept.last_mut() {
-            Some((last, number)) if *last == faces => *number += count,
-            _ if kept.len() < MAX_RUNS => kept.push((faces, count)),
-            _ => self.kept = None,
+        if let Some((last, number)) = kept.last_mut()
+            && *last == faces
+        {
+            *number += count;
+        } else if kept.len() < MAX_RUNS {
+            kept.push((faces, count));
+        } else {
+            self.kept = None;
         }
     }
 

@@ -85,7 +85,7 @@ impl Shell {
         for &pass in Pass::of(format) {
             let mut encoder = Encoder::new(format, pass);
             let colour = |face: usize| colours.get(face).copied().unwrap_or_default();
-            if !encoder.add(&shape, &DAffine3::IDENTITY, colour) {
+            if !encoder.add(&shape, &DAffine3::IDENTITY, false, colour) {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND).into());
             }
             encoder.give(0, out)?;

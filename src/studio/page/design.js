@@ -2,13 +2,14 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const $ = (id) => document.getElementById(id);
-let page = null; // what the rest of the page lends: tab, call, json, make, state, take, ask, stepNow, images, forget
+let page = null; // what the rest of the page lends: tab, call, json, make, state, take, ask, refresh, stepNow, images, forget
 let chosen = null; // panel, what, index
 let held = null; // panel and window while a pointer is down
 let drawing = null; // panel and points of a polyline that is drawn
 let waiting = null; // the latest movement that is not sent yet
 let isSending = false;
 let file = null; // number of the file that is designed
+let isOld = false; // whether fields are those of the file before
 let components = null; // those of the library, once they are asked for
 
 const svg = (name, properties = {}, ...children) => {
@@ -35,7 +36,7 @@ async function act(gesture) {
     say("");
     return true;
   } catch (error) {
-    say(error.message);
+    await failed(error);
     return false;
   }
 }
@@ -46,6 +47,11 @@ async function view(view) {
   } catch (error) {
     say(error.message);
   }
+}
+/** Shows why a gesture failed; one upon a text that has changed meanwhile shows that text. */
+async function failed(error) {
+  if (error.status === 409) await page.refresh().catch(() => {});
+  say(error.message);
 }
 const say = (text) => ($("design-badge").textContent = text);
 
@@ -60,7 +66,7 @@ async function send(pointer) {
     say(next.hand.badge ?? "");
     return next;
   } catch (error) {
-    say(error.message);
+    await failed(error);
     return null;
   }
 }
@@ -87,6 +93,7 @@ export function show() {
   const all = scene();
   if (file !== page.state().file) {
     file = page.state().file;
+    isOld = true;
     chosen = held = drawing = waiting = null;
   }
   $("design-why").textContent = all?.why ?? (all ? "" : "The text has mistakes: there is nothing to take hold of.");
@@ -107,7 +114,8 @@ export function show() {
   });
   if (blocks.length !== box.children.length || blocks.some((it, at) => box.children[at] !== it)) box.replaceChildren(...blocks);
   const isBusy = $("design").contains(document.activeElement) && document.activeElement.matches("input, select") && document.activeElement.closest("#design-chosen, #design-table, #design-select");
-  if (!isBusy) {
+  if (!isBusy || isOld) {
+    isOld = false;
     chosenBox();
     table();
     selection();
@@ -443,6 +451,7 @@ function begin(id) {
 async function place(at) {
   await settled();
   const mine = drawing;
+  if (!mine) return;
   const next = await send({ ...at, phase: "hover", drawn: mine.points });
   if (!next?.place || drawing !== mine) return;
   mine.points.push(next.place.text);
@@ -451,6 +460,7 @@ async function place(at) {
   show();
 }
 async function finish() {
+  if (!drawing) return;
   const { panel, points } = drawing;
   drawing = null;
   await settled();

@@ -102,7 +102,7 @@ async function play() {
     page.say(error.message);
   }
 }
-function stop() {
+export function stop() {
   cancelAnimationFrame(playing);
   playing = 0;
   $("film-play").textContent = "Play";

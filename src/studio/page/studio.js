@@ -90,6 +90,8 @@ function draw(draft = false) {
   else request(draft);
 }
 
+/** Returns the error of work upon a file that has been left. */
+const left = () => Object.assign(new Error("Another file is shown now."), { status: 410 });
 /** Returns the image of an answer; a draft has no encoding. */
 async function image(answer, draft, [width, height]) {
   if (!draft) return createImageBitmap(await answer.blob());
@@ -113,10 +115,12 @@ async function request(draft) {
   if (moves(sent)) wanted.gesture = { by: sent.by, about: [0, 0], shift: sent.t };
   isStale = false;
   const start = performance.now();
+  const { file } = state;
   try {
     const answer = await call("POST", "/picture", wanted);
     const found = JSON.parse(answer.headers.get("x-kfrac-picture"));
     const next = await image(answer, draft, size);
+    if (state.file !== file) throw left();
     bitmap?.close?.();
     [bitmap, bitmapSize, shown] = [next, size, pending];
     if (draft) slow = performance.now() - start > (slow ? 6 : 12);
@@ -133,9 +137,9 @@ async function request(draft) {
     window.dispatchEvent(new CustomEvent("picture", { detail: performance.now() - start }));
     if (!draft) tell();
   } catch (error) {
-    if (error.status !== 410) say(error.message, error.status === 422);
+    if (error.status !== 410 && error.status !== 409) say(error.message, error.status === 422);
     shown = pending;
-    if (moves(sent)) await refresh();
+    if (moves(sent) || error.status === 409) await refresh().catch(() => {});
     paint();
   }
   isBusy = false;
@@ -748,25 +752,33 @@ code.oninput = (event) => {
   if (event.inputType === "insertText") suggest();
   else hideWords();
 };
+let sending = Promise.resolve();
+/** Sends what is typed, once what was typed before has been sent; returns why it is refused, if it is. */
+const sendText = () => (sending = sending.then(sendNow));
 /** Sends what is typed, before anything else happens to the text. */
 async function flush() {
-  clearTimeout(typing);
-  await sendText();
+  const { file } = state;
+  const refused = await sendText();
+  if (refused) throw refused;
+  if (state.file !== file) throw left();
 }
-async function sendText() {
+async function sendNow() {
   const on = upon;
+  clearTimeout(typing);
   [typing, upon] = [0, null];
-  if (!on) return;
-  const text = toFile(code.value, on.text);
-  if (text === state.text) return;
+  const text = on && toFile(code.value, on.text);
+  if (!on || text === state.text) return null;
+  let refused = null;
   try {
     take(await json("PUT", `/text?revision=${on.revision}&tab=${tab}`, text, "text/plain"));
   } catch (error) {
+    refused = error;
     say(error.message);
-    await refresh();
+    await refresh().catch(() => {});
   }
   // More may have been typed in the meantime.
   if (upon) upon = state;
+  return refused;
 }
 let suggested = [];
 async function suggest() {
@@ -989,20 +1001,24 @@ $("copy").onclick = async () => {
   $("copy").textContent = "Copied";
   setTimeout(() => ($("copy").textContent = "Copy command"), 1500);
 };
-document.querySelectorAll("[data-settle]").forEach((button) => (button.onclick = async () => take(await json("POST", "/settle", { tab, theirs: button.dataset.settle === "theirs" }))));
+document.querySelectorAll("[data-settle]").forEach((button) => (button.onclick = () => json("POST", "/settle", { tab, theirs: button.dataset.settle === "theirs" }).then(take, (error) => (say(error.message), refresh()))));
 
 // Undo, tabs and keys.
 
 async function travel(path) {
-  await flush();
-  take(await json("POST", path, { tab }));
+  try {
+    await flush();
+    take(await json("POST", path, { tab }));
+  } catch (error) {
+    say(error.message);
+  }
 }
 $("undo").onclick = () => travel("/undo");
 $("redo").onclick = () => travel("/redo");
 let design = null;
 /** Returns the code of the figures of a design, which is loaded when they are seen first. */
 const loaded = () => (design ??= import("./design.js").then(
-  (it) => (it.start({ tab, call, json, make, take, ask, stepNow, state: () => state, images: underlay.images, forget: () => (entries = null) }), it),
+  (it) => (it.start({ tab, call, json, make, take, ask, refresh, stepNow, state: () => state, images: underlay.images, forget: () => (entries = null) }), it),
   (error) => { design = null; throw error; },
 ));
 /** Shows the figures of the design, if its tab is open. */
@@ -1069,10 +1085,14 @@ document.addEventListener("keydown", (event) => {
 function leave() {
   clearTimeout(typing);
   [typing, upon] = [0, null];
+  film.stop();
+  $("ask").close();
   [pending, asked, isStale] = [still(), null, false];
 }
 /** Takes the state of the server. */
 function take(next) {
+  // Answers may arrive in another order.
+  if (next.revision < state.revision) return;
   const before = state;
   state = next;
   if (before.file !== state.file) leave();
@@ -1156,7 +1176,7 @@ function opened(next) {
 film.start({ tab, json, make, say, values, changed, state: () => state, look: () => look });
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
-  underlay.start({ tab, call, json, take, say, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
+  underlay.start({ tab, call, json, take, say, refresh, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
   $("new").onclick = beginFile;
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;

@@ -63,6 +63,8 @@ async function fit() {
     page.say("");
   } catch (error) {
     if (error.name !== "AbortError") page.say(error.message);
+    // A fit may end just as it is cancelled.
+    else await page.refresh();
   }
   clearInterval(working);
   fitting = null;

@@ -70,7 +70,7 @@ pub(super) async fn picture(
     let size = asked.size()?;
     let (shot, look, file) = {
         let mut session = app.session();
-        session.check_file(seen).map_err(|_| Refusal::replaced())?;
+        session.check_file(seen)?;
         let before = session.look.clone();
         if let Some(look) = asked.look.clone() {
             look.check()?;
@@ -285,7 +285,7 @@ pub(super) struct Export {
     film: bool,
 }
 
-pub(super) async fn export(State(app): Shared, Json(asked): Json<Export>) -> Answer {
+pub(super) async fn export(State(app): Shared, seen: Seen, Json(asked): Json<Export>) -> Answer {
     const MOST: u32 = 100_000;
     let size = [asked.width, asked.height];
     if !size.iter().all(|side| (1..=MOST).contains(side)) {
@@ -293,6 +293,7 @@ pub(super) async fn export(State(app): Shared, Json(asked): Json<Export>) -> Ans
     }
     let (shot, look, path) = {
         let session = app.session();
+        session.check_file(seen)?;
         let path = session.roots.allowed(Path::new(&asked.path))?;
         let look = session.look.clone();
         (session.shot(&look, size, Quality::Full)?, look, path)
