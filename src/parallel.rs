@@ -189,6 +189,7 @@ impl<'w> Team<'w> {
             handed_out: 0,
             taken: 0,
             spare: Vec::new(),
+            ahead: PIECES_A_THREAD,
         }
     }
 }
@@ -222,12 +223,19 @@ pub(crate) struct Pipeline<'t, 'w, J> {
     taken: u64,
     /// Pieces to be reused.
     spare: Vec<J>,
+    /// Maximum number of pieces in progress per thread.
+    ahead: u64,
 }
 
-/// Maximum number of pieces in progress per thread.
+/// Usual maximum number of pieces in progress per thread.
 const PIECES_A_THREAD: u64 = 2;
 
 impl<'w, J: Send + 'w> Pipeline<'_, 'w, J> {
+    /// Returns the pipeline with another maximum number of pieces in progress per thread.
+    pub(crate) fn ahead(self, ahead: u64) -> Self {
+        Self { ahead, ..self }
+    }
+
     /// Returns a piece that can be reused, if there is one.
     pub(crate) fn spare(&mut self) -> Option<J> {
         self.spare.pop()
@@ -265,7 +273,7 @@ impl<'w, J: Send + 'w> Pipeline<'_, 'w, J> {
         self.handed_out += 1;
         // With an adversary, jobs may be executed at once, as by other threads.
         while pick(3) > 0 && self.team.help() {}
-        self.take_until(PIECES_A_THREAD * threads, take)
+        self.take_until(self.ahead * threads, take)
     }
 
     /// Waits for all pieces, and passes them to `take`.

@@ -126,7 +126,7 @@ pub fn write_mesh(
     let mut runs = Runs::new(options.style.color_by != ColorBy::Normal);
     for &pass in Pass::of(format) {
         if pass == Pass::Faces && runs.are_kept() {
-            runs.write(&shapes, Encoder::new(format, pass), growth.cancel, out)?;
+            runs.write(&shapes, format, options.threads, growth.cancel, out)?;
             continue;
         }
         let are_kept = pass == Pass::Corners && runs.are_kept();

@@ -308,8 +308,8 @@ impl Session {
     pub(super) fn copy(&mut self, name: &str, source: &Arc<Source>) {
         self.drop_draft();
         // A copy that a fit opens, unasked, must not end the texts of a file to which redo leads.
-        while self.history.leads_to_another() {
-            self.step(false);
+        if self.history.leads_to_another() {
+            while self.step(false).is_some() {}
         }
         self.forget_file();
         let text: Arc<str> = source.text().into();

@@ -30,7 +30,7 @@ impl Shape {
     }
 
     /// Returns the number of corners.
-    fn count(&self) -> u32 {
+    pub(super) fn count(&self) -> u32 {
         u32::try_from(self.mesh.corners.len()).unwrap_or(u32::MAX)
     }
 
@@ -194,20 +194,13 @@ impl Encoder {
         self.corners += shape.count();
     }
 
-    /// Writes the bytes once there are many, where the numbers of corners need no change.
-    pub(super) fn pass_on(&mut self, out: &mut impl Write) -> io::Result<()> {
-        const MANY_BYTES: usize = 1 << 16;
-        match self.bytes.len() < MANY_BYTES {
-            true => Ok(()),
-            false => self.write(0, out),
-        }
+    /// Starts with faces that refer to corners behind `before` others.
+    pub(super) fn start(&mut self, before: u32) {
+        self.corners = before;
     }
 
-    /// Writes the bytes, with faces that refer to corners behind `before` others.
-    pub(super) fn write(&mut self, before: u32, out: &mut impl Write) -> io::Result<()> {
-        if self.pass == Pass::Faces {
-            self.refer(before);
-        }
+    /// Writes the bytes.
+    pub(super) fn pass_on(&mut self, out: &mut impl Write) -> io::Result<()> {
         out.write_all(&self.bytes)?;
         self.bytes.clear();
         Ok(())
@@ -254,13 +247,16 @@ impl Encoder {
     /// Writes the bytes of a span, behind `before` corners of earlier ones, and starts another; returns the number
     /// of corners with those of the span.
     pub(super) fn give(&mut self, before: u32, out: &mut impl Write) -> io::Result<u32> {
-        self.write(before, out)?;
+        if self.pass == Pass::Faces {
+            self.refer(before);
+        }
+        self.pass_on(out)?;
         // STL, which has no corners apart, may have more than are counted here.
         Ok(before.wrapping_add(std::mem::take(&mut self.corners)))
     }
 
     /// Lets faces refer to corners behind `before` others, in the way of the format.
-    fn refer(&mut self, before: u32) {
+    pub(super) fn refer(&mut self, before: u32) {
         let of = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
         if self.format != MeshFormat::Obj {
             if before == 0 {

@@ -1,11 +1,14 @@
 //! Elements that follow each other and have equal faces, of which a mesh is written without a further walk.
 
 use std::io::{self, Write};
+use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::grow::WalkError;
+use crate::parallel::with_team;
 
-use super::encode::{Encoder, Shape};
+use super::MeshFormat;
+use super::encode::{Encoder, Pass, Shape};
 
 /// Largest number of runs that are kept, of 32 bytes each.
 const MAX_RUNS: usize = 1 << 16;
@@ -72,24 +75,70 @@ impl Runs {
     pub(super) fn write(
         &self,
         shapes: &[Shape],
-        mut encoder: Encoder,
+        format: MeshFormat,
+        threads: NonZero<usize>,
         cancel: Option<&AtomicBool>,
         out: &mut impl Write,
     ) -> Result<(), WalkError<io::Error>> {
-        for &(faces, count) in self.kept.iter().flatten() {
-            let shape = &shapes[faces.shape];
-            let most = (MANY / (shape.faces() as u64).max(1)).max(1);
-            let mut left = count;
-            while left > 0 {
-                if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
-                    return Err(WalkError::Cancelled);
+        let mut take =
+            |batch: &mut Batch<'_>| batch.encoder.pass_on(out).map_err(WalkError::Visitor);
+        with_team(threads, |team| {
+            let mut line = team.line(Batch::encode);
+            let fresh = || Batch {
+                shapes,
+                encoder: Encoder::new(format, Pass::Faces),
+                runs: Vec::new(),
+                before: 0,
+            };
+            let mut batch = fresh();
+            // Faces of the batch, and corners of the elements that are handed out.
+            let (mut many, mut before) = (0, 0);
+            for &(faces, count) in self.kept.iter().flatten() {
+                let shape = &shapes[faces.shape];
+                let of_one = (shape.faces() as u64).max(1);
+                let mut left = count;
+                while left > 0 {
+                    let own = left.min(((MANY - many) / of_one).max(1));
+                    batch.runs.push((faces, own));
+                    left -= own;
+                    many += own * of_one;
+                    before += own * u64::from(shape.count());
+                    if many < MANY {
+                        continue;
+                    }
+                    if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                        return Err(WalkError::Cancelled);
+                    }
+                    let next = line.spare().unwrap_or_else(fresh);
+                    line.hand_on(std::mem::replace(&mut batch, next), &mut take)?;
+                    // The number of all corners fits into 32 bits.
+                    batch.before = u32::try_from(before).unwrap_or(u32::MAX);
+                    many = 0;
                 }
-                let many = left.min(most);
-                encoder.repeat(shape, faces.is_mirrored, faces.colour, many);
-                encoder.pass_on(out).map_err(WalkError::Visitor)?;
-                left -= many;
             }
+            line.hand_on(batch, &mut take)?;
+            line.finish(&mut take)
+        })
+    }
+}
+
+/// Elements whose faces are encoded at once.
+struct Batch<'a> {
+    shapes: &'a [Shape],
+    encoder: Encoder,
+    runs: Vec<(Faces, u64)>,
+    /// Number of corners of the elements before.
+    before: u32,
+}
+
+impl Batch<'_> {
+    fn encode(&mut self) {
+        self.encoder.start(self.before);
+        for (faces, count) in self.runs.drain(..) {
+            let shape = &self.shapes[faces.shape];
+            self.encoder
+                .repeat(shape, faces.is_mirrored, faces.colour, count);
         }
-        encoder.write(0, out).map_err(WalkError::Visitor)
+        self.encoder.refer(0);
     }
 }

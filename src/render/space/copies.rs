@@ -19,57 +19,63 @@ const MAX_PRODUCTS: usize = 1 << 16;
 /// Scale at which products of maps are compared.
 const LARGE: f64 = 1e9;
 
-#[derive(Clone, Copy)]
+/// Instance that is remembered, in 24 bytes: a table of these stays in the second-level cache.
+#[derive(Clone, Copy, Default)]
 struct Slot {
     /// Position in fractions of a sample.
-    at: [i64; 3],
-    form: usize,
+    at: [i32; 3],
+    form: u32,
+    /// Number of the tile; 0 if there is no instance.
+    tile: u32,
     class: u16,
-    tile: u64,
 }
 
 /// Instances that a tile has met, as many as fit: a table in which the last one of a slot stays.
 pub(super) struct Copies {
-    slots: Vec<Option<Slot>>,
-    tile: u64,
+    slots: Vec<Slot>,
+    tile: u32,
 }
 
 impl Copies {
     /// Creates a table.
     pub(super) fn new() -> Self {
         Self {
-            slots: vec![None; SLOTS * LEVELS],
+            slots: vec![Slot::default(); SLOTS * LEVELS],
             tile: 0,
         }
     }
 
-    /// Forgets all instances.
-    pub(super) fn clear(&mut self) {
+    /// Begins a tile, of which no instance is known.
+    pub(super) fn begin(&mut self) {
         self.tile += 1;
     }
 
     /// Notes an instance of a form; returns whether an equal one, of the same class or of one before it, is known.
+    ///
+    /// Instances that are too far away for a table, or of too many forms, are not known.
     pub(super) fn knows(&mut self, at: DVec3, form: usize, level: u32, class: u16) -> bool {
-        let at = rounded(at.to_array(), FINE);
-        let mut hash = form as u64;
+        let at = rounded(at.to_array(), FINE).map(i32::try_from);
+        let ([Ok(x), Ok(y), Ok(z)], Ok(form)) = (at, u32::try_from(form)) else {
+            return false;
+        };
+        let at = [x, y, z];
+        let mut hash = u64::from(form);
         for part in at {
-            hash = (hash.rotate_left(5) ^ part.cast_unsigned()).wrapping_mul(0x517c_c1b7_2722_0a95);
+            let part = u64::from(part.cast_unsigned());
+            hash = (hash.rotate_left(5) ^ part).wrapping_mul(0x517c_c1b7_2722_0a95);
         }
         let place = usize::try_from(hash >> 32).unwrap_or_default() % SLOTS;
         let slot = &mut self.slots[level as usize % LEVELS * SLOTS + place];
-        if let Some(known) = slot
-            && known.tile == self.tile
-            && (known.at, known.form) == (at, form)
-            && known.class <= class
-        {
+        let is_equal = (slot.at, slot.form, slot.tile) == (at, form, self.tile);
+        if is_equal && slot.class <= class {
             return true;
         }
-        *slot = Some(Slot {
+        *slot = Slot {
             at,
             form,
-            class,
             tile: self.tile,
-        });
+            class,
+        };
         false
     }
 }

@@ -8,6 +8,7 @@ use crate::geometry::DVec3;
 use super::TILE_SIZE;
 use super::buffer::{SAMPLES, STEPS, TILE};
 use super::camera::{Placement, Projection};
+use super::solid::depth_of;
 
 /// Depth of a pixel that shows nothing, of 24 bits.
 pub(super) const NOTHING: u32 = (1 << 24) - 1;
@@ -69,18 +70,18 @@ impl DepthMap {
         }
     }
 
-    /// Adds the depths of a tile.
-    pub(super) fn add(&mut self, at: [u32; 2], depths: &[Option<u32>]) {
+    /// Adds the depths of the keys of a tile's pixels.
+    pub(super) fn add(&mut self, at: [u32; 2], keys: &[u32]) {
         let [width, height] = self.placement.size;
         let [left, top] = at.map(|at| at * TILE_SIZE);
         let columns = TILE_SIZE.min(width - left) as usize;
         for row in 0..TILE_SIZE.min(height - top) as usize {
             let start = (top as usize + row) * width as usize + left as usize;
-            let from = &depths[row * TILE..row * TILE + columns];
+            let from = &keys[row * TILE..row * TILE + columns];
             let range = start..start + columns;
             let to = { self.low[range.clone()].iter_mut() }.zip(&mut self.high[range]);
-            for ((low, high), depth) in to.zip(from) {
-                (*low, *high) = parts(*depth);
+            for ((low, high), key) in to.zip(from) {
+                (*low, *high) = parts(depth_of(*key));
             }
         }
     }

@@ -123,7 +123,7 @@ impl Descent {
         self.own.clear();
         self.tints.clear();
         if roots.overlap {
-            self.copies.get_or_insert_with(Copies::new).clear();
+            self.copies.get_or_insert_with(Copies::new).begin();
         }
         let forms = roots.forms;
         for step in start.iter().map(|number| &forms.start[*number]) {

@@ -317,7 +317,7 @@ fn draw_unlit(
         drawn += tile.drawn;
         deepest = deepest.max(tile.deepest);
         if let Some(depths) = &mut depths {
-            depths.add(tile.at, &tile.depths);
+            depths.add(tile.at, &tile.keys);
         }
         if let Some(pixmap) = &mut pixmap {
             tile.copy(pixmap);
@@ -325,7 +325,7 @@ fn draw_unlit(
         Ok(())
     };
     with_team(options.threads, |team| {
-        let mut line = team.line(Tile::draw);
+        let mut line = team.line(Tile::draw).ahead(TILES_A_THREAD);
         for row in 0..height.div_ceil(TILE_SIZE) {
             let start: Arc<[usize]> = scene.roots.start(&scene.view([0, row])).into();
             for column in 0..width.div_ceil(TILE_SIZE) {
@@ -417,6 +417,9 @@ fn described(size: [u32; 2], steps: u32, elements: u64) -> Picture {
         instanced: None,
     }
 }
+
+/// Number of tiles in progress per thread: behind one that takes long, others must not wait.
+const TILES_A_THREAD: u64 = 4;
 
 #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
 const TILE_SIZE: u32 = TILE as u32;

@@ -91,16 +91,16 @@ impl Inks {
     }
 
     /// Returns the colour of the samples of a pixel together, which is transparent where there are none, and
-    /// the least depth; `rows` are the keys of the rows of samples, and `tints` their colours where they are
+    /// the nearest key; `rows` are the keys of the rows of samples, and `tints` their colours where they are
     /// tinted.
     pub(super) fn pixel(
         &self,
         rows: [&[u32]; SAMPLES],
         tints: Option<[&[Colour]; SAMPLES]>,
-    ) -> ([f64; 4], Option<u32>) {
+    ) -> ([f64; 4], u32) {
         let nearest = nearest(rows);
         if nearest == EMPTY {
-            return ([0.0; 4], None);
+            return ([0.0; 4], EMPTY);
         }
         let of_one_class = { tints.is_none() }.then(|| self.sum_of_one_class(rows));
         let sum = of_one_class.flatten().unwrap_or_else(|| {
@@ -112,7 +112,7 @@ impl Inks {
             }
             sum
         });
-        (sum.map(|part| part / SAMPLES_A_PIXEL), depth_of(nearest))
+        (sum.map(|part| part / SAMPLES_A_PIXEL), nearest)
     }
 
     /// Returns the sum of the colours of samples that all show something of the same class.

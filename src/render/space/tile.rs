@@ -14,7 +14,7 @@ use super::camera::Placement;
 use super::descent::Descent;
 use super::roots::Roots;
 use super::shade::{self, Inks};
-use super::solid::{self, Depths, View};
+use super::solid::{Depths, View};
 
 /// Piece of work: a tile of the picture.
 pub(super) struct Tile<'a> {
@@ -29,8 +29,8 @@ pub(super) struct Tile<'a> {
     pub(super) deepest: u32,
     /// Colours of the pixels, in rows, if the scene has inks.
     colours: Vec<PremultipliedColorU8>,
-    /// Depths of the pixels.
-    pub(super) depths: Vec<Option<u32>>,
+    /// Nearest keys of the pixels.
+    pub(super) keys: Vec<u32>,
 }
 
 /// Memory with which a thread draws a tile.
@@ -100,13 +100,13 @@ impl<'a> Tile<'a> {
             drawn: 0,
             deepest: 0,
             colours: Vec::new(),
-            depths: Vec::new(),
+            keys: Vec::new(),
         }
     }
 
     pub(super) fn draw(&mut self) {
         self.colours.clear();
-        self.depths.clear();
+        self.keys.clear();
         (self.drawn, self.deepest) = (0, 0);
         if self.scene.is_cancelled() {
             return;
@@ -127,7 +127,7 @@ impl<'a> Tile<'a> {
             for y in 0..TILE {
                 let rows = buffer.rows_of_pixels(y);
                 let pixels = (0..TILE).map(|x| shade::nearest(shade::samples(rows, x)));
-                self.depths.extend(pixels.map(solid::depth_of));
+                self.keys.extend(pixels);
             }
             return;
         };
@@ -142,9 +142,9 @@ impl<'a> Tile<'a> {
             for x in 0..TILE {
                 let samples = shade::samples(rows, x);
                 let tints = tints.map(|rows| shade::samples(rows, x));
-                let (colour, depth) = inks.pixel(samples, tints);
+                let (colour, key) = inks.pixel(samples, tints);
                 self.colours.push(shade::premultiplied(colour));
-                self.depths.push(depth);
+                self.keys.push(key);
             }
         }
     }
