@@ -62,10 +62,18 @@ impl Orientation {
     fn read(exif: &[u8]) -> Option<Self> {
         /// Tag of the orientation, and the type of its value: one number of 16 bits.
         const ENTRY: [u16; 2] = [274, 3];
-        let (short, long): (fn([u8; 2]) -> u16, fn([u8; 4]) -> u32) = match exif.first_chunk()? {
-            b"II*\0" => (u16::from_le_bytes, u32::from_le_bytes),
-            b"MM\0*" => (u16::from_be_bytes, u32::from_be_bytes),
+        let is_little = match exif.first_chunk()? {
+            b"II*\0" => true,
+            b"MM\0*" => false,
             _ => return None,
+        };
+        let short = match is_little {
+            true => u16::from_le_bytes,
+            false => u16::from_be_bytes,
+        };
+        let long = match is_little {
+            true => u32::from_le_bytes,
+            false => u32::from_be_bytes,
         };
         let place = long(*exif[4..].first_chunk()?);
         let directory = exif.get(usize::try_from(place).ok()?..)?;
