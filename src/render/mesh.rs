@@ -5,7 +5,7 @@
 //! [shell](MeshOptions::shell) is collected first.
 
 mod encode;
-mod runs;
+mod repeats;
 mod shell;
 
 use std::io::{self, Write};
@@ -20,7 +20,7 @@ use super::error::RenderError;
 use super::options::Options;
 use super::space::SpaceError;
 use encode::{Encoder, Pass, Shape};
-use runs::{Faces, Runs};
+use repeats::{Faces, Repeats};
 use shell::Shell;
 
 /// Format of a mesh.
@@ -123,22 +123,22 @@ pub fn write_mesh(
         None => walk.counted()?,
     };
     out.write_all(&encode::head(format, &options.labels.title, &size)?)?;
-    let mut runs = Runs::new(options.style.color_by != ColorBy::Normal);
+    let mut repeats = Repeats::new(options.style.color_by != ColorBy::Normal);
     for &pass in Pass::of(format) {
-        if pass == Pass::Faces && runs.are_kept() {
-            runs.write(&shapes, format, options.threads, growth.cancel, out)?;
+        if pass == Pass::Faces && repeats.are_kept() {
+            repeats.write(&shapes, format, options.threads, growth.cancel, out)?;
             continue;
         }
-        let are_kept = pass == Pass::Corners && runs.are_kept();
+        let are_kept = pass == Pass::Corners && repeats.are_kept();
         // Corners of the elements before a span.
         let mut before = 0;
         let fresh = || Collector {
             walk: &walk,
             encoder: Encoder::new(format, pass),
-            runs: Runs::new(are_kept),
+            repeats: Repeats::new(are_kept),
         };
         walk.each(fresh, |collector| {
-            runs.append(&mut collector.runs);
+            repeats.append(&mut collector.repeats);
             before = collector.encoder.give(before, out)?;
             Ok(())
         })?;
@@ -270,7 +270,7 @@ impl Visitor<Frame3> for Sizes<'_> {
 struct Collector<'a> {
     walk: &'a Walk<'a>,
     encoder: Encoder,
-    runs: Runs,
+    repeats: Repeats,
 }
 
 impl Visitor<Frame3> for Collector<'_> {
@@ -292,7 +292,7 @@ impl Visitor<Frame3> for Collector<'_> {
                 is_mirrored,
                 colour: own,
             };
-            self.runs.add(faces, 1);
+            self.repeats.add(faces, 1);
             if !is_finite {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, BEYOND));
             }

@@ -19,7 +19,7 @@ const MAX_PRODUCTS: usize = 1 << 16;
 /// Scale at which products of maps are compared.
 const LARGE: f64 = 1e9;
 
-/// Instance that is remembered, in 24 bytes: a table of these stays in the second-level cache.
+/// Instance that is remembered, in 24 bytes.
 #[derive(Clone, Copy, Default)]
 struct Slot {
     /// Position in fractions of a sample.

@@ -1,4 +1,4 @@
-//! Elements that follow each other and have equal faces, of which a mesh is written without a further walk.
+//! Elements of equal faces that follow each other, of which a mesh is written without a further walk.
 
 use std::io::{self, Write};
 use std::num::NonZero;
@@ -10,8 +10,8 @@ use crate::parallel::with_team;
 use super::MeshFormat;
 use super::encode::{Encoder, Pass, Shape};
 
-/// Largest number of runs that are kept, of 32 bytes each.
-const MAX_RUNS: usize = 1 << 16;
+/// Largest number of repeats that are kept, of 32 bytes each.
+const MAX_KEPT: usize = 1 << 16;
 
 /// Number of faces that are encoded at once, unless an element has more.
 const MANY: u64 = 1 << 12;
@@ -25,14 +25,14 @@ pub(super) struct Faces {
     pub(super) colour: [u8; 3],
 }
 
-/// Elements in order of traversal, as runs of equal faces.
+/// Elements in order of traversal, of which those that follow each other with equal faces are one repeat.
 #[derive(Debug)]
-pub(super) struct Runs {
+pub(super) struct Repeats {
     /// Faces, and the number of elements that have them; `None` if they are not kept.
     kept: Option<Vec<(Faces, u64)>>,
 }
 
-impl Runs {
+impl Repeats {
     /// Returns no elements; elements that are added are kept if `are_kept`.
     pub(super) fn new(are_kept: bool) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Runs {
             && *last == faces
         {
             *number += count;
-        } else if kept.len() < MAX_RUNS {
+        } else if kept.len() < MAX_KEPT {
             kept.push((faces, count));
         } else {
             self.kept = None;
@@ -87,7 +87,7 @@ impl Runs {
             let fresh = || Batch {
                 shapes,
                 encoder: Encoder::new(format, Pass::Faces),
-                runs: Vec::new(),
+                repeats: Vec::new(),
                 before: 0,
             };
             let mut batch = fresh();
@@ -99,7 +99,7 @@ impl Runs {
                 let mut left = count;
                 while left > 0 {
                     let own = left.min(((MANY - many) / of_one).max(1));
-                    batch.runs.push((faces, own));
+                    batch.repeats.push((faces, own));
                     left -= own;
                     many += own * of_one;
                     before += own * u64::from(shape.count());
@@ -126,7 +126,7 @@ impl Runs {
 struct Batch<'a> {
     shapes: &'a [Shape],
     encoder: Encoder,
-    runs: Vec<(Faces, u64)>,
+    repeats: Vec<(Faces, u64)>,
     /// Number of corners of the elements before.
     before: u32,
 }
@@ -134,7 +134,7 @@ struct Batch<'a> {
 impl Batch<'_> {
     fn encode(&mut self) {
         self.encoder.start(self.before);
-        for (faces, count) in self.runs.drain(..) {
+        for (faces, count) in self.repeats.drain(..) {
             let shape = &self.shapes[faces.shape];
             self.encoder
                 .repeat(shape, faces.is_mirrored, faces.colour, count);
