@@ -13,12 +13,16 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
 
 const PREFIX: &str = ".kfrac-";
 const SUFFIX: &str = ".part";
 
 /// Size of the write buffer in bytes.
 pub(crate) const BUFFER: usize = 1 << 18;
+
+/// Number of bytes after which the system is asked to bring a file to the disk while more is written.
+const SYNCED: u64 = 1 << 24;
 
 /// Error of writing a file.
 #[derive(Debug, thiserror::Error)]
@@ -51,6 +55,10 @@ pub(crate) struct OutputFile {
     path: PathBuf,
     /// Temporary name, until the file is finished; `None` for a pipe or device.
     part: Option<PathBuf>,
+    /// Bytes that were written since the last synchronization began.
+    unsynced: u64,
+    /// Synchronization in progress.
+    sync: Option<JoinHandle<io::Result<()>>>,
 }
 
 impl OutputFile {
@@ -74,6 +82,8 @@ impl OutputFile {
                 file: BufWriter::with_capacity(BUFFER, device),
                 path: named.into(),
                 part: None,
+                unsynced: 0,
+                sync: None,
             });
         }
         let path = behind_links(named)?;
@@ -139,6 +149,8 @@ impl OutputFile {
             file: BufWriter::with_capacity(BUFFER, file),
             path: path.into(),
             part: Some(part),
+            unsynced: 0,
+            sync: None,
         })
     }
 
@@ -161,18 +173,8 @@ impl OutputFile {
         if self.part.is_none() {
             return Ok(());
         }
-        match self.file.get_ref().sync_all() {
-            // Some file systems do not support syncing.
-            Err(error)
-                if !matches!(
-                    error.kind(),
-                    io::ErrorKind::Unsupported | io::ErrorKind::InvalidInput
-                ) =>
-            {
-                return Err(error);
-            }
-            _ => {}
-        }
+        self.end_sync()?;
+        synced(self.file.get_ref().sync_all())?;
         let mut unfinished = unfinished();
         if let Some(part) = &self.part {
             fs::rename(part, &self.path)?;
@@ -180,6 +182,36 @@ impl OutputFile {
         }
         self.part = None;
         Ok(())
+    }
+}
+
+impl OutputFile {
+    /// Begins to bring large files to the disk before they are finished, beside the work that produces the rest.
+    fn sync_early(&mut self, written: usize) -> io::Result<()> {
+        self.unsynced += written as u64;
+        let is_busy = self.sync.as_ref().is_some_and(|sync| !sync.is_finished());
+        // Pipes, devices and files for a while are never brought to the disk.
+        let is_kept = self.part.is_some() && self.path != Path::new("");
+        if self.unsynced < SYNCED || is_busy || !is_kept {
+            return Ok(());
+        }
+        self.end_sync()?;
+        self.unsynced = 0;
+        // Without a further handle or thread, the file is synchronized when it is finished.
+        if let Ok(file) = self.file.get_ref().try_clone() {
+            let begun = thread::Builder::new().spawn(move || synced(file.sync_data()));
+            self.sync = begun.ok();
+        }
+        Ok(())
+    }
+
+    /// Waits for the synchronization in progress. An error of the disk is reported to it alone.
+    fn end_sync(&mut self) -> io::Result<()> {
+        match self.sync.take().map(JoinHandle::join) {
+            Some(Ok(result)) => result,
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+            None => Ok(()),
+        }
     }
 }
 
@@ -196,12 +228,22 @@ impl Drop for OutputFile {
 
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        let written = self.file.write(bytes)?;
+        self.sync_early(written)?;
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
+}
+
+/// Returns the result of a synchronization, which some file systems do not support.
+fn synced(result: io::Result<()>) -> io::Result<()> {
+    result.or_else(|error| match error.kind() {
+        io::ErrorKind::Unsupported | io::ErrorKind::InvalidInput => Ok(()),
+        _ => Err(error),
+    })
 }
 
 /// Locks the list of unfinished files. While the lock is held, files are neither created, nor renamed, nor removed.
@@ -247,5 +289,29 @@ fn remove_abandoned(folder: &Path) {
             // A failure to remove it has no consequences.
             let _ = fs::remove_file(entry.path());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_files_are_whole_and_leave_nothing_beside_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large");
+        let block: Vec<u8> = (0..=u8::MAX).cycle().take(1 << 20).collect();
+        let blocks = 3 * SYNCED / block.len() as u64;
+        let write = || {
+            let mut file = OutputFile::create(&path).unwrap();
+            (0..blocks).for_each(|_| file.write_all(&block).unwrap());
+            assert!(file.sync.is_some());
+            file
+        };
+        drop(write());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+        write().finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), block.repeat(usize::try_from(blocks).unwrap()));
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     }
 }
