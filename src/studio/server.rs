@@ -255,6 +255,7 @@ fn router(app: Arc<App>) -> Router {
                 .get(underlay::progress)
                 .delete(underlay::stop),
         )
+        .route("/fit/open", post(underlay::open))
         .route("/complete", post(reports::completions))
         .route("/events", get(reports::events))
         .layer(DefaultBodyLimit::max(Source::MAX_BYTES + SPARE))

@@ -34,6 +34,15 @@ impl Page {
         self.call("PUT", &format!("/underlay?name={name}"), &picture.into())
     }
 
+    /// Fits a system to the picture, and opens it.
+    fn fit(&self, asked: &Value) -> Reply {
+        let fitted = self.call("POST", "/fit", asked);
+        match fitted.status {
+            200 => self.call("POST", "/fit/open", &json!({})),
+            _ => fitted,
+        }
+    }
+
     fn collage(&self) -> Value {
         self.call("GET", "/underlay/collage", &Value::Null).json()
     }
@@ -157,7 +166,7 @@ fn a_picture_is_fitted() {
         )
         .json();
     assert_eq!(state["underlay"]["corner"], json!([0.0, -0.5]));
-    let state = page.call("POST", "/fit", &asked).json();
+    let state = page.fit(&asked).json();
     let text = state["text"].as_str().unwrap();
     assert!(
         text.contains("title: \"Fit of gasket.pbm\"") && text.matches("weight: ").count() == 3,
@@ -175,6 +184,16 @@ fn a_picture_is_fitted() {
     );
     assert!(page.collage()["iou"].as_f64().unwrap() > 0.9);
     assert_eq!(page.call("POST", "/undo", &json!({})).json()["text"], TREE);
+    // A fitted system waits for the page that asked for it, and is opened once.
+    let mut of_tab = asked.clone();
+    of_tab["tab"] = "a".into();
+    assert_eq!(page.call("POST", "/fit", &of_tab).status, 200);
+    assert_eq!(page.state()["text"], TREE);
+    for (tab, status) in [("b", 410), ("a", 200), ("a", 410)] {
+        let open = page.call("POST", "/fit/open", &json!({ "tab": tab }));
+        assert_eq!(open.status, status, "{tab}");
+    }
+    page.call("POST", "/undo", &json!({}));
     for (key, wrong) in [
         ("maps", json!([1, 3])),
         ("maps", json!([3, 2])),
@@ -197,7 +216,7 @@ fn a_fit_is_ended_with_the_best_so_far() {
     assert_eq!(progress()["evaluated"], Value::Null);
     let asked = json!({ "maps": [2, 32], "method": "collage" });
     let text = thread::scope(|scope| {
-        let fit = scope.spawn(|| page.call("POST", "/fit", &asked));
+        let fit = scope.spawn(|| page.fit(&asked));
         until("a system is found", || {
             progress()["best"]["iou"].is_number()
         });

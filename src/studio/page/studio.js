@@ -1176,7 +1176,7 @@ function opened(next) {
 film.start({ tab, json, make, say, values, changed, state: () => state, look: () => look });
 try {
   [choices, state] = await Promise.all([json("GET", "/choices"), json("GET", "/state")]);
-  underlay.start({ tab, call, json, take, say, refresh, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
+  underlay.start({ tab, call, json, take, say, flush, fitted: opened, state: () => state, choices: () => choices, redraw: figures, opened: () => openTab($("tab-design")) });
   $("new").onclick = beginFile;
   $("film-ease").append(...choices.ease.map((it) => make("option", {}, it)));
   const first = state;

@@ -59,12 +59,12 @@ async function fit() {
   const asked = { tab: page.tab, maps: [least, most], method: $("underlay-method").value, similar: $("underlay-similar").checked, disks: Math.max(0, Math.round(+$("underlay-disks").value) || 0) };
   show();
   try {
-    page.fitted(await (await page.call("POST", "/fit", asked, undefined, fitting.signal)).json());
+    await page.call("POST", "/fit", asked, undefined, fitting.signal);
+    await page.flush();
+    page.fitted(await page.json("POST", "/fit/open", { tab: page.tab }));
     page.say("");
   } catch (error) {
     if (error.name !== "AbortError") page.say(error.message);
-    // A fit may end just as it is cancelled.
-    else await page.refresh();
   }
   clearInterval(working);
   fitting = null;

@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use axum::Json;
@@ -28,6 +28,8 @@ use super::{Answer, Shared, Tab, apart};
 pub(super) struct Fits {
     jobs: Jobs,
     now: Mutex<Option<Running>>,
+    /// Last one that ended, until it is opened.
+    found: Mutex<Option<Found>>,
 }
 
 /// A fit that runs.
@@ -38,12 +40,22 @@ struct Running {
     stop: Arc<AtomicBool>,
 }
 
+/// A fitted system.
+#[derive(Debug)]
+struct Found {
+    /// Tab that asked for it.
+    tab: String,
+    underlay: Underlay,
+    text: String,
+}
+
 impl Default for Fits {
     fn default() -> Self {
         const LIMIT: Duration = Duration::from_secs(600);
         Self {
             jobs: Jobs::within(LIMIT),
             now: Mutex::default(),
+            found: Mutex::default(),
         }
     }
 }
@@ -52,6 +64,10 @@ impl Fits {
     fn running(&self) -> Option<Running> {
         let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         now.clone()
+    }
+
+    fn found(&self) -> MutexGuard<'_, Option<Found>> {
+        self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Notes a fit that begins.
@@ -185,7 +201,7 @@ pub(super) struct Fitted {
     disks: usize,
 }
 
-/// Fits a system to the picture, and opens it as a copy that is not saved.
+/// Fits a system to the picture. It is kept until the page [opens](open) it, which may have a text to send before.
 pub(super) async fn fit(State(app): Shared, Json(asked): Json<Fitted>) -> Answer {
     const MOST_DISKS: usize = 32;
     let named = Method::ALL.into_iter().find(|it| it.name() == asked.method);
@@ -222,9 +238,21 @@ pub(super) async fn fit(State(app): Shared, Json(asked): Json<Fitted>) -> Answer
     });
     let text = found.await?;
     drop(noted);
-    app.change(asked.tab, move |session| {
-        let stem = underlay.stem().to_owned();
-        session.copy(&stem, &Source::new(format!("{stem}.yaml"), text));
+    *app.fits.found() = Some(Found {
+        tab: asked.tab,
+        underlay,
+        text,
+    });
+    Ok(Json(json!({})))
+}
+
+/// Opens the system that was fitted last as a copy that is not saved.
+pub(super) async fn open(State(app): Shared, Json(Tab { tab }): Json<Tab>) -> Answer {
+    let found = app.fits.found().take_if(|found| found.tab == tab);
+    let Found { underlay, text, .. } = found.ok_or_else(Refusal::replaced)?;
+    app.change(tab, move |session| {
+        let stem = underlay.stem();
+        session.copy(stem, &Source::new(format!("{stem}.yaml"), text));
         let good = session.good()?.clone();
         // Another picture may have been laid meanwhile.
         if let Some(laid) = &mut session.underlay
