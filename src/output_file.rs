@@ -311,7 +311,10 @@ mod tests {
         drop(write());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
         write().finish().unwrap();
-        assert_eq!(fs::read(&path).unwrap(), block.repeat(usize::try_from(blocks).unwrap()));
+        assert_eq!(
+            fs::read(&path).unwrap(),
+            block.repeat(usize::try_from(blocks).unwrap())
+        );
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     }
 }
