@@ -4,6 +4,8 @@
 //! killed cannot remove its file. Unfinished files are locked, and a lock ends with the process that holds it: a
 //! file without a lock is abandoned, and the next process that writes to the folder removes it. A process that
 //! handles signals removes [unfinished] files itself.
+//!
+//! Large files are brought to the disk while more is written, so that their end does not wait for all of it.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
@@ -183,14 +185,12 @@ impl OutputFile {
         self.part = None;
         Ok(())
     }
-}
 
-impl OutputFile {
     /// Begins to bring large files to the disk before they are finished, beside the work that produces the rest.
     fn sync_early(&mut self, written: usize) -> io::Result<()> {
         self.unsynced += written as u64;
         let is_busy = self.sync.as_ref().is_some_and(|sync| !sync.is_finished());
-        // Pipes, devices and files for a while are never brought to the disk.
+        // Pipes and devices have no disk, and a file without a name need not last.
         let is_kept = self.part.is_some() && self.path != Path::new("");
         if self.unsynced < SYNCED || is_busy || !is_kept {
             return Ok(());

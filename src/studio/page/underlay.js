@@ -60,9 +60,11 @@ async function fit() {
   show();
   try {
     await page.call("POST", "/fit", asked, undefined, fitting.signal);
-    await page.flush();
+    // A text that is refused does not keep the system from its place.
+    const refused = await page.flush().then(() => "", (error) => error.message);
+    fitting.signal.throwIfAborted();
     page.fitted(await page.json("POST", "/fit/open", { tab: page.tab }));
-    page.say("");
+    page.say(refused);
   } catch (error) {
     if (error.name !== "AbortError") page.say(error.message);
   }
