@@ -51,6 +51,8 @@ const ROUNDING: f64 = 1e-15;
 pub(super) struct Reach<F: Frame> {
     spread: f64,
     ratio: f64,
+    /// Radii about the origins of objects that contain their subtrees, where ratios give no bound for all levels.
+    radii: Option<Vec<f64>>,
     /// Polygons that contain the subtrees of objects, and their fineness, where ratios give no bound.
     hulls: Option<(Box<dyn Hulls<F>>, Fineness)>,
     /// Objects that are certain to draw something.
@@ -59,6 +61,8 @@ pub(super) struct Reach<F: Frame> {
     alike: Vec<usize>,
     /// Padding around every object, as a multiple of its length.
     pads: Vec<f64>,
+    /// Share of its extent by which a box may be too large, if it is not one by polygons.
+    share: f64,
     /// Whether a search may take long, because no other bounds follow.
     pub(super) is_patient: bool,
     /// Number of states that were looked at.
@@ -76,7 +80,7 @@ impl<F: Frame> Reach<F> {
     /// if it draws anything: of the least x·u, or in the limit with polygons, of the greatest.
     fn span(&self, state: &SupportTerm<F>, levels: Option<u32>) -> [f64; 2] {
         let Some((hulls, _)) = &self.hulls else {
-            let size = state.vector.length() * self.radius(levels);
+            let size = state.vector.length() * self.radius(state.object, levels);
             return [state.offset + size, state.offset - size];
         };
         let [farthest, surely] = hulls.along(state.object, state.vector);
@@ -121,14 +125,18 @@ impl<F: Frame> Reach<F> {
                 let along = along.map(|vector| hulls.along(state.object, vector)[0]);
                 along[0].max(along[1])
             }
-            None => state.vector.length() * self.radius(levels),
+            None => state.vector.length() * self.radius(state.object, levels),
         }
     }
 
-    /// Returns the length by which the box of some instances may fall short.
-    fn spared(&self, start: &[Instance<F>]) -> f64 {
+    /// Returns the length by which the box of some instances may fall short, or else be too large.
+    fn spared(&self, start: &[Instance<F>], steps: Option<u32>) -> f64 {
         match &self.hulls {
             Some((hulls, fineness)) if fineness.spared > 0.0 => hulls.spared(start, *fineness),
+            None if self.share > 0.0 => {
+                let radius = |it: &Instance<F>| it.length * self.radius(it.object, steps);
+                self.share * start.iter().map(radius).fold(0.0, f64::max)
+            }
             _ => 0.0,
         }
     }
@@ -145,8 +153,11 @@ impl<F: Frame> Reach<F> {
     }
 
     /// Returns the radius about the origin of an object's unit frame that contains all that it draws
-    /// within a number of levels, or in all levels: the sum of a geometric series.
-    fn radius(&self, levels: Option<u32>) -> f64 {
+    /// within a number of levels, or in all levels: its own if it is known, otherwise the sum of a geometric series.
+    fn radius(&self, object: usize, levels: Option<u32>) -> f64 {
+        if let Some(radii) = &self.radii {
+            return radii[object];
+        }
         if self.ratio < 1.0 {
             return self.spread / (1.0 - self.ratio);
         }
@@ -199,6 +210,20 @@ impl<F: Bounded> Graph<F> {
         self.behaviours().nth(MANY).is_some()
     }
 
+    /// Returns the bounding box of approximant `steps` as [`bounds`](Self::bounds) does, but each side may lie outside of the
+    /// set by a share of its extent.
+    pub(crate) fn bounds_within(&self, steps: u32, share: f64) -> Option<Bounds<F::Point>> {
+        let mut reach = Reach {
+            share,
+            ..self.reach_within(false, None, |_| 0.0)?
+        };
+        if self.depth == Some(steps) {
+            // In the last step, all is drawn that objects lead to.
+            reach.alive = self.alive(true);
+        }
+        ApproximantBounds { graph: self, reach }.at(steps)
+    }
+
     /// Returns the boxes of approximants.
     fn boxes_with(&self, pad: impl Fn(&Object<F>) -> f64) -> Option<ApproximantBounds<'_, F>> {
         // Hulls of many objects take little only if no cycles lead through them.
@@ -233,9 +258,17 @@ impl<F: Bounded> Graph<F> {
             None if limit && ratio >= 1.0 => return None,
             None => None,
         };
+        let radii = (fineness.is_none() && ratio >= 1.0).then(|| {
+            let outline = self.outline_radii();
+            let radii = self.reaches(|object| outline(object) + pad(object));
+            let about_origin = |radius| radius + self.middle.length();
+            radii.into_iter().map(about_origin).collect()
+        });
         Some(Reach {
             spread,
             ratio,
+            radii,
+            share: 0.0,
             is_patient: true,
             looked: Cell::new(0),
             hulls,
@@ -289,7 +322,7 @@ impl<F: Bounded> Graph<F> {
         start: &[Instance<F>],
         steps: Option<u32>,
     ) -> Option<Bounds<F::Point>> {
-        let spared = reach.spared(start);
+        let spared = reach.spared(start, steps);
         let [max, min] = ends(|axis| self.support(axis, start, steps, (reach, spared)))?;
         // Coordinates below the rounding error are replaced by zero.
         let nothing = reach.slack() * min.abs().max(max.abs()).max_element();
@@ -299,7 +332,7 @@ impl<F: Bounded> Graph<F> {
     }
 
     /// Returns the greatest value of a linear functional on what some instances draw, after so many steps or in the limit. It
-    /// may fall short by the length that is spared.
+    /// may fall short, or be too large, by the length that is spared.
     fn support(
         &self,
         direction: F::Point,
@@ -366,7 +399,9 @@ impl<F: Bounded> Graph<F> {
                     let rest = if steps.is_none() && reach.hulls.is_some() {
                         reach.rest(state, negligible)
                     } else {
-                        (reach.size(state, levels) <= negligible).then_some(0.0)
+                        let size = reach.size(state, levels);
+                        let rest = if reach.share > 0.0 { size } else { 0.0 };
+                        (size <= negligible).then_some(rest)
                     };
                     if let Some(rest) = rest.filter(|_| known) {
                         if reach.alive[state.object] {

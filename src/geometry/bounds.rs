@@ -84,6 +84,15 @@ impl<P: Point> Bounds<P> {
         all == *self
     }
 
+    /// Returns the box of the points that lie in both boxes.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.max(other.min),
+            max: self.max.min(other.max),
+        }
+    }
+
     /// Extends the box to hold a point.
     #[inline]
     pub fn add(&mut self, point: P) {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use kfrac::Fractal;
 use kfrac::catalogue::{Catalogue, Shelf};
 use kfrac::geometry::{DMat3, DVec2, DVec3};
 use kfrac::geometry::{Frame, Frame3, Outline as _};
@@ -477,4 +478,35 @@ fn of_library(name: &str) -> Model {
     let (model, warnings) = document_of(&text_of(name)).resolve(&[]).unwrap();
     assert!(warnings.is_empty(), "{name}: {}", warnings.render(false));
     model
+}
+
+/// Returns the number of pixels of a picture that show something.
+fn covered(fractal: &Fractal, steps: u32) -> usize {
+    let pixels = fractal.clone().steps(steps).pixels(200).unwrap();
+    let straight = pixels.into_straight();
+    { straight.chunks_exact(4) }
+        .filter(|pixel| *pixel != [255; 4])
+        .count()
+}
+
+/// Modules too small to be replaced are drawn as boxes, however much smaller than a pixel their lines are.
+#[test]
+fn pictures_of_far_steps_show_what_near_ones_do() {
+    for (name, near, far) in [
+        ("bush-in-space", 6, 60),
+        ("flowering-plant", 5, 1000),
+        ("hilbert-lsystem-in-space", 4, 1000),
+        ("dragon-lsystem-in-space", 9, 1000),
+        ("hart-tree-lsystem", 4, 9),
+    ] {
+        let fractal = Fractal::named(name).unwrap();
+        let [near, far] = [near, far].map(|steps| covered(&fractal, steps));
+        assert!(2 * far > near && near > 0, "{name}: {near}, {far}");
+    }
+    // A curve of lines without a width.
+    let koch = "kind: lsystem\nspace: 3\naxiom: F\nproductions: {F: F+F--F+F}\nangle: 60\n";
+    let koch = Fractal::parse(koch).unwrap();
+    let all = [3, 4, 5, 6, 7, 8, 9, 1000].map(|steps| covered(&koch, steps));
+    let [least, most] = [all.iter().min(), all.iter().max()].map(Option::unwrap);
+    assert!(most < &(4 * least) && *least > 200, "{all:?}");
 }

@@ -31,6 +31,10 @@ const MAX_WORK: u64 = 1 << 22;
 /// 1.
 const FARTHEST: f64 = 1e150;
 
+/// Extent of a subtree, as a share of that of the approximant, below which its tubes have the colour and the widths of the
+/// turtle's start. Every level may inherit others, and nothing shows them: positions are rounded to larger shares.
+const LEAST: f64 = 1.0 / (1_u64 << 40) as f64;
+
 /// Identity of an object.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct ObjectKey {
@@ -54,6 +58,8 @@ enum Master {
 struct Leveller<'e, F: TurtleFrame> {
     effects: &'e Effects<F>,
     tube: Option<Tube>,
+    /// Extent of the approximant, in steps of the turtle.
+    whole: Far<F::Point>,
     base_elements: Vec<F::BaseElement>,
     outlines: BTreeMap<Vec<[u64; 3]>, usize>,
     /// Base elements of polygons without extent, which are not visible.
@@ -104,6 +110,7 @@ pub(super) fn levels<F: SummedFrame>(
     let leveller = Leveller {
         effects: &effects,
         tube,
+        whole: Far::of_length(1.0),
         base_elements: vec![F::line()],
         outlines: BTreeMap::new(),
         empty: BTreeSet::new(),
@@ -176,6 +183,9 @@ impl<F: TurtleFrame> Leveller<'_, F> {
         let is_rough = reader.parts.iter().any(|part| part.pose.is_rough);
         if is_rough || !effect.is_exact && effect.work > MAX_WORK {
             return Err(NotCompiled);
+        }
+        if let Some(drawn) = &effect.drawn {
+            self.whole = drawn.reach;
         }
         let unit = match effect.drawn {
             Some(ModuleDrawing { reach, .. })
@@ -284,7 +294,15 @@ impl<F: TurtleFrame> Leveller<'_, F> {
             });
         };
         match (&part.of, self.tube) {
-            (Of::Subtree(..), Some(_)) => key.worn = worn.inside(part),
+            (Of::Subtree(_, drawn), Some(_)) => {
+                let inside = worn.inside(part);
+                let share = inside.step() * drawn.size.ratio(self.whole);
+                if share < LEAST {
+                    key.paint = Paint::of(effects.palette(), StrokeAttributes::SAME, 0);
+                } else {
+                    key.worn = inside;
+                }
+            }
             (Of::Step { .. }, Some(tube)) => {
                 for (piece, stretch) in tube.parts(&worn.line(part)) {
                     key.of = Master::Body(self.tube_part(tube, piece));

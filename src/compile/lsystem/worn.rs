@@ -28,6 +28,11 @@ impl Worn {
         is_bent: false,
     };
 
+    /// Returns the length of a step.
+    pub(super) fn step(&self) -> f64 {
+        f64::from_bits(self.step).abs()
+    }
+
     fn width(&self, of: Thickness) -> f64 {
         match of {
             Thickness::Times(factor) => f64::from_bits(self.width) * factor,

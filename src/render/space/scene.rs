@@ -13,6 +13,10 @@ use super::forms::Form;
 /// Tolerance of boxes that contain images of boxes.
 const SLACK: f64 = 1e-9;
 
+/// Shares of the extent of an approximant by which its box may be too large where no other is known: the first that takes
+/// little work.
+const LOOSE: [f64; 3] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0];
+
 /// Limit of the number of elements that are visited for the box of an approximant.
 const MAX_WALKED: u64 = 1_000_000;
 
@@ -73,7 +77,7 @@ pub(super) struct Part {
     pub(super) is_replaced: bool,
     /// Solid that is drawn for it, if it is visible.
     pub(super) solid: Option<Solid>,
-    /// Box that stands for its subtree where that is too small to be replaced, if it is not visible itself.
+    /// Box of its subtree, which stands for it where it is too small to be replaced, if it is not visible itself.
     pub(super) stand_in: Option<Solid>,
     pub(super) hull: Hull,
     /// Tint of its subtree.
@@ -136,10 +140,10 @@ impl ClassBy {
 
 /// Prepares the objects of a graph for descents to the limit or to a number of steps.
 pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
-    let hulls = hulls(graph, steps);
+    let extents = extents(graph, steps);
     let before = usize::from(draws_unmade(graph));
-    let objects = graph.objects().iter().zip(hulls).enumerate();
-    let parts = objects.map(|(number, (object, hull))| {
+    let objects = graph.objects().iter().zip(extents).enumerate();
+    let parts = objects.map(|(number, (object, Extent { hull, bounds }))| {
         let children = match &object.replacement {
             Replacement::Fixed(successor) => {
                 let instances = successor.placed_instances();
@@ -147,12 +151,10 @@ pub(super) fn parts(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Part> {
             }
             _ => Vec::new(),
         };
-        let stand_in = match &hull {
-            Hull::Cuboid(middle, half) if graph.is_fertile(number) && !object.visible => Some(
-                Solid::cuboid(&Bounds::new(*middle - *half, *middle + *half)),
-            ),
-            _ => None,
-        };
+        let has_stand_in = graph.is_fertile(number) && !object.visible;
+        let stand_in = { Some(bounds) }
+            .filter(|bounds| has_stand_in && bounds.is_finite())
+            .map(|bounds| Solid::cuboid(&bounds));
         Part {
             children,
             stand_in,
@@ -201,9 +203,25 @@ fn child(instance: &Instance<Frame3>) -> Child {
     }
 }
 
-/// Returns a convex set for every object that contains what its subtree draws: within a number of steps, or in
-/// the limit.
-fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
+/// Sets that contain the subtree of an object.
+struct Extent {
+    hull: Hull,
+    /// Not finite if nothing is drawn, or if no box is known.
+    bounds: Bounds<DVec3>,
+}
+
+impl Extent {
+    fn of(graph: &Graph<Frame3>, bounds: Bounds<DVec3>) -> Self {
+        let hull = match bounds.is_empty() {
+            true => Hull::Ball(graph.middle(), 0.0),
+            false => Hull::of(&bounds),
+        };
+        Self { hull, bounds }
+    }
+}
+
+/// Returns sets for every object that contain what its subtree draws: within a number of steps, or in the limit.
+fn extents(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Extent> {
     // Balls take less where there are many.
     let limits = (!graph.has_many_behaviours()).then(|| graph.limit_boxes());
     let limits = limits.flatten();
@@ -235,24 +253,61 @@ fn hulls(graph: &Graph<Frame3>, steps: Option<u32>) -> Vec<Hull> {
     let is_kept = |number: usize| !graph.is_fertile(number) || !graph.objects()[number].visible;
     let all_stays = (0..boxes.len()).all(is_kept);
     let hold = steps.is_none() || all_stays || holds(graph, &boxes);
-    let reaches = match hold && boxes.iter().all(Option::is_some) {
-        true => Vec::new(),
-        false => graph.reaches(|object| graph.outline_radius(object)),
+    if hold && boxes.iter().all(Option::is_some) {
+        let all = boxes.into_iter().flatten();
+        return all.map(|bounds| Extent::of(graph, bounds)).collect();
+    }
+    let known = { boxes.into_iter().enumerate() }
+        .map(|(number, bounds)| bounds.filter(|_| hold || !graph.is_fertile(number)));
+    within_balls(graph, &known.collect::<Vec<_>>())
+}
+
+/// Returns sets for every object that contain what its subtree draws within any number of steps. A box that is not known is
+/// that around the boxes of its instances, as far as they lie in that of a ball.
+fn within_balls(graph: &Graph<Frame3>, known: &[Option<Bounds<DVec3>>]) -> Vec<Extent> {
+    let middle = graph.middle();
+    let radii = graph.reaches(|object| graph.outline_radius(object));
+    let ball = |radius: &f64| {
+        let radius = radius * (1.0 + SLACK);
+        Bounds::new(middle - radius, middle + radius)
     };
-    let hulls = boxes
-        .iter()
-        .enumerate()
-        .map(|(number, bounds)| match bounds {
-            Some(bounds) if (hold || !graph.is_fertile(number)) && !bounds.is_empty() => {
-                Hull::of(bounds)
+    let boxes = known.iter().zip(radii.iter().map(ball));
+    let mut boxes: Vec<_> = boxes.map(|(known, ball)| known.unwrap_or(ball)).collect();
+    // Instances mostly have larger numbers than the objects that they are in.
+    for number in (0..boxes.len()).rev() {
+        let object = &graph.objects()[number];
+        if let (None, Replacement::Fixed(successor)) = (known[number], &object.replacement) {
+            let mut bounds = Bounds::EMPTY;
+            if let Some(solid) = graph.drawn(number) {
+                bounds.add_all(&solid.bounds(&DAffine3::IDENTITY));
             }
-            Some(bounds) if bounds.is_empty() => Hull::Ball(graph.middle(), 0.0),
-            _ => Hull::Ball(
-                graph.middle(),
-                reaches.get(number).copied().unwrap_or(f64::INFINITY),
-            ),
-        });
-    hulls.collect()
+            for (_, instance) in successor.placed_instances() {
+                bounds.add_all(&image(&boxes[instance.object], instance.frame.map()));
+            }
+            boxes[number] = boxes[number].intersection(&bounds);
+        }
+    }
+    let extents = { known.iter().zip(boxes).zip(radii) }.map(|((known, bounds), radius)| {
+        let ball = Hull::Ball(middle, radius);
+        match known.is_none() && bounds.size().length() > 2.0 * radius {
+            true => Extent { hull: ball, bounds },
+            false => Extent::of(graph, bounds),
+        }
+    });
+    extents.collect()
+}
+
+/// Returns the box of the image of a box, which is infinite if the box is.
+fn image(bounds: &Bounds<DVec3>, map: &DAffine3) -> Bounds<DVec3> {
+    if bounds.is_empty() {
+        return Bounds::EMPTY;
+    }
+    if !bounds.is_finite() {
+        return Bounds::new(DVec3::NEG_INFINITY, DVec3::INFINITY);
+    }
+    let (middle, half) = Hull::of(bounds).image(&map.matrix3);
+    let middle = middle + map.translation;
+    Bounds::new(middle - half, middle + half)
 }
 
 /// Returns whether the boxes of all objects contain the images of those of their instances, and hence all
@@ -268,14 +323,10 @@ fn holds(graph: &Graph<Frame3>, boxes: &[Option<Bounds<DVec3>>]) -> bool {
             let Some(inner) = &boxes[instance.object] else {
                 return false;
             };
-            if inner.is_empty() {
-                return true;
-            }
-            let map = instance.frame.map();
-            let (middle, half) = Hull::of(inner).image(&map.matrix3);
-            let middle = middle + map.translation;
-            (middle - half).cmpge(bounds.min() - slack).all()
-                && (middle + half).cmple(bounds.max() + slack).all()
+            let image = image(inner, instance.frame.map());
+            image.is_empty()
+                || image.min().cmpge(bounds.min() - slack).all()
+                    && image.max().cmple(bounds.max() + slack).all()
         })
     })
 }
@@ -311,7 +362,8 @@ where
                 max_elements: MAX_WALKED,
                 ..Growth::steps(steps)
             };
-            bounding_box(&seen, &growth).ok()
+            let loose = || { LOOSE.iter() }.find_map(|share| seen.bounds_within(steps, *share));
+            bounding_box(&seen, &growth).ok().or_else(loose)
         }),
         None => match &graph.between {
             Some(between) => extent_along(&between.whole, rows, None),

@@ -19,8 +19,9 @@ const THINNEST: f64 = 1.5;
 /// Samples by which a flat solid may exceed its extent, as it is drawn.
 const PAD: f64 = 1.5;
 
-/// Determinant of a matrix whose columns have a mean square of 1, above which it is not flat.
-const FLAT: f64 = 0.02;
+/// Determinant of a matrix whose columns have a mean square of 1, above which it is not flat. A bar of square section is
+/// flat if it is more than five times as long as wide: as long as a pixel, it would fall between samples.
+const FLAT: f64 = 0.2;
 
 /// Depths in multiples of 2⁻²² of the range.
 #[derive(Clone, Copy)]
