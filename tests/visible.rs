@@ -103,6 +103,41 @@ fn sections_of_polygons_are_lines() {
     assert_eq!(picture.elements, 2);
 }
 
+/// Lines along all axes through a cube of a third of their length: one is seen end-on, and the cube hides the middles of the
+/// others.
+#[test]
+fn lines_are_seen_where_no_face_lies_before_them() {
+    let scene = compiled(
+        "kind: instancing\nspace: 3\nobjects: {all: [{box: {from: [1, 1, 1], to: [2, 2, 2]}}, \
+         {segment: [[0, 1.5, 1.5], [3, 1.5, 1.5]]}, {segment: [[1.5, 0, 1.5], [1.5, 3, 1.5]]}, \
+         {segment: [[1.5, 1.5, 0], [1.5, 1.5, 3]]}]}\nscene: [all]\n",
+    );
+    let margin = 2.0 * Options::default().view.margin.unwrap_or_default();
+    for view in [[0.0, 0.0], [90.0, 0.0], [0.0, 90.0]] {
+        let (picture, _) = draw(&scene, 2, &from(view), |options| options.plot = true);
+        let plotted = picture.plotted.unwrap();
+        assert_eq!(plotted.strokes, 1 + 4, "{plotted:?}");
+        let expected = (4.0 + 4.0) / 3.0 * (1024.0 - margin) * 25.4 / 96.0;
+        let difference = plotted.drawn / expected - 1.0;
+        assert!(difference.abs() < 1e-3, "{plotted:?}, {expected}");
+        // The face, and a path for the lines, which have one colour.
+        let (picture, svg) = draw(&scene, 2, &from(view), |_| {});
+        assert_eq!(svg.matches("<path").count(), 2, "{svg}");
+        assert_eq!(picture.elements, 4);
+    }
+}
+
+/// Colours differ by depth.
+#[test]
+fn lines_of_a_curve_are_drawn_one_by_one() {
+    let koch = Fractal::parse(
+        "kind: lsystem\nspace: 3\naxiom: F\nproductions: {F: F+F--F+F}\nangle: 60\n",
+    );
+    let koch = koch.unwrap().steps(3);
+    let svg = koch.svg().unwrap();
+    assert_eq!(svg.matches("<path").count(), 64);
+}
+
 #[test]
 fn a_cube_has_three_faces_and_nine_edges() {
     let cube = compiled(

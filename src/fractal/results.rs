@@ -35,7 +35,7 @@ impl Fractal {
         &self.warnings
     }
 
-    /// Returns the approximant as SVG; in space, its visible faces.
+    /// Returns the approximant as SVG; in space, its visible faces and lines.
     ///
     /// # Errors
     ///

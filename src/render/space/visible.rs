@@ -2,7 +2,7 @@
 //!
 //! Elements are projected twice: first into samples of the nearest face, then the faces that are the nearest at a
 //! sample are kept. Memory is that of what is seen. The kept faces are [arranged] from the back to the front, or
-//! their edges are [cut](lines) where faces lie before them.
+//! their edges are [cut](lines) where faces lie before them. Elements that are lines are cut likewise.
 
 mod arrange;
 mod element;
@@ -15,7 +15,7 @@ mod tests;
 
 use std::io::{self, Write};
 
-use crate::geometry::{BEYOND, DVec2, Frame3, HalfSpace};
+use crate::geometry::{BEYOND, DVec2, DVec3, Frame3, HalfSpace};
 use crate::graph::Graph;
 use crate::grow::{Element, Growth, Visitor, walk_in_spans};
 use crate::parallel::Team;
@@ -29,6 +29,7 @@ use crate::style::{Cap, ColorBy, Colour, Join, Shade, Slice};
 
 use self::arrange::{Piece, arranged};
 use self::element::{Part, Shape, Viewer};
+use self::lines::Hiding;
 use self::nearest::{Nearest, Visibility, retain_visible};
 use self::polygon::Polygon;
 use super::buffer::SAMPLES;
@@ -50,7 +51,8 @@ const SEAM: f64 = 0.5;
 /// lies before it. A plot, or a DXF file, has the visible edges instead, without those inside planes. Other pictures
 /// have them too if the style has both a fill and a stroke.
 ///
-/// A face is one polygon of one colour, with the depth of its middle; circles have 48 sides. [`Options::detail`] has
+/// A face is one polygon of one colour, with the depth of its middle; circles have 48 sides. Elements that are lines have the
+/// stroke's width, and are drawn over the faces where none lies before them. [`Options::detail`] has
 /// no effect. The bytes do not depend on the number of threads.
 ///
 /// # Errors
@@ -96,9 +98,9 @@ struct Visible<'a> {
     options: &'a Options,
     is_plot: bool,
     faces: Vec<Shown>,
-    /// Sections of flat elements.
-    lines: Vec<(Colour, [DVec2; 2])>,
-    /// Number of elements of which a face is visible.
+    /// Elements that are lines, and sections of flat elements, with the colours that they are drawn in.
+    lines: Vec<(Colour, [DVec3; 2])>,
+    /// Number of elements of which a face or a line is visible.
     elements: u64,
     /// Largest difference of nearness that is a rounding error.
     tolerance: f64,
@@ -251,19 +253,32 @@ impl<'a> Visible<'a> {
         Ok(())
     }
 
-    /// Draws the visible edges, and the sections of flat elements, in a colour or in those of their elements.
+    /// Draws the visible edges, and the visible parts of lines, in a colour or in those of their elements.
     fn outline(&self, surface: &mut impl Surface, colour: Option<Colour>) -> io::Result<()> {
-        let faces: Vec<&Polygon> = self.faces.iter().map(|shown| &shown.polygon).collect();
         let of = |face: usize| colour.unwrap_or(self.faces[face].colour);
-        let mut strokes = self.strokes(surface);
         let is_alike = |a: usize, b: usize| of(a) == of(b);
-        lines::each(&faces, self.tolerance, is_alike, |face, ends| {
-            strokes.draw(of(face), ends)
-        })?;
-        for (own, ends) in &self.lines {
-            strokes.draw(colour.unwrap_or(*own), *ends)?;
-        }
+        let mut strokes = self.strokes(surface);
+        let mut hiding = self.hiding();
+        hiding.edges(is_alike, |face, ends| strokes.draw(of(face), ends))?;
+        self.draw_lines(&mut hiding, &mut strokes, colour)?;
         strokes.end()
+    }
+
+    fn hiding(&self) -> Hiding<'_> {
+        let faces = self.faces.iter().map(|shown| &shown.polygon);
+        Hiding::of(faces.collect(), self.tolerance)
+    }
+
+    fn draw_lines(
+        &self,
+        hiding: &mut Hiding<'_>,
+        strokes: &mut Strokes<'_, impl Surface>,
+        colour: Option<Colour>,
+    ) -> io::Result<()> {
+        for (own, ends) in &self.lines {
+            hiding.line(*ends, |ends| strokes.draw(colour.unwrap_or(*own), ends))?;
+        }
+        Ok(())
     }
 }
 
@@ -348,9 +363,7 @@ impl Drawing for Visible<'_> {
             (Some(stroke), Some(_)) => self.outline(surface, Some(stroke))?,
             _ => {
                 let mut strokes = self.strokes(surface);
-                for (colour, ends) in &self.lines {
-                    strokes.draw(*colour, *ends)?;
-                }
+                self.draw_lines(&mut self.hiding(), &mut strokes, None)?;
                 strokes.end()?;
             }
         }
@@ -372,7 +385,7 @@ struct Projector<'a> {
     /// Nearest faces, by which hidden ones are left out.
     nearest: Option<&'a Nearest>,
     shown: Vec<(Shown, Visibility)>,
-    lines: Vec<(Colour, [DVec2; 2])>,
+    lines: Vec<(Colour, [DVec3; 2])>,
     elements: u64,
 }
 
@@ -398,7 +411,7 @@ impl Visitor<Frame3> for Projector<'_> {
             *colour.get_or_insert_with(of_element)
         };
         self.walk.viewer.faces(shape, map, |part| match part {
-            Part::Line(ends) => self.lines.push((colour(), ends)),
+            Part::Line(ends, intensity) => self.lines.push((darkened(colour(), intensity), ends)),
             Part::Face(polygon, intensity, normal) => {
                 let visibility = { self.nearest }
                     .map_or(Visibility::Unknown, |nearest| nearest.visibility(&polygon));

@@ -64,7 +64,10 @@ struct Surface {
 
 impl Surface {
     fn new(solid: &Solid, sides: u32) -> Self {
-        let mesh = Mesh::with_sides(solid, sides);
+        let mut mesh = Mesh::with_sides(solid, sides);
+        if mesh.faces.is_empty() {
+            mesh.corners = solid.corners().to_vec();
+        }
         let is_round = solid.primitive().is_some();
         let normals: Vec<DVec3> = (mesh.faces.iter())
             .map(|face| normal(face.iter().map(|corner| mesh.corners[*corner])).normalize_or_zero())
@@ -116,12 +119,13 @@ pub(super) struct Viewer<'a> {
 pub(super) enum Part {
     /// A face, the intensity of its colour, and its unit normal towards the viewer.
     Face(Polygon, f64, DVec3),
-    /// The section of a flat element.
-    Line([DVec2; 2]),
+    /// An element that is a line, or the section of a flat one, and the intensity of its colour.
+    Line([DVec3; 2], f64),
 }
 
 impl Viewer<'_> {
-    /// Calls `give` for the faces of an element of a shape that look at the viewer, or for its section.
+    /// Calls `give` for the faces of an element of a shape that look at the viewer, for the element if it is a line, or for
+    /// its section.
     pub(super) fn faces(&self, shape: &Shape, map: &DAffine3, mut give: impl FnMut(Part)) {
         let map = self.placement.map * *map;
         let surface = shape.surface(&map.matrix3, self.scale(map.translation.z));
@@ -138,6 +142,14 @@ impl Viewer<'_> {
         if let Some(plane) = &self.section {
             let section = section(surface, &corners, plane);
             self.give(section, plane.normal, None, &mut give);
+            return;
+        }
+        if surface.mesh.faces.is_empty() {
+            let ends = corners.iter().map(|at| Corner {
+                at: *at,
+                is_edge: true,
+            });
+            self.give(ends.collect(), DVec3::Z, None, &mut give);
             return;
         }
         // Mirrored faces run the other way about.
@@ -207,13 +219,13 @@ impl Viewer<'_> {
             -1.0
         };
         let normal = (self.normals * outward * side).normalize_or_zero();
-        let intensity = self.intensity(&corners, normal);
+        let intensity = self.intensity(&corners, Some(normal).filter(|_| !is_line));
         for corner in &mut corners {
             corner.at = self.seen(corner.at);
         }
         if is_line {
             let (from, to) = (corners[0].at, corners[corners.len() / 2].at);
-            give(Part::Line([from.truncate(), to.truncate()]));
+            give(Part::Line([from, to], intensity));
         } else if let Some(polygon) = Polygon::new(corners) {
             give(Part::Face(polygon, intensity, normal));
         }
@@ -250,8 +262,8 @@ impl Viewer<'_> {
         TOLERANCE * largest
     }
 
-    /// Returns the intensity of a face, with the depth of the mean of its corners.
-    fn intensity(&self, corners: &[Corner], normal: DVec3) -> f64 {
+    /// Returns the intensity of a face with a normal, or of a line, with the depth of the mean of its corners.
+    fn intensity(&self, corners: &[Corner], normal: Option<DVec3>) -> f64 {
         let mut intensity = 1.0;
         if self.shade.cues_depth() {
             let [far, near] = self.placement.range;
@@ -262,7 +274,7 @@ impl Viewer<'_> {
                 intensity *= ((mean - far) / (near - far)).clamp(0.0, 1.0);
             }
         }
-        if self.shade.has_relief(false) {
+        if let Some(normal) = normal.filter(|_| self.shade.has_relief(false)) {
             intensity *= self.light.intensity(normal.dot(self.light.towards()));
         }
         intensity

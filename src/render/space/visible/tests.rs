@@ -1,7 +1,7 @@
 //! Tests of the order of polygons and of visible edges, against the nearest polygon at random points.
 
 use super::arrange::{Piece, arranged};
-use super::lines;
+use super::lines::Hiding;
 use super::polygon::{Corner, Polygon};
 use crate::geometry::{Bounds, DVec2, DVec3};
 use crate::random::Pcg;
@@ -135,15 +135,51 @@ fn polygons_that_need_no_division_stay_whole() {
     assert_eq!(check_order(&steps, &mut Pcg::new(5, 1)), steps.len());
 }
 
+/// Checks that points of a line are drawn that no face hides but that to which the line belongs, and counts the hidden and
+/// the drawn ones.
+fn check_line(
+    faces: &[Polygon],
+    own: Option<usize>,
+    [from, to]: [DVec3; 2],
+    drawn: &[[DVec2; 2]],
+    random: &mut Pcg,
+    seen: &mut [u32; 2],
+) {
+    for _ in 0..20 {
+        let point = from.lerp(to, random.unit());
+        let at = point.truncate();
+        let is_clear = |other: &Polygon| {
+            let outline = other.edges().all(|([from, to], _)| {
+                let edge = (to - from).truncate();
+                (edge.perp_dot(at - from.truncate()) / edge.length()).abs() > 0.1
+            });
+            outline && (other.plane().at(at) - point.z).abs() > 0.5
+        };
+        let others = faces.iter().enumerate();
+        let mut others = others
+            .filter(|(other, _)| Some(*other) != own)
+            .map(|(_, other)| other)
+            .filter(|it| it.bounds().meets(&Bounds::new(at, at)));
+        if !others.clone().all(is_clear) {
+            continue;
+        }
+        let is_hidden = others.any(|it| it.contains(at) && it.plane().at(at) > point.z);
+        let is_drawn = drawn.iter().any(|[a, b]| {
+            let along = (b - a).normalize();
+            let away = at - a;
+            away.perp_dot(along).abs() < 1e-6 && (0.0..=a.distance(*b)).contains(&away.dot(along))
+        });
+        seen[usize::from(is_drawn)] += 1;
+        assert_eq!(is_drawn, !is_hidden, "{own:?} at {at}");
+    }
+}
+
 #[test]
-fn lines_end_where_faces_lie_before_them() {
+fn edges_end_where_faces_lie_before_them() {
     let mut random = Pcg::new(11, 1);
     let faces = triangles(&mut random, 60);
-    let all: Vec<&Polygon> = faces.iter().collect();
     let mut drawn: Vec<Vec<[DVec2; 2]>> = vec![Vec::new(); faces.len()];
-    let outcome: Result<(), ()> = lines::each(
-        &all,
-        TOLERANCE,
+    let outcome: Result<(), ()> = Hiding::of(faces.iter().collect(), TOLERANCE).edges(
         |_, _| true,
         |face, line| {
             drawn[face].push(line);
@@ -153,38 +189,30 @@ fn lines_end_where_faces_lie_before_them() {
     outcome.unwrap();
     let mut seen = [0, 0];
     for (number, face) in faces.iter().enumerate() {
-        for ([from, to], _) in face.edges() {
-            for _ in 0..20 {
-                let point = from.lerp(to, random.unit());
-                let at = point.truncate();
-                let is_clear = |other: &Polygon| {
-                    let outline = other.edges().all(|([from, to], _)| {
-                        let edge = (to - from).truncate();
-                        (edge.perp_dot(at - from.truncate()) / edge.length()).abs() > 0.1
-                    });
-                    outline && (other.plane().at(at) - point.z).abs() > 0.5
-                };
-                let others = faces
-                    .iter()
-                    .enumerate()
-                    .filter(|(other, _)| *other != number);
-                let mut others = others
-                    .map(|(_, other)| other)
-                    .filter(|it| it.bounds().meets(&Bounds::new(at, at)));
-                if !others.clone().all(is_clear) {
-                    continue;
-                }
-                let is_hidden = others.any(|it| it.contains(at) && it.plane().at(at) > point.z);
-                let is_drawn = drawn[number].iter().any(|[a, b]| {
-                    let along = (b - a).normalize();
-                    let away = at - a;
-                    away.perp_dot(along).abs() < 1e-6
-                        && (0.0..=a.distance(*b)).contains(&away.dot(along))
-                });
-                seen[usize::from(is_drawn)] += 1;
-                assert_eq!(is_drawn, !is_hidden, "{number} at {at}");
-            }
+        for (edge, _) in face.edges() {
+            let drawn = &drawn[number];
+            check_line(&faces, Some(number), edge, drawn, &mut random, &mut seen);
         }
+    }
+    assert!(seen.iter().all(|seen| *seen > 300), "{seen:?}");
+}
+
+#[test]
+fn lines_end_where_faces_lie_before_them() {
+    let mut random = Pcg::new(12, 1);
+    let faces = triangles(&mut random, 60);
+    let mut hiding = Hiding::of(faces.iter().collect(), TOLERANCE);
+    let mut seen = [0, 0];
+    for _ in 0..200 {
+        let mut end = || DVec3::new(random.unit(), random.unit(), random.unit()) * 100.0;
+        let ends = [end(), end()];
+        let mut drawn = Vec::new();
+        let outcome: Result<(), ()> = hiding.line(ends, |line| {
+            drawn.push(line);
+            Ok(())
+        });
+        outcome.unwrap();
+        check_line(&faces, None, ends, &drawn, &mut random, &mut seen);
     }
     assert!(seen.iter().all(|seen| *seen > 300), "{seen:?}");
 }
@@ -200,12 +228,9 @@ fn faces_in_one_plane_have_no_edge_between_them() {
         ])
     };
     let faces = [square(0.0), square(10.0), square(30.0)];
-    let all: Vec<&Polygon> = faces.iter().collect();
     let lines = |is_alike: bool| {
         let mut lengths = [0.0; 3];
-        let outcome: Result<(), ()> = lines::each(
-            &all,
-            TOLERANCE,
+        let outcome: Result<(), ()> = Hiding::of(faces.iter().collect(), TOLERANCE).edges(
             |_, _| is_alike,
             |face, [a, b]| {
                 lengths[face] += a.distance(b);
