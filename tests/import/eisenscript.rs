@@ -190,7 +190,7 @@ fn programs_are_drawn_and_read_from_standard_input() {
 fn mistakes_have_their_places() {
     let folder = TempDir::new().unwrap();
     let program =
-        "rule a md 3 {\n  { x 1 qq 3 } a\n  { x one } box\n}\n{ x 1 } aa\nset maxdepth ten\nmesh\n";
+        "rule a md 3 {\n  { x 1 qq 3 } a\n  { x one } box\n}\n{ x 1 } aa\nset maxdepth ten\ntube\n";
     fs::write(folder.path().join("bad.es"), program).unwrap();
     let output = kfrac(folder.path())
         .args(["import", "bad.es"])

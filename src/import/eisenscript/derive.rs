@@ -6,14 +6,16 @@
 //! place, and the count begins anew.
 //!
 //! A *state* is an alternative with the counts on which its content depends. States are shared between all calls, except
-//! those whose content is drawn at random: each call has its own.
+//! those whose content is drawn at random: each call has its own. One that draws a mesh without a transformation depends on
+//! the last transformation before it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::random::Pcg;
 use crate::style::Colour;
 
-use super::program::{Alternative, Program, TOP, Target};
+use super::mesh::{Passage, Passages};
+use super::program::{Alternative, Primitive, Program, TOP, Target};
 
 /// Largest number of states.
 const MAX_STATES: usize = 12_000;
@@ -43,6 +45,8 @@ pub(super) struct State {
     pub(super) colour: Option<[u8; 4]>,
     /// Number of a state whose content is drawn at random.
     pub(super) serial: Option<usize>,
+    /// Number of the last passage before it, if it draws a mesh by it.
+    pub(super) passage: Option<usize>,
 }
 
 /// A call in the content of a state.
@@ -61,7 +65,9 @@ pub(super) struct Call {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Callee {
     State(usize),
-    Primitive(super::program::Primitive),
+    Primitive(Primitive),
+    /// Mesh along a passage.
+    Mesh(usize),
     /// Rule that has ended without a successor, whose call takes up room all the same.
     Nothing,
 }
@@ -88,6 +94,7 @@ pub(super) struct Derivation<'a> {
     pub(super) states: Vec<State>,
     known: BTreeMap<State, usize>,
     contents: Vec<Option<Vec<Call>>>,
+    pub(super) passages: Passages,
     /// Number of calls in all contents.
     size: usize,
     /// Largest numbers of states and of calls.
@@ -96,6 +103,8 @@ pub(super) struct Derivation<'a> {
     reached: Vec<Vec<bool>>,
     /// Whether the content of an alternative depends on draws.
     is_random: Vec<bool>,
+    /// Whether the content of an alternative depends on the passage before it.
+    looks_back: Vec<bool>,
     /// Rules that have been drawn from.
     pub(super) drawn: BTreeSet<usize>,
     /// Numbers of generations after which nothing is left, as far as they are known: `u32::MAX` without an end.
@@ -122,10 +131,12 @@ impl<'a> Derivation<'a> {
             states: Vec::new(),
             known: BTreeMap::new(),
             contents: Vec::new(),
+            passages: Passages::default(),
             size: 0,
             most: [MAX_STATES, MAX_CALLS],
             reached,
             is_random,
+            looks_back: program.looks_back(),
             drawn: BTreeSet::new(),
             heights: Vec::new(),
             firsts: Vec::new(),
@@ -139,6 +150,7 @@ impl<'a> Derivation<'a> {
             left: BTreeMap::new(),
             colour: None,
             serial: derivation.is_random[TOP].then_some(0),
+            passage: None,
         });
         derivation
     }
@@ -196,27 +208,42 @@ impl<'a> Derivation<'a> {
             let alternatives = program.alternatives_of(written.target);
             let is_drawn =
                 alternatives.len() > 1 || alternatives.iter().any(|it| self.is_random[*it]);
+            let looks_back = written.target == Target::Mesh
+                || alternatives.iter().any(|it| self.looks_back[*it]);
             let counts: Vec<u32> = written.loops.iter().map(|it| it.count).collect();
             let copies = { counts.iter() }.try_fold(1_usize, |all, count| {
                 all.checked_mul(usize::try_from(*count).ok()?)
             });
             let is_single = copies == Some(1);
-            if !is_drawn || is_single {
+            let mut times = vec![1; counts.len()];
+            let passed = |of: &mut Self, times: &[u32]| match written.loops.is_empty() {
+                true => state.passage,
+                false => looks_back.then(|| {
+                    let passage = Passage {
+                        alternative: state.alternative,
+                        action,
+                        times: times.to_vec(),
+                    };
+                    of.passages.number(passage)
+                }),
+            };
+            if !(is_drawn || looks_back) || is_single {
+                let passage = passed(self, &times);
                 calls.push(Call {
                     action,
                     times: None,
-                    callee: self.callee(written.target, left.clone(), colour)?,
+                    callee: self.callee(written.target, left.clone(), colour, passage)?,
                     colour,
                 });
                 self.check(calls.len())?;
                 continue;
             }
-            let mut times = vec![1; counts.len()];
             for _ in 0..copies.ok_or(TooLarge)? {
+                let passage = passed(self, &times);
                 calls.push(Call {
                     action,
                     times: Some(times.clone()),
-                    callee: self.callee(written.target, left.clone(), colour)?,
+                    callee: self.callee(written.target, left.clone(), colour, passage)?,
                     colour,
                 });
                 self.check(calls.len())?;
@@ -245,9 +272,16 @@ impl<'a> Derivation<'a> {
         mut target: Target,
         mut left: BTreeMap<usize, u32>,
         colour: Option<[u8; 4]>,
+        passage: Option<usize>,
     ) -> Result<Callee, TooLarge> {
         loop {
             let rule = match target {
+                Target::Mesh => {
+                    // Nothing lies before the first state, and some passages lead nowhere.
+                    let sides = |it| self.passages.get(it).sides(self.program);
+                    let passage = passage.filter(|it| !sides(*it).is_empty());
+                    return Ok(passage.map_or(Callee::Nothing, Callee::Mesh));
+                }
                 Target::Primitive(primitive) => return Ok(Callee::Primitive(primitive)),
                 Target::Rule(rule) => rule,
             };
@@ -272,6 +306,7 @@ impl<'a> Derivation<'a> {
                 left,
                 colour,
                 serial,
+                passage: passage.filter(|_| self.looks_back[alternative]),
             };
             return Ok(Callee::State(self.number(state)?));
         }
@@ -343,7 +378,7 @@ impl<'a> Derivation<'a> {
                     };
                     let all = match call.callee {
                         Callee::State(state) => next.entry(state).or_insert(0_u64),
-                        Callee::Primitive(_) => &mut primitives,
+                        Callee::Primitive(_) | Callee::Mesh(_) => &mut primitives,
                         Callee::Nothing => &mut nothing,
                     };
                     *all = all.saturating_add(copies);
@@ -389,7 +424,9 @@ impl<'a> Derivation<'a> {
                     way.push((callee, 0, 1));
                     is_on_way.insert(callee);
                 }
-                Some(Callee::Primitive(_) | Callee::Nothing) => way[last].2 = height.max(2),
+                Some(Callee::Primitive(_) | Callee::Mesh(_) | Callee::Nothing) => {
+                    way[last].2 = height.max(2)
+                }
             }
         }
     }
@@ -410,7 +447,7 @@ impl<'a> Derivation<'a> {
                 }
                 for call in self.content(state)? {
                     match call.callee {
-                        Callee::Primitive(_) => {
+                        Callee::Primitive(_) | Callee::Mesh(_) => {
                             // All states on a shortest way are known with it.
                             let mut way = Some(state);
                             let mut first = 2;

@@ -13,6 +13,7 @@ mod colour;
 mod derive;
 mod lex;
 mod loops;
+mod mesh;
 mod motion;
 mod parse;
 mod program;

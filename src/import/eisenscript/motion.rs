@@ -178,6 +178,11 @@ impl Motion {
         all
     }
 
+    /// Returns the motion as a map.
+    pub(super) fn map(&self) -> DAffine3 {
+        { self.0.iter() }.fold(DAffine3::IDENTITY, |all, it| all * it.map())
+    }
+
     /// Returns the motion that has the effect of a number of repetitions: that of the single movements if it is simple, or
     /// else a matrix and a translation.
     pub(super) fn power(&self, times: u32) -> Self {
@@ -191,7 +196,7 @@ impl Motion {
             };
             return Self(self.0.iter().map(power).collect());
         }
-        let mut base = { self.0.iter() }.fold(DAffine3::IDENTITY, |all, it| all * it.map());
+        let mut base = self.map();
         let (mut all, mut rest) = (DAffine3::IDENTITY, times);
         while rest > 0 {
             if rest % 2 == 1 {

@@ -13,7 +13,7 @@ use crate::style::Colour;
 use super::colour::{self, Colouring, Pool};
 use super::lex::Word;
 use super::motion::{Motion, Movement, reflection};
-use super::program::{Action, Alternative, Loop, Primitive, Program, Rule, Settings, TOP, Target};
+use super::program::{Action, Alternative, Loop, Program, Rule, Settings, TOP, Target};
 
 /// Largest number of definitions of rules.
 const MAX_ALTERNATIVES: usize = 1000;
@@ -22,7 +22,7 @@ const MAX_ALTERNATIVES: usize = 1000;
 const MAX_ERRORS: usize = 20;
 
 /// Primitives without a counterpart.
-const UNKNOWN_SHAPES: [&str; 4] = ["mesh", "tube", "template", "triangle"];
+const UNKNOWN_SHAPES: [&str; 3] = ["tube", "template", "triangle"];
 
 const TRANSFORMATIONS: &str =
     "transformations are x y z, rx ry rz, s, m, fx fy fz, reflect, hue, sat, b, a, color and blend";
@@ -194,7 +194,7 @@ impl Parser<'_> {
             _ => return self.unexpected("the name of a rule", HINT),
         };
         self.at += 1;
-        if Primitive::from_name(&name).is_some() || UNKNOWN_SHAPES.contains(&&name[..]) {
+        if Target::from_name(&name).is_some() || UNKNOWN_SHAPES.contains(&&name[..]) {
             let message = format!("'{name}' is a primitive, and no rule can have its name");
             return self.error(message, &place, "take another name");
         }
@@ -295,17 +295,17 @@ impl Parser<'_> {
             Some((shape, class)) => (shape, Some(class)),
             None => (&name[..], None),
         };
-        if let Some(primitive) = Primitive::from_name(shape) {
+        if let Some(target) = Target::from_name(shape) {
             self.at += 1;
             if let Some(class) = class {
                 self.warn(format!("the class '{class}' is left out"), &place);
             }
-            return Ok(Target::Primitive(primitive));
+            return Ok(target);
         }
         let bare = shape.split('[').next().unwrap_or(shape);
         if UNKNOWN_SHAPES.contains(&bare) {
             let message = format!("there is no counterpart of '{bare}'");
-            let hint = "box, sphere, cylinder, line, dot and grid are drawn";
+            let hint = "box, sphere, cylinder, line, dot, grid and mesh are drawn";
             return self.error(message, &place, hint);
         }
         if name.is_empty() || "{}*>".contains(&name[..]) || name == "rule" || name == "set" {

@@ -56,6 +56,18 @@ pub(super) enum Target {
     /// Rule by number.
     Rule(usize),
     Primitive(Primitive),
+    /// Sides between the lower face of the cube before a transformation and that after it.
+    Mesh,
+}
+
+impl Target {
+    /// Returns what a name that programs do not define stands for.
+    pub(super) fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "mesh" => Some(Self::Mesh),
+            _ => Primitive::from_name(name).map(Self::Primitive),
+        }
+    }
 }
 
 /// A transformation that is applied once, twice and so on.
@@ -130,7 +142,7 @@ impl Program {
     pub(super) fn alternatives_of(&self, target: Target) -> &[usize] {
         match target {
             Target::Rule(rule) => &self.rules[rule].alternatives,
-            Target::Primitive(_) => &[],
+            Target::Primitive(_) | Target::Mesh => &[],
         }
     }
 
@@ -140,6 +152,25 @@ impl Program {
         let actions = alternative.actions.iter().map(|action| action.target);
         let targets = actions.chain(alternative.successor);
         targets.flat_map(|target| self.alternatives_of(target).iter().copied())
+    }
+
+    /// Returns for each alternative whether it draws a mesh that depends on the transformation of its call.
+    pub(super) fn looks_back(&self) -> Vec<bool> {
+        let mut all = vec![false; self.alternatives.len()];
+        loop {
+            let looks = |alternative: &Alternative| {
+                let actions = alternative.actions.iter();
+                let bare = actions.filter(|it| it.loops.is_empty()).map(|it| it.target);
+                { bare.chain(alternative.successor) }.any(|target| {
+                    target == Target::Mesh || self.alternatives_of(target).iter().any(|it| all[*it])
+                })
+            };
+            let next: Vec<bool> = self.alternatives.iter().map(looks).collect();
+            if next == all {
+                return all;
+            }
+            all = next;
+        }
     }
 
     /// Returns which alternatives some of them lead to, themselves included.

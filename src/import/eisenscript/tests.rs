@@ -281,3 +281,29 @@ fn random_programs_are_drawn_once() {
     let number = read("{ x random[1,2] } box").document.unwrap().to_yaml();
     assert!(number.contains("translate: [1."), "{number}");
 }
+
+/// Meshes join: the upper face of each is the lower face of the next one, and the first state has none.
+#[test]
+fn meshes_connect_states() {
+    // Sides in one plane are quadrilaterals.
+    let straight = yaml("2 * { z 1 s 0.5 } mesh");
+    assert_eq!(straight.matches("polygon").count(), 2 * 4, "{straight}");
+    let twisted = yaml("{ z 1 rz 30 } mesh");
+    assert_eq!(twisted.matches("polygon").count(), 2 * 4, "{twisted}");
+    // Of a sheared cube, two sides have no area. Without a movement, none has.
+    assert_eq!(yaml("{ x 1 } mesh").matches("polygon").count(), 2);
+    let still = yaml("{ hue 9 } mesh box");
+    assert!(!still.contains("mesh"), "{still}");
+    // The first call of the rule has no mesh. Each of the others joins that before it.
+    let tower = yaml("set maxdepth 9 r rule r { { z 1 ry 6 s 0.9 } r mesh }");
+    let first = "r:\n    - object: r__2(7)\n      scale: 0.9\n      rotate: {y: 6}\n      translate: [0, 0, 1]\n  r__2(2): [mesh__1]";
+    assert!(tower.contains(first), "{tower}");
+    assert_eq!(tower.matches("mesh__").count(), 3, "{tower}");
+    // A call without a transformation keeps the one before it.
+    let kept = yaml("{ z 2 } a rule a { b } rule b { mesh { z 1 } box }");
+    let side = "[-0.5, -0.5, -2.5]\n        - [0.5, -0.5, -2.5]\n        - [0.5, -0.5, -0.5]";
+    assert!(kept.contains(side), "{kept}");
+    // Nothing lies before the first state.
+    assert!(said("mesh").contains("draws nothing"));
+    assert!(said("box rule mesh { box }").contains("'mesh' is a primitive"));
+}

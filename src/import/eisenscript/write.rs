@@ -6,12 +6,13 @@ use crate::build::NumberText;
 use crate::build::written::{Entries, sequence};
 use crate::document::node::Value;
 use crate::expression::is_reserved;
+use crate::geometry::DVec3;
 use crate::style::Colour;
 
 use super::colour::{Colouring, FIRST, colour_text};
 use super::derive::{Call, Callee, Derivation, TooLarge};
 use super::loops::{Instanced, LEVEL, Loops, NAMES};
-use super::program::{Loop, Primitive};
+use super::program::{Loop, Primitive, Target};
 
 /// A state with the number of generations that are left, where they end before the state does.
 type Key = (usize, Option<u32>);
@@ -29,6 +30,8 @@ struct Node {
 enum Place {
     Node(usize),
     Primitive(Primitive),
+    /// Mesh along a passage.
+    Mesh(usize),
 }
 
 /// States with the same name, which differ by their level.
@@ -58,6 +61,8 @@ struct Writer<'d, 'a> {
     loops: Loops,
     /// Primitives that are drawn.
     primitives: BTreeSet<Primitive>,
+    /// Passages whose meshes are drawn.
+    meshes: BTreeSet<usize>,
 }
 
 /// Returns the keys of the structure of a derivation that has been built, and that ends after a number of generations unless
@@ -74,6 +79,7 @@ pub(super) fn structure(
         groups: Vec::new(),
         loops: Loops::default(),
         primitives: BTreeSet::new(),
+        meshes: BTreeSet::new(),
     };
     let mut open = 0;
     let scene = writer.content(0, generations)?;
@@ -107,6 +113,7 @@ impl Writer<'_, '_> {
             let place = match call.callee {
                 Callee::Nothing => continue,
                 Callee::Primitive(primitive) => Place::Primitive(primitive),
+                Callee::Mesh(passage) => Place::Mesh(passage),
                 Callee::State(callee) => {
                     let first = self.derivation.first(callee)?;
                     if first == u32::MAX || left.is_some_and(|left| first > left) {
@@ -174,7 +181,7 @@ impl Writer<'_, '_> {
                     (None, None) => ((4, 0), None),
                 },
             };
-            let key = (state.alternative, state.colour, others, kind);
+            let key = (state.alternative, state.colour, state.passage, others, kind);
             let group = *groups.entry(key).or_insert_with(|| {
                 let rule = alternative
                     .rule
@@ -226,6 +233,11 @@ impl Writer<'_, '_> {
         }
         for primitive in &self.primitives {
             objects = objects.add(primitive.name(), shape(*primitive));
+        }
+        for passage in &self.meshes {
+            let sides = self.derivation.passages.get(*passage);
+            let sides = sides.sides(self.derivation.program);
+            objects = objects.add(mesh_name(*passage), polygons(&sides));
         }
         let half = || NumberText::from("1/2").0;
         let background = self.derivation.program.settings.background;
@@ -325,6 +337,14 @@ impl Writer<'_, '_> {
                         colour: call.colour.map(Colour::of_rgba),
                     }
                 }
+                Place::Mesh(passage) => {
+                    self.meshes.insert(passage);
+                    Instanced {
+                        object: mesh_name(passage),
+                        has_level: false,
+                        colour: call.colour.map(Colour::of_rgba),
+                    }
+                }
                 Place::Node(callee) => {
                     let node = &self.nodes[callee];
                     let general = general.filter(|it| it.relative[at]);
@@ -379,12 +399,27 @@ fn plain(name: &str) -> String {
     let name = words.join("_");
     let is_taken = NAMES.contains(&&name[..])
         || name == LEVEL
-        || Primitive::from_name(&name).is_some()
+        || Target::from_name(&name).is_some()
         || is_reserved(&name);
     if is_taken || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
         return format!("r_{name}");
     }
     name
+}
+
+/// Returns the name of the object for the mesh along a passage, which no rule has.
+fn mesh_name(passage: usize) -> String {
+    format!("mesh__{}", passage + 1)
+}
+
+/// Returns the instances of an object that consists of polygons.
+fn polygons(corners: &[Vec<DVec3>]) -> Value {
+    let number = |value: f64| NumberText::from(value).0;
+    let polygon = |corners: &Vec<DVec3>| {
+        let corners = corners.iter().map(|it| sequence(it.to_array().map(number)));
+        Entries::default().set("polygon", sequence(corners)).value()
+    };
+    sequence(corners.iter().map(polygon))
 }
 
 /// Returns the instances of an object that is a primitive in the unit cube about the origin.
