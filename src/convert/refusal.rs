@@ -60,8 +60,8 @@ pub enum Refusal {
         "a solid in it is neither round and upright, nor a box along the axes, nor a polygon, and sets in space are"
     )]
     Solid,
-    /// The model lies in space, and the other kind in the plane.
-    #[error("it lies in space, and a file of the kind '{}' lies in the plane", .0.name())]
+    /// The model lies in space, and conversions to the other kind are those of the plane.
+    #[error("it lies in space, and conversions to the kind '{}' are those of the plane", .0.name())]
     InSpace(Kind),
     /// A closed outline crosses itself so that its area is 0.
     #[error(

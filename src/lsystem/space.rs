@@ -61,8 +61,11 @@ pub enum NoGraph {
     /// The turtle has a second heading.
     #[error("the turtle exchanges its headings, or turns regardless of reflections")]
     Way,
-    /// There are too many modules with different arguments, or effects that depend on draws.
-    #[error("its modules are too many, or differ from draw to draw")]
+    /// The effects of modules depend on draws.
+    #[error("its modules differ from draw to draw")]
+    Draws,
+    /// There are too many modules with different arguments.
+    #[error("its modules are too many")]
     Modules,
 }
 

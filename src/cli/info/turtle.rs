@@ -24,7 +24,11 @@ impl TurtleInfo {
         };
         // The graph of a word is the same for any number of steps.
         let compiled = graph.depth().is_some();
-        let why = system.walked().unwrap_or(NoGraph::Modules);
+        let others = match system.words().is_deterministic() {
+            true => NoGraph::Modules,
+            false => NoGraph::Draws,
+        };
+        let why = system.walked().unwrap_or(others);
         Some(Self {
             compiled,
             walked: (!compiled).then(|| why.to_string()),
